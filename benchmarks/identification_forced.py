@@ -21,7 +21,7 @@ from rocking.dynamics import RandomRestitution
 from rocking.identification import RotationSeries
 from rocking.identification.forced import ForcedPosterior, answer, fit_forced
 from rocking.identification.forced_model import MEAN, SAME_TIME, fitted
-from rocking.identification.prior import Knowledge
+from rocking.identification.posterior import Knowledge
 from rocking.motions.synthetic import family
 
 ROOT = Path(__file__).parents[1]

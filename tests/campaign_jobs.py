@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from rocking.campaigns import reading
+from rocking.campaigns import ledger
 from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder
 
@@ -55,7 +55,7 @@ def finished(path: Path, text: str, **how: Any) -> JobFolder:
 def digests(folder: JobFolder) -> dict[str, tuple[str, str]]:
     """Keys and hashes of the results of all rounds."""
     plans = {path: Identity.read(path).plan for path in sorted(folder.path.glob("round-*"))}
-    return {path.name: (plan.key, reading.digest(reading.pieces(path, plan))) for path, plan in plans.items()}
+    return {path.name: (plan.key, ledger.digest(ledger.pieces(path, plan))) for path, plan in plans.items()}
 
 
 def flip(path: Path, bit: int) -> None:

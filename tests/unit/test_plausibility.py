@@ -224,7 +224,7 @@ def test_the_api_and_the_page_say_it():
     """A motion and a body that were hardly meant carry their sentences in the answers that the page shows as notes."""
     pytest.importorskip("fastapi")
     from rocking.app.api.body import described
-    from rocking.reports.motion_facts import MotionAnswer, motion_facts
+    from rocking.reports.response_facts import MotionAnswer, motion_facts
 
     assert "1000 m above the ground" in described(rk.Block(width=500.0, height=2000.0), 9.81, None)["warnings"][0]
     assert described(rk.Block(width=0.5, height=2.0), 9.81, None)["warnings"] == []

@@ -10,7 +10,7 @@ from scipy.stats import spearmanr
 
 from rocking.evidence import all_measurements, claims, datasets, errata
 from rocking.evidence._errata import Entry, closer_rows, recomputed
-from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
+from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED
 from rocking.evidence.comparison import correlation, relative_error
 from rocking.restitution import Housner, Ked
 

@@ -11,8 +11,7 @@ from scipy.integrate import solve_ivp
 
 import rocking as rk
 from rocking.dynamics.contact.base import BOTH, RIGHT, ContactState, PlaneBase, along, away, kinetic
-from rocking.dynamics.contact.impact_resolution import GroundContact, Struck, strike
-from rocking.dynamics.contact.impulse_growth import impact_of, shock
+from rocking.dynamics.contact.impact_resolution import GroundContact, Struck, impact_of, shock, strike
 from rocking.outcome import Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")

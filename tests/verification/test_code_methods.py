@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.studies import MotionList, SyntheticSet, minimum_overturning_acceleration
 from rocking.studies.code_methods import CODE_METHODS, compare_code_methods
-from rocking.studies.code_methods.method import BodySides, Shaking
+from rocking.studies.code_methods.methods import BodySides, Shaking
 
 pytestmark = pytest.mark.verifies(room="studies")
 

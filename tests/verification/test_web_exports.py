@@ -36,8 +36,7 @@ from rocking.app.settings import Limits
 from rocking.motions import GroundMotion
 from rocking.motions.formats import read_motion
 from rocking.reports import Document
-from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable
-from rocking.reports.render import response_pdf
+from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, response_pdf
 
 pytestmark = pytest.mark.verifies("damage", control="test_these_checks_find_what_they_look_for", room="doors")
 

@@ -111,7 +111,7 @@ def _response() -> None:
     from rocking.app.inputs import ResponseRequest, body_from
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
-    from rocking.plots.traces import fine_samples
+    from rocking.plots.labels import fine_samples
     from rocking.spec.response import problem_of
 
     words = "sine:amplitude=3,period=0.8"

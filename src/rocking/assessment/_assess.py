@@ -17,14 +17,12 @@ from rocking.motions.components import rotated, with_vertical
 from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import predict
-from rocking.prediction.mechanics import FRICTION, parts, several
-from rocking.prediction.uncertain import Uncertain
+from rocking.prediction.mechanics import FRICTION, Uncertain, parts, several
 from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
-from rocking.studies.code_methods.method import BodySides, Shaking
-from rocking.studies.margins import Margins
+from rocking.studies.code_methods.methods import BodySides, Shaking
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.remedies import CALIBRATED, lifting_factor, remedies
+from rocking.studies.remedies import CALIBRATED, Margins, lifting_factor, remedies
 
 ENDS = {"low": 0.025, "high": 0.975}
 """Of the 95 % interval of what is measured of single bodies, which are asked beside the calibrated model: quantiles."""

@@ -17,7 +17,7 @@ from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
 from rocking.prediction.mechanics import parts
 from rocking.prediction.space import SpaceMechanics
-from rocking.studies.margins import first_to_fall, highest
+from rocking.studies.remedies import first_to_fall, highest
 
 DIRECTIONS = 6
 """Over half a turn, into which a solid is turned; both ways round make it a whole one."""

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import _rings, shapes
+from rocking.bodies import shapes
 from rocking.bodies._known import Known, density_of
 from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
-from rocking.bodies.region import Region
+from rocking.bodies.region import Region, check_disjoint
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
@@ -95,7 +95,7 @@ class Section(Body):
                 f"pass ground={lowest:.9g} or move the outline"
             )
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
-        _rings.check_disjoint([(region.outline, region.holes) for region in self.regions])
+        check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
         if mass is not None:
             area = sum(ring_moments(ring).mass for region in self.regions for ring in region.rings)

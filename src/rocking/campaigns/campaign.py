@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rocking.campaigns import disk, reading
+from rocking.campaigns import disk, ledger
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import NAME as LOCK
 from rocking.campaigns.disk import CampaignMismatchError, FolderLock, holder
@@ -131,15 +131,15 @@ class Campaign:
             nothing = CampaignStatus(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
             if not (path / LEDGER).exists():
                 return nothing
-            with Ledger(path) as ledger, ledger.instant():
-                if not ledger.begun:
+            with Ledger(path) as book, book.instant():
+                if not book.begun:
                     return nothing
-                chunks, histories = ledger.finished()
-                effort, damaged = ledger.effort(), tuple(ledger.events("damaged"))
-                work = ledger.costs(plan.count).left()
+                chunks, histories = book.finished()
+                effort, damaged = book.effort(), tuple(book.events("damaged"))
+                work = book.costs(plan.count).left()
             broken: tuple[str, ...] = ()
             if verify:
-                read = reading.verified(path)
+                read = ledger.verified(path)
                 chunks, histories, broken = read.chunks, read.verified, read.damaged
             done = (plan.count, histories, plan.chunks, chunks)
             return CampaignStatus(path, *done, running, *effort, damaged, plan.software, work, broken)
@@ -229,7 +229,7 @@ class Campaign:
         self.identity.refuse_other(self.folder, self.histories)
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
 
-    def pieces(self) -> Iterator[reading.HistoryRange]:
+    def pieces(self) -> Iterator[ledger.HistoryRange]:
         """Return the results in the order of the histories, one chunk in memory at a time.
 
         Yields
@@ -238,7 +238,7 @@ class Campaign:
             First history, last one (not included), and their results.
         """
         with disk.guarded(self.folder):
-            yield from reading.pieces(self.folder, self.plan)
+            yield from ledger.pieces(self.folder, self.plan)
 
     def results(self, *names: str) -> Arrays:
         """Return results of all histories at once: 83 bytes a history, less if only some are wanted.
@@ -269,9 +269,9 @@ class Campaign:
         str
             64 hexadecimal digits.
         """
-        return reading.digest(self.pieces())
+        return ledger.digest(self.pieces())
 
-    def verify(self) -> reading.Verification:
+    def verify(self) -> ledger.Verification:
         """Read every result, and see that all are there once, and are what was written.
 
         Returns
@@ -279,7 +279,7 @@ class Campaign:
         Verification
             What is damaged or missing; a run computes that.
         """
-        return reading.verified(self.folder)
+        return ledger.verified(self.folder)
 
 
 def _histories(value: object) -> Histories:

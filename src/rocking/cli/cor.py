@@ -11,9 +11,8 @@ from rocking.bodies import Solid
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
-from rocking.cli.numbers import in_unit, side_line
+from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendation, side_line
 from rocking.cli.page import Page, deliver
-from rocking.cli.recommendation import recommendation_facts, show_recommendation
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.spec.construction import any_body_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
-from rocking.statistics.separation import Separation
+from rocking.statistics.maximum_likelihood import Separation
 from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class FragilityAnswer:
 
             figure = sensitivity_picture(self.compared, unit=self.unit)
         elif self.kind == "incremental":
-            from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+            from rocking.plots.fragility import incremental_dynamic_analysis_picture
 
             figure = incremental_dynamic_analysis_picture(self.first)
         else:

@@ -17,7 +17,7 @@ from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.motions.intensity import Measure
-    from rocking.reports.motion_facts import MotionAnswer
+    from rocking.reports.response_facts import MotionAnswer
 
 _MOST_PERIODS = 1000
 
@@ -28,7 +28,7 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
 
     from rocking.motions.integrals import ground_displacement, ground_velocity
     from rocking.motions.motion import GroundMotion
-    from rocking.plots.traces import traces
+    from rocking.plots.labels import traces
     from rocking.tables import Column, Table, to_csv
 
     motion, samples = answer.motion.motion, answer.motion.samples
@@ -67,7 +67,7 @@ def motion(
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli.arguments import Arguments, hinted
-    from rocking.reports.motion_facts import MotionAnswer
+    from rocking.reports.response_facts import MotionAnswer
     from rocking.spec.construction import motion_of
     from rocking.spec.document import OneMotionTable
     from rocking.spec.reading import CommandFiles, checked
@@ -116,7 +116,7 @@ class MotionPage:
         return ground_motion_picture(self.motion.motion)
 
     def facts(self) -> dict[str, Any]:
-        from rocking.reports.motion_facts import motion_facts, spectrum_facts
+        from rocking.reports.response_facts import motion_facts, spectrum_facts
 
         motion = self.motion
         facts = motion_facts(motion.motion, motion.samples, motion.measures)

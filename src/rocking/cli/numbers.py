@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rocking import checks
+from rocking.cli.page import Page
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray
 from rocking.errors import InvalidValueError
 
@@ -119,3 +120,29 @@ def side_line(side: Any, length: str) -> str:
         f"alpha = {side.slenderness_angle:.4g} rad ({math.degrees(side.slenderness_angle):.3g} deg), "
         f"R = {in_unit(side.semi_diagonal, length)}, p = {side.frequency_parameter:.4g} rad/s"
     )
+
+
+def recommendation_facts(found: Any) -> dict[str, Any]:
+    """Return a recommendation as plain values; nothing where none was asked for."""
+    return {} if found is None else {"recommendation": found.as_dict()}
+
+
+def show_recommendation(page: Page, found: Any) -> None:
+    """Write a recommendation on a page, if there is one."""
+    if found is None:
+        return
+    from rocking.evidence.recommendation_words import LEGEND
+
+    page.line("\nWhich model to use", "bold")
+    head, rows = found.table
+    if found.judgement is not None:
+        # coefficients and intervals stand above
+        shown = [k for k, name in enumerate(head) if name.split()[0] != "r"]
+        chosen = {k for k, row in enumerate(rows) if row[0] == found.prediction}
+        words = [[row[k] for k in shown] for row in rows]
+        page.table([head[k] for k in shown], words, ("model", "standing"), bold=chosen)
+        page.line(LEGEND, "dim")
+    for sentence in found.evidence:
+        page.line(sentence)
+    for sentence in found.advice:
+        page.line(sentence, "bold")

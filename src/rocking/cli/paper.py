@@ -79,7 +79,7 @@ def _show(result: "Reproduction") -> None:
 def _claims(result: "Reproduction") -> Any:
     from rich.table import Table
 
-    from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED
+    from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED
 
     styles = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
     table = Table(box=None, show_header=False, pad_edge=False)

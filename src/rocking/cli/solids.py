@@ -9,9 +9,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
-from rocking.cli.numbers import in_unit
+from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendation
 from rocking.cli.page import Page
-from rocking.cli.recommendation import recommendation_facts, show_recommendation
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import GeometryError
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models

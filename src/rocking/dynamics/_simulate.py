@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import conventions, errors
 from rocking.bodies import Body
-from rocking.dynamics.plane.batch import response_of_rocking
+from rocking.dynamics.plane.histories import response_of_rocking
 from rocking.dynamics.response import Response
 from rocking.dynamics.settings import Settings, in_space
 from rocking.errors import InvalidValueError, PureRockingWarning
@@ -287,7 +287,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
     if in_space(body):
         from rocking.dynamics.space.attitude import SpatialStart
         from rocking.dynamics.space.body import SpatialBody
-        from rocking.dynamics.space.histories import response_in_space
+        from rocking.dynamics.space.response import response_in_space
 
         if friction is None:
             body = SpatialBody.of(body)

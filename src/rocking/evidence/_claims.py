@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.evidence import claims_of_errors  # noqa: F401 - whose judges are called, too
 from rocking.evidence._errata import closer_rows, recomputed
-from rocking.evidence.claim import (
+from rocking.evidence.claims_of_errors import (
     FAILS,
     HOLDS,
     IN_PART,

@@ -10,11 +10,11 @@ from scipy.special import logsumexp, stdtr
 
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.errors import InvalidValueError
+from rocking.identification.association import fit_times
 from rocking.identification.design import Design, designs
 from rocking.identification.forced import identify_forced
 from rocking.identification.measurement import ImpactTimes, RotationSeries
-from rocking.identification.posterior import Posterior
-from rocking.identification.prior import LEVEL, Knowledge
+from rocking.identification.posterior import LEVEL, Knowledge, Posterior
 from rocking.identification.results import (
     Identification,
     Impact,
@@ -26,7 +26,6 @@ from rocking.identification.results import (
 )
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, SLENDERNESS, TILT, TREND
-from rocking.identification.times import fit_times
 from rocking.motions.pulse import Motion
 
 _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more

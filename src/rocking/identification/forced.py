@@ -30,8 +30,7 @@ from rocking.identification.forced_model import (
     fitted,
 )
 from rocking.identification.measurement import ImpactTimes, RotationSeries
-from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
-from rocking.identification.prior import Knowledge
+from rocking.identification.posterior import SCATTERS, Knowledge, Mixture, ln_scatter_density
 from rocking.identification.results import (
     LEVELS,
     ForcedRocking,

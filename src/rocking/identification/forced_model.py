@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.identification.excursions import Excursions
-from rocking.identification.forced_half_cycles import Flights
+from rocking.identification.forced_half_cycles import Excursions, Flights
 from rocking.identification.measurement import RotationSeries
-from rocking.identification.prior import Knowledge
+from rocking.identification.posterior import Knowledge
 from rocking.motions.motion import GroundMotion
 
 SHARED = (MEAN, HALF, WIDTH, HEIGHT, TILT, TREND, CLOCK) = tuple(range(7))

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FEET, BoolArray, FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.identification.excursions import Excursions, excursions_of
+from rocking.identification.forced_half_cycles import Excursions, excursions_of
 from rocking.identification.forced_model import (
     CLOCK,
     DRIFT,
@@ -27,7 +27,7 @@ from rocking.identification.forced_model import (
     fitted,
 )
 from rocking.identification.measurement import RotationSeries
-from rocking.identification.prior import Knowledge
+from rocking.identification.posterior import Knowledge
 from rocking.identification.series import correlation
 from rocking.motions.motion import GroundMotion
 

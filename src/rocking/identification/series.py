@@ -8,11 +8,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import half_cycles
+from rocking.identification.association import speeds_between, start
 from rocking.identification.measurement import RotationSeries
-from rocking.identification.posterior import Noise, Posterior, posterior
-from rocking.identification.prior import Knowledge
+from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
 from rocking.identification.state_space import SHARED, Path
-from rocking.identification.times import speeds_between, start
 
 _STEP = 1e-5
 _MOST = 3000

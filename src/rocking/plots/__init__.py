@@ -6,14 +6,12 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.plots.animation import animate_gif, animate_html
-    from rocking.plots.assessment import assessment_picture
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.cloud import cloud_picture, measures_picture
     from rocking.plots.comparison import animate_comparison
     from rocking.plots.energy_stages import energy_stages_picture
-    from rocking.plots.equilibria import equilibria_picture
     from rocking.plots.falling import falling_picture
-    from rocking.plots.fragility import fragility_picture
+    from rocking.plots.fragility import fragility_picture, incremental_dynamic_analysis_picture
     from rocking.plots.ground_motion import (
         ground_motion_picture,
         processing_picture,
@@ -22,16 +20,15 @@ if TYPE_CHECKING:
         spectra_picture,
     )
     from rocking.plots.identification import identification_picture
-    from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
     from rocking.plots.inventory import inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
     from rocking.plots.paper_figures import paper_figure
-    from rocking.plots.prediction import prediction_picture, reliability_picture
+    from rocking.plots.prediction import assessment_picture, prediction_picture, reliability_picture
     from rocking.plots.regimes import regime_map_picture, regimes_picture
     from rocking.plots.response import response_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
     from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
-    from rocking.plots.solid import energy_picture, slices_picture, solid_picture
+    from rocking.plots.solid import energy_picture, equilibria_picture, slices_picture, solid_picture
     from rocking.plots.spatial import spatial_picture
     from rocking.plots.style import journal_style, new_figure, write
     from rocking.plots.transitions import transitions_of_many_picture, transitions_picture

@@ -19,8 +19,7 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.plots.animation_hull import HullScene, HullStage
-from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_until
+from rocking.plots.animation_scene import DrawnShape, HullScene, HullStage, Scene, scene_of, scene_until
 from rocking.plots.body import closed
 from rocking.plots.response import motion_curves, over_slenderness
 from rocking.plots.style import DASHED, GREY, INK, PALE, in_journal_style

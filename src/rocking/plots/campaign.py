@@ -7,8 +7,7 @@ from rocking.campaigns.jobs import JobFolder, analyses, answer, assessment, comp
 from rocking.campaigns.jobs.findings import datasets, label_of, refuse_unfinished
 from rocking.campaigns.jobs.study import TYPES
 from rocking.errors import InvalidValueError
-from rocking.plots.fragility import fragility_picture
-from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+from rocking.plots.fragility import fragility_picture, incremental_dynamic_analysis_picture
 from rocking.plots.inventory import inventory_picture
 from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture

@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray, Foot
 from rocking.plots.body import outlines
 from rocking.plots.style import DOUBLE, INK, in_journal_style, new_figure
 from rocking.restitution import EnergyBalance, energy_balance
-from rocking.restitution.ked_stages import STAGES, known_density
+from rocking.restitution.ked import STAGES, known_density
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.evidence._league import LeagueRow
-from rocking.evidence.bed_fit import bed_coefficients
+from rocking.evidence.bed_fit import Explanation, bed_coefficients
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
-from rocking.evidence.explanation import Explanation
 from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure

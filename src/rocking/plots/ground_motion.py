@@ -20,7 +20,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import begins_at
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
-from rocking.plots.labels import plain, plain_log
+from rocking.plots.labels import Traces, fine_samples, plain, plain_log, traces
 from rocking.plots.style import (
     COLORS,
     DASHED,
@@ -37,7 +37,6 @@ from rocking.plots.style import (
     new_figure,
     stroke,
 )  # fmt: skip
-from rocking.plots.traces import Traces, fine_samples, traces
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

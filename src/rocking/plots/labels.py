@@ -1,12 +1,17 @@
 """Labels, words and scales of axes that the pictures of studies share."""
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.motions.integrals import ground_displacement, ground_velocity, quadratic_roots
 from rocking.motions.intensity import MEASURES
+from rocking.motions.motion import SHORTEST_STEP, GroundMotion
+from rocking.motions.pulse import Pulse
 from rocking.plots.style import INK
 
 if TYPE_CHECKING:
@@ -126,3 +131,112 @@ def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
     head, _, _ = axis.get_label_text().rpartition("[")
     if head:
         axis.set_label_text(f"{head}[{unit}]")
+
+
+_ENOUGH = 2000  # points from which on a curve looks smooth
+
+_PER_PERIOD = 1000
+"""Steps in a period of the fastest part of a pulse: straight lines between miss a sine by 5 millionths."""
+
+_MOST = 400_000
+
+Peak = tuple[float, float]  # time [s] and signed value
+
+
+@dataclass(frozen=True, eq=False)
+class Traces:
+    """Acceleration, velocity and displacement at many instants, and where each is largest."""
+
+    time: FloatArray  # instants from the first sample to the last, or over a pulse [s]
+    acceleration: FloatArray  # acceleration of the ground [m/s2]
+    velocity: FloatArray  # velocity of the ground, from rest [m/s]
+    displacement: FloatArray  # displacement of the ground, from zero [m]
+    # time and signed value of the largest of each, exact also between the instants, by its name
+    peaks: Mapping[str, Peak]
+
+
+def traces(motion: GroundMotion | Pulse) -> Traces:
+    """Return the curves of a motion, fine enough to be drawn, with their exact peaks."""
+    if isinstance(motion, GroundMotion):
+        return _of_samples(motion)
+    time = np.linspace(0.0, motion.duration, _steps(motion) + 1)
+    curves = {
+        "acceleration": motion.acceleration,
+        "velocity": motion.velocity,
+        "displacement": motion.displacement,
+    }
+    peaks = {name: _zoomed(curve, time) for name, curve in curves.items()}
+    acceleration, velocity, displacement = (np.asarray(curve(time)) for curve in curves.values())
+    return Traces(time, acceleration, velocity, displacement, peaks)
+
+
+def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
+    """Return a motion as samples: a record as it is, a pulse cut so finely that straight lines between will do."""
+    # the samples of a pulse begin and end with it, so that jumps at its ends stay jumps
+    if isinstance(motion, GroundMotion):
+        return motion
+    steps = _steps(motion)
+    values = motion.acceleration(np.linspace(0.0, motion.duration, steps + 1))
+    told = f"{motion!r} cut into {steps} steps"
+    return GroundMotion(values, motion.duration / steps, name=motion.name, provenance=(told,))
+
+
+def _steps(pulse: Pulse) -> int:
+    periods = max(1.0, pulse.fastest * pulse.duration / (2.0 * np.pi))
+    wanted = int(max(min(_PER_PERIOD * periods, _MOST), 20.0 * periods))
+    return max(1, min(wanted, int(0.999 * pulse.duration / SHORTEST_STEP)))
+
+
+def _zoomed(curve: Callable[[Any], FloatArray], time: FloatArray) -> Peak:
+    # each round narrows the time a hundredfold or more, and the value errs by its square
+    for _ in range(4):
+        values = np.asarray(curve(time))
+        k = int(np.abs(values).argmax())
+        best = float(time[k]), float(values[k])
+        time = np.linspace(time[max(k - 1, 0)], time[min(k + 1, time.size - 1)], 401)
+    return best
+
+
+def _of_samples(motion: GroundMotion) -> Traces:
+    a, v, u, h = motion.acceleration, ground_velocity(motion), ground_displacement(motion), motion.time_step
+    parts = max(1, -(-_ENOUGH // len(motion)))
+    tau = np.arange(parts) / parts
+    speed, place = _inside(motion, v, u, tau[:, None])
+    acceleration = a[:-1] + tau[:, None] * np.diff(a)
+    start = np.arange(len(motion) - 1)
+    columns = ((tau[:, None] + start) * h, acceleration, speed, place)
+    ends = (motion.duration, a[-1], v[-1], u[-1])
+    time, acceleration, v_fine, u_fine = (
+        np.append(values.T.ravel(), end) for values, end in zip(columns, ends, strict=True)
+    )
+    # velocity turns where the acceleration passes zero, displacement where the velocity does
+    turns = (a[:-1] < 0.0) != (a[1:] < 0.0)
+    turn = np.where(turns, a[:-1] / np.where(turns, a[:-1] - a[1:], 1.0), 0.0)
+    speeds = _inside(motion, v, u, turn)[0]
+    roots = quadratic_roots(0.5 * h * np.diff(a), h * a[:-1], v[:-1])
+    rests = [np.where((root > 0.0) & (root < 1.0), root, 0.0) for root in roots]
+    peaks = {
+        "acceleration": _largest(motion.time, a),
+        "velocity": _largest(np.append(_times(motion, turn), motion.duration), np.append(speeds, v[-1])),
+        "displacement": _largest(
+            np.concatenate([motion.time, *(_times(motion, tau) for tau in rests)]),
+            np.concatenate([u, *(_inside(motion, v, u, tau)[1] for tau in rests)]),
+        ),
+    }
+    return Traces(time, acceleration, v_fine, u_fine, peaks)
+
+
+def _inside(motion: GroundMotion, v: FloatArray, u: FloatArray, tau: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return velocity and displacement within each step, at a fraction `tau` of it."""
+    a, rise, h = motion.acceleration[:-1], np.diff(motion.acceleration), motion.time_step
+    speed = v[:-1] + h * tau * (a + 0.5 * rise * tau)
+    return speed, u[:-1] + h * tau * (v[:-1] + h * tau * (0.5 * a + rise * tau / 6.0))
+
+
+def _times(motion: GroundMotion, tau: FloatArray) -> FloatArray:
+    return np.asarray((np.arange(tau.size) + tau) * motion.time_step, dtype=np.float64)
+
+
+def _largest(times: FloatArray, values: FloatArray) -> Peak:
+    k = int(np.abs(values).argmax())
+    return float(times[k]), float(values[k])

@@ -9,9 +9,9 @@ import numpy as np
 from rocking.checks import one_of
 from rocking.conventions import FloatArray
 from rocking.evidence._league import league
+from rocking.evidence.bed_fit import explanation
 from rocking.evidence.calibration import calibrate, calibrate_on
 from rocking.evidence.comparison import relative_error
-from rocking.evidence.explanation import explanation
 from rocking.evidence.measurements import DataSet, all_measurements, datasets
 from rocking.plots import evidence
 from rocking.plots.energy_stages import energy_stages_picture, hero

@@ -26,9 +26,9 @@ from rocking.prediction.mechanics import (
     MEASURED,
     Endings,
     Mechanics,
+    Uncertain,
     parts,
 )
-from rocking.prediction.uncertain import Uncertain
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted
 

@@ -28,9 +28,9 @@ from rocking.prediction.mechanics import (
     MEASURED,
     Endings,
     Mechanics,
+    Uncertain,
     parts,
 )
-from rocking.prediction.uncertain import Uncertain
 
 INSIDE, ABOVE, THICK = 0.01, 0.005, 0.005
 """How far corners of the base lie inside of the drawn ones, over its mean radius, and how high points are that touch

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rocking.reports._assessment import assessment_report
     from rocking.reports._identification import identification_report
     from rocking.reports._predictions import prediction_report, validation_report
-    from rocking.reports._response_report import response_report
+    from rocking.reports.response_document import response_report
 
 __all__ = [
     "Document",
@@ -26,7 +26,7 @@ __getattr__, __dir__ = exports(
         "assessment_report": "rocking.reports._assessment",
         "identification_report": "rocking.reports._identification",
         "prediction_report": "rocking.reports._predictions",
-        "response_report": "rocking.reports._response_report",
+        "response_report": "rocking.reports.response_document",
         "validation_report": "rocking.reports._predictions",
     },
 )

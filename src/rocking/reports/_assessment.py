@@ -18,15 +18,24 @@ from rocking.evidence.measurements import provenance
 from rocking.motions.components import leading
 from rocking.motions.intensity import measure, sampled
 from rocking.outcome import Outcome
-from rocking.plots.assessment import assessment_picture
 from rocking.plots.body import body_picture
-from rocking.plots.equilibria import equilibria_picture
 from rocking.plots.ground_motion import ground_motion_picture
-from rocking.plots.prediction import prediction_picture
+from rocking.plots.prediction import assessment_picture, prediction_picture
 from rocking.plots.response import response_picture
+from rocking.plots.solid import equilibria_picture
 from rocking.plots.spatial import spatial_picture
-from rocking.reports.document import Block, Cell, Document, Pair, Paragraph, Picture, ReportSection, ReportTable, table
-from rocking.reports.render import write_report
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Pair,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    table,
+    write_report,
+)
 from rocking.reports.response_document import _sides
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT

@@ -6,8 +6,7 @@ from rocking import checks
 from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
 from rocking.plots.identification import identification_picture, trials_picture
-from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table
-from rocking.reports.render import write_report
+from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table, write_report
 from rocking.spec.identification import IdentifiedTrials
 from rocking.tables import target_of
 from rocking.version import SOFTWARE

@@ -6,8 +6,7 @@ from rocking import checks
 from rocking.conventions import percent
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
-from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table
-from rocking.reports.render import write_report
+from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table, write_report
 from rocking.spec.validation import FolderValidation
 from rocking.tables import target_of
 from rocking.version import SOFTWARE

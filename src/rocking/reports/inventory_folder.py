@@ -8,9 +8,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError, extra
+from rocking.reports.document import render_pdf, write_html
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_photos import thumbnails
-from rocking.reports.render import render_pdf, write_html
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import (

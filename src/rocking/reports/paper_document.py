@@ -8,10 +8,10 @@ from itertools import repeat
 from rocking.evidence._claims import claims
 from rocking.evidence._errata import Entry, Erratum, TableRow, errata, recomputed
 from rocking.evidence._league import LeagueRow, league, verdict
+from rocking.evidence.bed_fit import Explanation, Ranked, explanation
 from rocking.evidence.calibration import Calibration, Coverage, calibrate, calibrate_on, coverage
-from rocking.evidence.claim import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
 from rocking.evidence.comparison import concordance, correlation, relative_error, zone
-from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.hierarchy import (
     HierarchicalCalibration,
     LeftOut,

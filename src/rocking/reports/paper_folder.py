@@ -9,9 +9,8 @@ from typing import Any
 
 from rocking.errors import MissingExtraError, RockingError
 from rocking.evidence._errata import TableRow
-from rocking.reports.document import Document, ReportTable, made_with
+from rocking.reports.document import Document, ReportTable, made_with, render_pdf, write_html
 from rocking.reports.paper_document import Reproduction, paper_document
-from rocking.reports.render import render_pdf, write_html
 
 Step = Callable[[str], None]
 

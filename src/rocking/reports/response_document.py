@@ -1,17 +1,25 @@
 """The report of one body under one motion: what it is, what an impact costs, how it rocks, and how to do it again."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
-from rocking.conventions import FEET, Foot, g, given_or_assumed
+from rocking.conventions import DEFAULT_FRICTION, FEET, Assumed, Foot, g, given_or_assumed
 from rocking.dynamics.response import Response
+from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
 from rocking.motions.pulse import Motion
 from rocking.outcome import Outcome
+from rocking.plots.body import body_picture, coefficient_picture
+from rocking.plots.ground_motion import ground_motion_picture
+from rocking.plots.labels import fine_samples
+from rocking.plots.response import response_picture
 from rocking.reports.body_facts import ImpactAnswer, side_facts
 from rocking.reports.document import (
     Block,
@@ -23,9 +31,11 @@ from rocking.reports.document import (
     Picture,
     ReportSection,
     ReportTable,
+    write_report,
 )
 from rocking.reports.document import table as report_table
-from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, outcome_facts, restitution_words
+from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, outcome_facts, restitution_words
+from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
@@ -244,3 +254,56 @@ def _friction(value: float, given: float) -> Cell:
 
 def _signed(value: float) -> str:
     return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
+
+
+def response_report(
+    response: Response, path: str | Path, *, name: str = "", date: str = "", friction: float = DEFAULT_FRICTION
+) -> Path:
+    """Write the report of a response: the body, what an impact costs it, the ground, the response, with pictures.
+
+    Parameters
+    ----------
+    response : Response
+        Of `rocking.simulate` or `rocking.free_rocking`, without friction.
+    path : str or Path
+        A document (.pdf), or a web page of one file (.html).
+    name : str
+        What the body is called.
+    date : str
+        Day of the report, as it should be printed.
+    friction : float
+        Coefficient of friction between body and ground, which the friction that is taken is compared with [-].
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If the ending of the path is another.
+    MissingExtraError
+        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+    """
+    path = target_of(path)
+    if response.outcome is Outcome.FAILED:
+        raise InvalidValueError(f"a report needs a result: {response.summary}")
+    friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
+    gravity = response.settings.gravity
+    impact = ImpactAnswer.of(response.body, None, onto="both", gravity=gravity, identities=False)
+    motion = (
+        response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
+    )
+    measures = {} if motion is None or response.scale == 0.0 else measures_of(motion, fine_samples(motion))
+    results = ReportResults(impact, motion, measures, {response.parameters.label: response}, {}, friction)
+    document = response_document(ReportSubject(name, date), results)
+    pictures: dict[str, Callable[[], Any]] = {
+        "body": lambda: body_picture(response.body),
+        "coefficients": lambda: coefficient_picture(response.body, impact.tables),
+        "response": lambda: response_picture(response, friction),
+    }
+    if motion is not None:
+        pictures["motion"] = lambda: ground_motion_picture(motion)
+    write_report(document, pictures, path)
+    return path

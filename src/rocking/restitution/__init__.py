@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from rocking.restitution.housner import Housner
     from rocking.restitution.identities import IdentityCheck, identity_report
     from rocking.restitution.interface import Interface
-    from rocking.restitution.ked import Ked, projected_moment
-    from rocking.restitution.ked_stages import EnergyBalance, energy_balance
+    from rocking.restitution.ked import EnergyBalance, Ked, energy_balance, projected_moment
     from rocking.restitution.plastic_winkler import PlasticWinkler
     from rocking.restitution.shifted_impulse import ShiftedImpulse
 

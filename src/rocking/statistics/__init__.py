@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     from rocking.statistics.goodness import Goodness
     from rocking.statistics.least_squares import Regression, regression
     from rocking.statistics.lognormal import LognormalFit, fit_counts, fit_lognormal
+    from rocking.statistics.maximum_likelihood import Separation
     from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
     from rocking.statistics.scores import Forecasts, ReliabilityBin, Score, logistic_left_out
-    from rocking.statistics.separation import Separation
 
 __all__ = [
     "CensoredFit",

@@ -28,16 +28,19 @@ from rocking.statistics.goodness import Goodness, goodness_of
 from rocking.statistics.maximum_likelihood import (
     FittedCurves,
     LogScale,
+    Separation,
     find_curves,
     log_dispersion,
     log_fractile,
     log_quantity,
+    median_interval,
     quadratic_error,
+    separation_of,
     standard_errors,
+    verdict_of,
 )
 from rocking.statistics.probit import PenalisedProbit, Probit
 from rocking.statistics.profiles import FractileConstraint, ProbabilityConstraint, Profile, SlopeConstraint, flat_line
-from rocking.statistics.separation import Separation, median_interval, separation_of, verdict_of
 
 Method = Literal["auto", "maximum-likelihood", "penalised"]
 IntervalMethod = Literal["profile", "bootstrap", "wald"]

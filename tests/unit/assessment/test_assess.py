@@ -15,8 +15,7 @@ from rocking.assessment.answer import millimetres, upwards
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
-from rocking.studies.margins import Margins
-from rocking.studies.remedies import Landings, changed, remedies
+from rocking.studies.remedies import Landings, Margins, changed, remedies
 
 CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
 

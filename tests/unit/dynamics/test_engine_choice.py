@@ -149,7 +149,7 @@ NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
     "rocking.dynamics.plane.reference", "rocking.dynamics.plane.batch", "rocking.dynamics.plane.energy_balance",
     "rocking.tables",
-    "rocking.restitution.plastic_winkler", "rocking.restitution.ked_stages",
+    "rocking.restitution.plastic_winkler", "rocking.restitution.ked",
 }  # fmt: skip
 SCRIPT = """
 import sys

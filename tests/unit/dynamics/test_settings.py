@@ -118,7 +118,7 @@ def test_there_is_no_second_list():
     assert {f"{c.__module__}.{c.__name__}" for c in found} == {
         "rocking.outcome.Outcome",
         "rocking.outcome.Status",
-        "rocking.restitution.bed.emergent.BedStatus",  # of one impact on a bed
+        "rocking.restitution.bed.impact.BedStatus",  # of one impact on a bed
     }
 
 

@@ -6,9 +6,18 @@ import numpy as np
 import pytest
 
 from rocking.evidence import all_measurements, datasets, league
-from rocking.evidence.bed_fit import BedFit, bed_coefficients, explanations, fit_bed, left_out, relative_width
-from rocking.evidence.contenders import contact_bed
-from rocking.evidence.explanation import Explanation, Ranked, explanation
+from rocking.evidence._league import contact_bed
+from rocking.evidence.bed_fit import (
+    BedFit,
+    Explanation,
+    Ranked,
+    bed_coefficients,
+    explanation,
+    explanations,
+    fit_bed,
+    left_out,
+    relative_width,
+)
 from rocking.evidence.likelihood import interval_log_likelihood, scatter
 from rocking.evidence.measurements import GROUPS
 from rocking.restitution import ContactBedModel

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rocking.evidence import all_measurements
-from rocking.evidence.claim import FAILS, HOLDS, UNRESOLVED, all_or_open
+from rocking.evidence.claims_of_errors import FAILS, HOLDS, UNRESOLVED, all_or_open
 from rocking.evidence.comparison import Difference, compare, drawn, errors_of_groups, resampled
 from rocking.restitution import Housner, Ked
 

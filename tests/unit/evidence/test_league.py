@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking.evidence import all_measurements, comparison, league, verdict
-from rocking.evidence.contenders import as_it_is, contenders
+from rocking.evidence._league import as_it_is, contenders
 from rocking.evidence.likelihood import gaussian_bic, interval_log_likelihood
 from rocking.restitution import Fixed, Housner, Interface, Ked
 

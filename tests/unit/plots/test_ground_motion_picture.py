@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from rocking.motions import GroundMotion, peak_ground_displacement, peak_ground_velocity
 from rocking.motions.pulses import cosine, rectangular, ricker, sine
 from rocking.plots import ground_motion_picture
-from rocking.plots.traces import fine_samples, traces
+from rocking.plots.labels import fine_samples, traces
 
 G = 9.80665
 AMPLITUDE, PERIOD = 3.0, 0.8

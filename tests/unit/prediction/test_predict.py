@@ -13,8 +13,8 @@ from rocking.cli.page import plain
 from rocking.errors import RockingError
 from rocking.prediction import Prediction, predict
 from rocking.prediction._predict import _chance
+from rocking.prediction.mechanics import Uncertain
 from rocking.prediction.plane import PlaneMechanics, whole_settings
-from rocking.prediction.uncertain import Uncertain
 from rocking.statistics.counts import share_interval
 from rocking.studies.motion_sets import SyntheticSet
 

@@ -18,8 +18,16 @@ from rocking.reports.body_facts import (
     outline_facts,
     stages_facts,
 )
-from rocking.reports.motion_facts import MotionAnswer, motion_facts, spectrum_facts
-from rocking.reports.response_facts import ModelAgreement, finite, other_facts, response_facts, restitution_words
+from rocking.reports.response_facts import (
+    ModelAgreement,
+    MotionAnswer,
+    finite,
+    motion_facts,
+    other_facts,
+    response_facts,
+    restitution_words,
+    spectrum_facts,
+)
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 LEANING = rk.Section.from_trapezoid(1.0, 0.5, 2.5)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from rocking.errors import MissingExtraError, RockingError
+from rocking.reports.document import render_html
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory, write_spreadsheet
-from rocking.reports.render import render_html
 from rocking.studies.inventory import Thresholds, assess, parse_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.table import as_csv

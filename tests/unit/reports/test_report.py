@@ -8,12 +8,20 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rocking import Block
-from rocking.evidence.explanation import explanation
+from rocking.evidence.bed_fit import explanation
 from rocking.plots import body_picture, paper_figure
 from rocking.reports import Document, paper_folder
-from rocking.reports.document import Cell, Paragraph, Picture, ReportSection, ReportTable
+from rocking.reports.document import (
+    Cell,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    render_html,
+    render_pdf,
+    write_html,
+)
 from rocking.reports.paper_document import explanation_blocks
-from rocking.reports.render import render_html, render_pdf, write_html
 
 SVG = (
     '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">'

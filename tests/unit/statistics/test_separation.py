@@ -5,7 +5,7 @@ import pytest
 
 from rocking.errors import InvalidValueError
 from rocking.statistics import Separation, fit_lognormal
-from rocking.statistics.separation import classify
+from rocking.statistics.maximum_likelihood import classify
 
 pytestmark = pytest.mark.verifies(room="statistics")
 

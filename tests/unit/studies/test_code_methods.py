@@ -10,7 +10,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.comparison import _quantiles
-from rocking.studies.code_methods.method import BodySides
+from rocking.studies.code_methods.methods import BodySides
 
 SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
 PULSES = [rk.pulses.sine(1.0, period) for period in (0.3, 0.4, 0.5, 0.6, 0.8, 1.2)]

@@ -16,7 +16,7 @@ import traceback
 from collections import Counter
 from pathlib import Path
 
-from rocking.campaigns import Campaign, disk, ledger, reading
+from rocking.campaigns import Campaign, disk, ledger
 from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder, answer, status_of
 from rocking.errors import RockingError
@@ -42,7 +42,7 @@ tolerance = 1e-3
 def rounds(folder: Path) -> dict[str, str]:
     """Hash of the results of every round."""
     plans = {path: Identity.read(path).plan for path in sorted(folder.glob("round-*"))}
-    return {path.name: reading.digest(reading.pieces(path, plan)) for path, plan in plans.items()}
+    return {path.name: ledger.digest(ledger.pieces(path, plan)) for path, plan in plans.items()}
 
 
 class Kills:
@@ -128,7 +128,7 @@ class Kills:
         self.counts["killed between rounds"] += found.status is not None and found.status.chunks == done
         for path in sorted(folder.glob("round-*")):
             if (path / "campaign.json").exists() and Campaign.status_of(path).complete:
-                digest = reading.digest(reading.pieces(path, Identity.read(path).plan))
+                digest = ledger.digest(ledger.pieces(path, Identity.read(path).plan))
                 if digest != self.rounds.get(path.name):
                     self.wrong.append(f"{path.name} differs from that of an uninterrupted campaign")
 

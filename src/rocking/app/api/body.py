@@ -14,7 +14,7 @@ from rocking.app.plain_text import safe_name
 from rocking.app.work import heavy, sized
 from rocking.bodies import Body
 from rocking.bodies.formats import read_plane_body
-from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.body_file import body_to_toml
 from rocking.bodies.formats.schema import UnitName
 from rocking.bodies.formats.words import blamed
 from rocking.conventions import FEET, g

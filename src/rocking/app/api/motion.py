@@ -14,8 +14,8 @@ from rocking.app.settings import state_of
 from rocking.app.work import Remembered, heavy
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import SHORTEST_PERIOD, ResponseSpectrum, response_spectrum
-from rocking.plots.traces import fine_samples, traces
-from rocking.reports.motion_facts import measures_of, motion_facts
+from rocking.plots.labels import fine_samples, traces
+from rocking.reports.response_facts import measures_of, motion_facts
 
 router = APIRouter(prefix="/api", tags=["motion"])
 _HELD: Remembered[JsonAnswer] = Remembered(32)

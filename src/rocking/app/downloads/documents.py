@@ -17,10 +17,10 @@ from rocking.app.inputs import Inputs, ResponseInputs
 from rocking.app.plain_text import plain_line
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
-from rocking.plots.traces import fine_samples
-from rocking.reports.motion_facts import measures_of
-from rocking.reports.render import response_pdf
+from rocking.plots.labels import fine_samples
+from rocking.reports.document import response_pdf
 from rocking.reports.response_document import PICTURES, ReportResults, ReportSubject, response_document
+from rocking.reports.response_facts import measures_of
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 

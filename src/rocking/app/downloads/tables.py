@@ -26,10 +26,9 @@ from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
-from rocking.plots.traces import fine_samples, traces
+from rocking.plots.labels import fine_samples, traces
 from rocking.reports.body_facts import ImpactAnswer, body_facts
-from rocking.reports.motion_facts import measures_of
-from rocking.reports.response_facts import outcome_facts
+from rocking.reports.response_facts import measures_of, outcome_facts
 from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, to_excel, to_mat, to_netcdf
 
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]

@@ -134,8 +134,7 @@ def written(
 def _picture(study: OpenStudy, restitution: int | None) -> "Callable[[], Figure]":
     """Return what draws a study: with one restitution, or all of them compared."""
     from rocking.plots.campaign import campaign_picture
-    from rocking.plots.fragility import fragility_picture
-    from rocking.plots.incremental_dynamic_analysis import incremental_dynamic_analysis_picture
+    from rocking.plots.fragility import fragility_picture, incremental_dynamic_analysis_picture
     from rocking.plots.overturning_map import overturning_map_picture
     from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 

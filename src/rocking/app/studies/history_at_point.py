@@ -14,7 +14,7 @@ from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import motions_in
 from rocking.app.studies.results import meaning, plain
 from rocking.bodies import Block, Body
-from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.body_file import body_to_toml
 from rocking.dynamics import simulate
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning

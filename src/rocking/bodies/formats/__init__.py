@@ -3,8 +3,7 @@
 What these modules need (pydantic, shapely, ezdxf, trimesh) is imported when a body is read, not before.
 """
 
-from rocking.bodies.formats.body_file import body_from_toml
-from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.body_file import body_from_toml, body_to_toml
 from rocking.bodies.formats.dxf import section_from_dxf
 from rocking.bodies.formats.geojson import section_from_geojson
 from rocking.bodies.formats.reader import FORMATS, describes_solid, read_body, read_plane_body

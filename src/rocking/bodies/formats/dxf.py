@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from rocking import checks
-from rocking.bodies._rings import nested
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.words import Placement, blamed, check_count, checked_file, suggestion
-from rocking.bodies.region import Region
+from rocking.bodies.region import Region, nested
 from rocking.bodies.section import Section
 from rocking.conventions import LENGTH_UNITS, FloatArray
 from rocking.errors import BodyFileError, MissingExtraError, how_to_install

@@ -20,8 +20,8 @@ from rocking.bodies.solid._resting import settled, stands
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.shape import vector
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.surfaces import vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install

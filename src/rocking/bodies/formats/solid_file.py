@@ -26,8 +26,8 @@ from rocking.bodies.formats.mesh import mesh_from_file
 from rocking.bodies.formats.words import blamed, check_count, validated
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.prism import box, extrusion
-from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.surfaces import Shape
 from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution
 from rocking.checks import length_unit
 from rocking.errors import BodyFileError

@@ -11,8 +11,8 @@ from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.polyhedron import Polyhedron as Polyhedron
 from rocking.bodies.solid.prism import Prism as Prism
 from rocking.bodies.solid.prism import box, extrusion
-from rocking.bodies.solid.shape import Shape as Shape
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.surfaces import Shape as Shape
 from rocking.bodies.solid.turned import Turned as Turned
 from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution, sphere_cap
 from rocking.bodies.solid.units import Units, divided, voxels

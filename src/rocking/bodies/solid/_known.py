@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.bodies.moments import SolidMoments
 from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.shape import vector
+from rocking.bodies.solid.surfaces import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 from rocking.portable import applied, times

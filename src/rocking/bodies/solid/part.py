@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.moments import SolidMoments
-from rocking.bodies.solid.shape import Shape, placed_points, vector
-from rocking.bodies.solid.surfaces import Surface
+from rocking.bodies.solid.surfaces import Shape, Surface, placed_points, vector
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
 from rocking.portable import applied, norm, times

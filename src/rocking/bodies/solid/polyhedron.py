@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.moments import SolidMoments, polyhedron_moments
 from rocking.bodies.solid._self_crossing import check_crossings, inside
-from rocking.bodies.solid.shape import Footprint, Shape, placed_points
-from rocking.bodies.solid.surfaces import Surface, TriangleSurface
+from rocking.bodies.solid.surfaces import Footprint, Shape, Surface, TriangleSurface, placed_points
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 from rocking.portable import times

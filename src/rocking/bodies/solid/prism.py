@@ -4,9 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.bodies._rings import triangulated
 from rocking.bodies.moments import SolidMoments, combined_plane, ring_moments
-from rocking.bodies.region import Region
+from rocking.bodies.region import Region, triangulated
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.surfaces import TriangleSurface, area_vectors
 from rocking.conventions import FloatArray, IntArray

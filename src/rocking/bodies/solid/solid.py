@@ -19,8 +19,8 @@ from rocking.bodies.solid._known import ASSUMED, check_disjoint, check_possible,
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint, rotation_about
 from rocking.bodies.solid.prism import Prism
-from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.standing import equilibria_of, set_down
+from rocking.bodies.solid.surfaces import Shape
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import times

@@ -13,7 +13,7 @@ from rocking.bodies.section import Section
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
 from rocking.bodies.solid.part import Part, footprint
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.shape import placed_points
+from rocking.bodies.solid.surfaces import placed_points
 from rocking.bodies.solid.turned import Turned
 from rocking.conventions import FloatArray, g
 from rocking.errors import GeometryError

@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks
-from rocking.bodies import _rings
-from rocking.bodies._rings import triangulated
+from rocking.bodies import region
 from rocking.bodies.moments import SolidMoments
-from rocking.bodies.solid.shape import Footprint, Shape
-from rocking.bodies.solid.surfaces import Surface, TriangleSurface, TurnedSurface, gauss
+from rocking.bodies.region import triangulated
+from rocking.bodies.solid.surfaces import Footprint, Shape, Surface, TriangleSurface, TurnedSurface, gauss
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
 
@@ -184,8 +183,8 @@ def revolution(profile: ArrayLike) -> Turned:
     first, last = points[0, 1], points[-1, 1]
     if last <= first:
         raise GeometryError(f"the profile must end above its start, got heights {first:g} and {last:g} m")
-    closed = _rings.checked_ring("profile", np.concatenate([[(0.0, first)], points, [(0.0, last)]]))
-    _rings.check_polygon("profile", closed, ())
+    closed = region.checked_ring("profile", np.concatenate([[(0.0, first)], points, [(0.0, last)]]))
+    region.check_polygon("profile", closed, ())
     checks.length("largest dimension of the profile", float(np.ptp(closed, axis=0).max()))
     start = int(np.flatnonzero((closed == (0.0, first)).all(axis=1))[0])
     ordered = np.roll(closed, -start, axis=0)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.shape import placed_points
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.surfaces import placed_points
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 

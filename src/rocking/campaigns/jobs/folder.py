@@ -18,7 +18,7 @@ from rocking.campaigns import (
     Executor,
     Progress,
     disk,
-    reading,
+    ledger,
 )
 from rocking.campaigns.jobs.job import Job
 from rocking.campaigns.jobs.rounds import (
@@ -32,7 +32,7 @@ from rocking.campaigns.jobs.rounds import (
     summed,
     way_out,
 )
-from rocking.campaigns.reading import Verification
+from rocking.campaigns.ledger import Verification
 from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
@@ -244,7 +244,7 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     """
     path = Path(folder)
     adaptive = _document(path).is_adaptive
-    rounds = of_rounds(path, adaptive, reading.verified)
+    rounds = of_rounds(path, adaptive, ledger.verified)
     wrong = [] if rounds or adaptive else [f"{path}: nothing is computed yet"]
     if adaptive and ((noted := finished_rounds(path)) is None or noted["rounds"] != len(rounds)):
         wrong = [f"{path} is not finished, and more rounds may follow"]

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from rocking.campaigns.reading import HistoryRange
+from rocking.campaigns.ledger import HistoryRange
 from rocking.conventions import IntArray
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.plane.batch import Batch, Rows

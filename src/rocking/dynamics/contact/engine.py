@@ -27,10 +27,11 @@ from rocking.dynamics.contact.impact_resolution import (
     GroundContact,
     Struck,
     cleaned,
+    impact_of,
     largest_speed,
+    shock,
     strike_with,
 )
-from rocking.dynamics.contact.impulse_growth import impact_of, shock
 from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series, value
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted

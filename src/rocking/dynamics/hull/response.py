@@ -20,7 +20,7 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import Component, ground_of
-from rocking.dynamics.space.histories import samples, started
+from rocking.dynamics.space.response import samples, started
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.portable import applied

@@ -1,11 +1,12 @@
 """A recording of sound, whatever file it came from."""
 
+import io
 from dataclasses import dataclass
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.errors import MeasurementError
+from rocking.errors import MeasurementError, extra
 
 RATES = (4_000, 384_000)
 """Sounds of other rates are refused [Hz]: an impact is a click of a few kHz."""
@@ -62,3 +63,24 @@ class Recording:
             runs = np.diff(np.flatnonzero(np.diff(np.concatenate(([0], at_limit, [0])))))[::2]
             most = max(most, int((runs >= _CLIPPED).sum()))
         return most
+
+
+COMPRESSED = (".flac", ".ogg", ".oga", ".opus", ".mp3", ".aif", ".aiff")
+"""Suffixes of what libsndfile reads."""
+
+
+def read_compressed(content: bytes, name: str) -> Recording:
+    """Return the sound of a file that libsndfile reads."""
+    soundfile = extra("soundfile", "reading FLAC, OGG or MP3")
+    try:
+        with soundfile.SoundFile(io.BytesIO(content)) as file:
+            if file.frames > MOST_SAMPLES:
+                raise MeasurementError(
+                    f"{name}: it has {file.frames} samples, more than the {MOST_SAMPLES} that are read"
+                )
+            samples, rate, stated = file.read(dtype="float64", always_2d=True), file.samplerate, file.frames
+    except soundfile.LibsndfileError as error:
+        raise MeasurementError(f"{name}: cannot be read as sound ({error}); damaged?") from error
+    if samples.shape[0] != stated:
+        raise MeasurementError(f"{name}: states {stated} samples, {samples.shape[0]} could be read; cut off?")
+    return Recording(name, np.asarray(samples), int(rate))

@@ -10,10 +10,9 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import fast, reference
 from rocking.restitution.bed.contact_bed import ContactBed
-from rocking.restitution.bed.emergent import BedStatus, status_of
+from rocking.restitution.bed.impact import BedStatus, status_of
 from rocking.restitution.bed.laws import LawKind
-from rocking.restitution.bed.rigid import RigidRocking
-from rocking.restitution.bed.setup import Results, Setup, setup_of
+from rocking.restitution.bed.setup import Results, RigidRocking, Setup, setup_of
 
 _MOST_RUNS = 50
 _AT_REST = 1e-3

@@ -7,15 +7,15 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
-from rocking.bodies.solid.shape import vector
+from rocking.bodies.solid.surfaces import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.portable import norm
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
 from rocking.restitution.space.impact import Placed, SpatialImpact
+from rocking.restitution.space.impulse_position import SpatialKed
 from rocking.restitution.space.ked import SpatialKedPoint
-from rocking.restitution.space.ked_impulse import SpatialKed
 from rocking.restitution.space.model import SpatialModel, SpatialRestitution, middle_of_base
 
 _MODELS: dict[str, type[SpatialModel]] = {

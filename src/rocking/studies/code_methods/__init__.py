@@ -1,8 +1,7 @@
 """Code methods: how published rules judge a rocking body, and how far that is from what its histories show."""
 
 from rocking.studies.code_methods.comparison import Bias, CalledSafe, CodeComparison, compare_code_methods
-from rocking.studies.code_methods.method import CodeMethod
-from rocking.studies.code_methods.methods import CODE_METHODS, LEFT_OUT
+from rocking.studies.code_methods.methods import CODE_METHODS, LEFT_OUT, CodeMethod
 
 __all__ = [
     "CODE_METHODS",

@@ -14,11 +14,10 @@ from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
-from rocking.studies.code_methods.method import BodySides, CodeMethod, Shaking
-from rocking.studies.code_methods.methods import CODE_METHODS
+from rocking.studies.code_methods.methods import CODE_METHODS, BodySides, CodeMethod, Shaking
 from rocking.studies.fragility.subject import checked_levels
-from rocking.studies.margins import Margins
 from rocking.studies.motion_sets import MotionList, MotionSet
+from rocking.studies.remedies import Margins
 
 MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
 REPETITIONS, TAIL = 1000, 0.025

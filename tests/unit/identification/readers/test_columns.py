@@ -7,8 +7,7 @@ import pytest
 
 from rocking.errors import InvalidValueError, MeasurementError
 from rocking.identification.readers import read_measurement
-from rocking.identification.readers.columns import clock_doubts
-from rocking.identification.readers.sensors import rotation_of_acceleration
+from rocking.identification.readers.columns import clock_doubts, rotation_of_acceleration
 
 
 def written(tmp_path, text, name="trial.csv"):

@@ -26,7 +26,7 @@ from rocking.restitution.bed import (
 )
 from rocking.restitution.bed.laws import LawKind, LawNumbers, force, stored
 from rocking.restitution.bed.reference import Field
-from rocking.restitution.bed.rigid import RigidRocking, settlement
+from rocking.restitution.bed.setup import RigidRocking, settlement
 
 BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)

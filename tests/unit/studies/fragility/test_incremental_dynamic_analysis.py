@@ -11,8 +11,13 @@ from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies import incremental_dynamic_analysis, multiple_stripe_analysis
-from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_plan
-from rocking.studies.fragility._overturning_intervals import OutcomeBrackets, brackets_of, intervals_of, refined
+from rocking.studies.fragility._incremental_dynamic_analysis import (
+    OutcomeBrackets,
+    brackets_of,
+    incremental_dynamic_plan,
+    intervals_of,
+    refined,
+)
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)
 PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.35, 0.9, 12)]
