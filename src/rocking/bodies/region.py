@@ -1,4 +1,4 @@
-"""One polygon of one material: what a section is made of."""
+"""One polygon of one material, and rings of polygons: which are valid, which are holes, and their triangles."""
 
 import re
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Which chunks, and pieces of them, are finished: a small database that only the process of the campaign writes."""
+"""Which chunks are finished, kept by the process of the campaign alone, and results read piece by piece from them."""
 
 import hashlib
 import sqlite3

@@ -1,4 +1,4 @@
-"""The run of a campaign: what remains is handed out in pieces, computed, written, and only then recorded."""
+"""The run of a campaign: whole shards are taken over, what remains is handed out, computed, written, recorded."""
 
 import os
 import time

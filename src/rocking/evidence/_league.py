@@ -1,4 +1,4 @@
-"""The league table: every model against every measurement, by measures that can tell them apart; and what it says."""
+"""The league table: every model, as it is or fitted, against every measurement, by measures that tell them apart."""
 
 import math
 from collections.abc import Callable, Sequence

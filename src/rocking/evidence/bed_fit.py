@@ -1,4 +1,4 @@
-"""What could make the measured groups differ, each a prediction of the contact bed, and its fit with the rounding."""
+"""What could make the measured groups differ: explanations by the contact bed, their fit, and a verdict in words."""
 
 import math
 from collections.abc import Callable, Sequence

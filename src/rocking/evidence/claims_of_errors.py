@@ -1,4 +1,4 @@
-"""Claims of section 3.2 of the paper: correlation, error zones, mass, Figures 6 to 9."""
+"""What every judge of a claim needs, and section 3.2 of the paper: correlation, error zones, mass, Figures 6 to 9."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Which of the times that were heard are impacts, and which number each has: some are missed, some are none.
+"""Times of impacts: which of those heard are impacts, with which number, and the posterior of what they say.
 
 Hypotheses are followed from time to time by an extended Kalman filter, the best of them are kept (a beam). The slender
 closed form is close enough here.

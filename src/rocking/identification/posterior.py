@@ -1,4 +1,4 @@
-"""The posterior of all unknowns: normal for each scatter and noise, mixed over a grid of both."""
+"""What is known before a measurement, and after it: normal for each scatter and noise, mixed over a grid of both."""
 
 import math
 from collections.abc import Callable, Sequence

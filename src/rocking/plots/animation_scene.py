@@ -1,4 +1,4 @@
-"""What an animation shows at equal steps of time: the body about its feet, the ground, and the fall to its end."""
+"""What an animation shows at equal steps of time: a body about its feet, or its convex hull in space, to the end."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Fragility: observed shares with their intervals, fitted curves with a band, and how the states make up the whole."""
+"""Fragility: shares with their intervals, fitted curves with a band; incremental curves of each motion."""
 
 import math
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""Labels, words and scales of axes that the pictures of studies share."""
+"""Labels, words and scales of axes that pictures share, and curves of a motion with their exact peaks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What is foreseen of a body under each motion and what decides it; and whether it was right, beside plain curves."""
+"""What is foreseen of a body, what decides it, whether it was right, and how far the body is from overturning."""
 
 from typing import TYPE_CHECKING
 

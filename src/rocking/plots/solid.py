@@ -1,4 +1,4 @@
-"""Bodies in space and where they lose energy: shaded pictures, slices and layers."""
+"""Bodies in space: where they lose energy, in which ways they can stand, and how high the centre is between."""
 
 import math
 from typing import TYPE_CHECKING, Any, cast

@@ -1,4 +1,4 @@
-"""What a prediction asks of a body: which numbers are drawn for it, and what becomes of it under each motion."""
+"""What a prediction asks of a body: what is not known exactly, drawn, and what becomes of it under each motion."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A report as plain content, whatever it is rendered to: sections of paragraphs, tables, pictures and listings."""
+"""A report as plain content, and as one self-contained HTML file or a PDF set by Typst, of nothing from elsewhere."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""A response in plain values: SI units, None where something does not exist.
+"""A response and its motion in plain values: SI units, None where something does not exist.
 
 What the keys mean:
 

@@ -1,4 +1,4 @@
-"""Contact bed: what emerges from an impact that takes time, on springs and dashpots along the base."""
+"""Contact bed: what emerges from an impact that takes time, on springs and dashpots under the base, in units of it."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Likeliest curves of many data sets at once: damped Newton steps, each with the proof that it is a maximum.
+"""Likeliest curves, each with the proof that it is a maximum, and whether the data fix one at all, in words.
 
 A curve is Phi(a + b u) with the position u of a level in a scale near one; standard errors are from the observed
 information, or from the scores of whole clusters.

@@ -1,4 +1,4 @@
-"""What to do about a body that lifts or overturns: anchors, a wider base, a lower centre, isolators."""
+"""How far bodies are from overturning, and what to do: anchors, a wider base, a lower centre, isolators."""
 
 import math
 import warnings

@@ -1,4 +1,4 @@
-"""The TOML body file: one table says what the body is, and `units` is never left out.
+"""The TOML body file, read and written: one table says what the body is, and `units` is never left out.
 
 .. code-block:: toml
 

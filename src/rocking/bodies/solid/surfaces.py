@@ -1,4 +1,4 @@
-"""Pieces of the surface of a solid, flat or turned about an axis, and how each is split and sampled."""
+"""What every shape in space answers, and pieces of its surface, flat or turned, split and sampled."""
 
 import math
 from abc import ABC, abstractmethod

@@ -1,4 +1,4 @@
-"""Tables of measurements: columns by name, with a unit that stands in brackets or is given."""
+"""Tables of measurements, columns by name and unit; rotation from displacement or acceleration above the base."""
 
 import io
 import math

@@ -1,4 +1,4 @@
-"""A recording of sound, whatever file it came from."""
+"""A recording of sound, whatever file it came from: FLAC, OGG, MP3 and AIFF through libsndfile."""
 
 import io
 from dataclasses import dataclass

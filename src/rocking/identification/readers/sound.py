@@ -1,4 +1,4 @@
-"""The times of impacts from their sound.
+"""Times of impacts from their sound; of one foot clicks are alike, so they are laid over each other and picked.
 
 A faint click alone would be picked late, once it has grown beyond the noise; the mean of all clicks on a foot stands
 out more, and the lags between them come from cross-correlation, to a part of a sample. Clicks of the two feet are not

@@ -1,4 +1,4 @@
-"""The methods, each as published; what could not be read at its source is in `LEFT_OUT`, not in code."""
+"""Code methods as published: what they are told of bodies and motions; what could not be read is in `LEFT_OUT`."""
 
 import math
 from abc import ABC, abstractmethod
