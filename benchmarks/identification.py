@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 import rocking as rk
 from benchmarks.predictions import resumed
 from rocking.identification import ImpactTimes, RotationSeries, identify
-from rocking.identification.half_cycles import duration, rotation, speed
+from rocking.identification.state_space import duration, rotation, speed
 
 ROOT = Path(__file__).parents[1]
 SIZE_ERROR, TILT, HALF = 0.01, math.radians(0.3), 0.03

@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
+from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, histories, hull_histories, standing
 from rocking.dynamics.hull import motion as sliding_module
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, solve, valid
 from rocking.dynamics.hull.ground import ZERO, added, applied, back, cross, dot, frame, length, scaled
@@ -445,7 +445,7 @@ def test_bad_bodies_and_grounds_are_refused():
 
 # ---- the compiled engine ---------------------------------------------------------------------------------------------
 
-needs_engine = pytest.mark.skipif(not fast_engine.available(), reason="the compiled engine was not built")
+needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
 
 
 @needs_engine

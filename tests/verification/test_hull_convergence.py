@@ -14,7 +14,7 @@ import rocking as rk
 from rocking.bodies.shapes import regular_polygon
 from rocking.bodies.solid import Part, Polyhedron, Solid, box, extrusion, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, fast_engine, hull_histories, standing
+from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, histories, hull_histories, standing
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
 from rocking.dynamics.hull.ground import applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.histories import start_of
@@ -206,7 +206,7 @@ def test_an_eccentric_polygon_lands_on_the_opposite_side_with_its_own_coefficien
 # ---- shaken ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.skipif(not fast_engine.available(), reason="the compiled engine was not built")
+@pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
 @pytest.mark.verifies("order", "the engine of rims that roll: 1 in 1/n", within="0.4", control="within")
 @pytest.mark.parametrize(("name", "size"), [("cylinder", 4.09), ("eccentric column", 5.13)])
 def test_the_peak_of_a_shaken_body_tends_to_that_of_the_rim_with_order_one(name, size):

@@ -13,7 +13,7 @@ from scipy import stats
 
 import rocking as rk
 from rocking.bodies.solid import Solid, box
-from rocking.dynamics.hull import HullBody, fast_engine
+from rocking.dynamics.hull import HullBody, histories
 
 sys.path.append(str(Path(__file__).parents[2]))  # the time stepping lives beside the benchmarks
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.verifies(room="rocking in space")
 
 G = rk.conventions.g
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
-needs_engine = pytest.mark.skipif(not fast_engine.available(), reason="the compiled engine was not built")
+needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
 
 
 @pytest.mark.verifies("closed form", "a block that slides to a stop", within="0.01", control="within")
@@ -77,8 +77,8 @@ def test_random_hulls_end_as_time_stepping_has_it():
     A campaign of 480 compares distributions of peaks too. Time stepping has an error of the order of its step: the
     median peak within 5 % at 4 ms. Where a contact stood in, no more than 10 % (or one) differ.
     """
-    for name, (histories, step) in _families().items():
-        ours, other = histories.ours(), histories.stepped(step)
+    for name, (runs, step) in _families().items():
+        ours, other = runs.ours(), runs.stepped(step)
         same = ours.overturned == other.overturned
         assert same.mean() >= 0.95
         assert (~same & (ours.held > 0)).sum() <= max(0.1 * (ours.held > 0).sum(), 1)

@@ -13,9 +13,19 @@ import rocking as rk
 from rocking.identification import ImpactTimes, identify
 from rocking.identification.association import start
 from rocking.identification.design import bound, one_impact_bound, peaks_bound, settling_bound
-from rocking.identification.half_cycles import duration, overturning_speed, peak
 from rocking.identification.posterior import Noise, posterior
-from rocking.identification.state_space import FREQUENCY, MEAN, SHARED, SPEED, START, Clicks, Model
+from rocking.identification.state_space import (
+    FREQUENCY,
+    MEAN,
+    SHARED,
+    SPEED,
+    START,
+    Clicks,
+    Model,
+    duration,
+    overturning_speed,
+    peak,
+)
 
 CASES = 200
 ALPHA, P, R = 0.244978663126864, 1.8891563520285, 0.911764705882353

@@ -6,13 +6,12 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.evidence._claims import claims
-    from rocking.evidence._coefficient_table import coefficient_table
+    from rocking.evidence._coefficient_table import coefficient_table, interval_for
     from rocking.evidence._errata import errata
     from rocking.evidence._league import league, verdict
     from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
     from rocking.evidence.calibration import Calibration, calibrate
     from rocking.evidence.hierarchy import HierarchicalCalibration, calibrate_hierarchy
-    from rocking.evidence.interval import interval_for
     from rocking.evidence.measurement_file import Measurement, measurement_of, read_measurements, write_measurements
     from rocking.evidence.measurements import DataSet, all_measurements, datasets
     from rocking.evidence.recommendation import ModelForBody, Recommendation
@@ -43,13 +42,12 @@ __all__ = [
 
 _HOMES = {
     "_claims": ("claims",),
-    "_coefficient_table": ("coefficient_table",),
+    "_coefficient_table": ("coefficient_table", "interval_for"),
     "_errata": ("errata",),
     "_league": ("league", "verdict"),
     "_restitution_distribution": ("RestitutionDistribution", "restitution_distribution"),
     "calibration": ("Calibration", "calibrate"),
     "hierarchy": ("HierarchicalCalibration", "calibrate_hierarchy"),
-    "interval": ("interval_for",),
     "measurement_file": ("Measurement", "measurement_of", "read_measurements", "write_measurements"),
     "measurements": ("DataSet", "all_measurements", "datasets"),
     "recommendation": ("ModelForBody", "Recommendation"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FEET, NORMAL_95, Foot, percent
-from rocking.evidence import recommendation_words as words
+from rocking.evidence import judgement
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord
 from rocking.exported import Exported
 from rocking.outcome import Outcome
@@ -187,23 +187,23 @@ class Recommendation(Exported):
     @property
     def evidence(self) -> tuple[str, ...]:
         """What the measurements say of the models, and which do not hold, in sentences."""
-        return tuple(words.evidence(self))
+        return tuple(judgement.evidence(self))
 
     @property
     def advice(self) -> tuple[str, ...]:
         """What to use, for a number and for a decision, and what would settle it, in sentences."""
-        return tuple(words.advice(self))
+        return tuple(judgement.advice(self))
 
     @property
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Heading and rows of words."""
-        return words.table(self)
+        return judgement.table(self)
 
     def __str__(self) -> str:
         head, rows = self.table
         widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]
-        shown = [*(line.rstrip() for line in lines), *filter(None, [words.legend(self)]), ""] if rows else []
+        shown = [*(line.rstrip() for line in lines), *filter(None, [judgement.legend(self)]), ""] if rows else []
         return "\n".join([*shown, *self.evidence, *self.advice])
 
     __repr__ = __str__
@@ -211,7 +211,7 @@ class Recommendation(Exported):
     def _repr_markdown_(self) -> str:
         head, rows = self.table
         lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
-        shown = [*lines, "", words.legend(self), ""] if rows else []
+        shown = [*lines, "", judgement.legend(self), ""] if rows else []
         return "\n".join([*shown, *(f"- {each}" for each in (*self.evidence, *self.advice))])
 
     def as_dict(self) -> dict[str, Any]:

@@ -11,10 +11,9 @@ import numpy as np
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning, RockingError
-from rocking.evidence._coefficient_table import CALIBRATED, default_models
+from rocking.evidence._coefficient_table import CALIBRATED, default_models, interval_for
 from rocking.evidence.calibration import Calibration, PredictedCoefficient
 from rocking.evidence.hierarchy import calibrate_hierarchy
-from rocking.evidence.interval import interval_for
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord, judge
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.evidence.recommendation import ModelForBody, Overturned, Recommendation, product

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.identification import half_cycles
+from rocking.identification import state_space
 from rocking.identification.measurement import ImpactTimes
 from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
 from rocking.identification.state_space import MEAN, SHARED, SPEED, Clicks, Model
@@ -201,13 +201,13 @@ def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p:
     found: list[FloatArray] = []
     for time, gap in zip(np.diff(times), np.diff(impacts), strict=True):
         # impacts between them were missed, each of which took about as much
-        each = half_cycles.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
+        each = state_space.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
         shares = np.array([np.interp(time, each.sum(axis=0), one) for one in each])
         found.append(time * shares / shares.sum())
     intervals = np.concatenate(found)
     alphas = alpha[known.sides(intervals.size)]
-    y = np.minimum(half_cycles.speed(p * intervals, alphas), 0.999)
-    return np.asarray(np.log(y * p * half_cycles.overturning_speed(alphas)))
+    y = np.minimum(state_space.speed(p * intervals, alphas), 0.999)
+    return np.asarray(np.log(y * p * state_space.overturning_speed(alphas)))
 
 
 def start(model: Model, speeds: FloatArray, scatters: FloatArray) -> FloatArray:

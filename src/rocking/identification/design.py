@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.identification import half_cycles, state_space
+from rocking.identification import state_space
 from rocking.identification.state_space import MEAN, SHARED, SPEED, START, Clicks, Model
 
 
@@ -77,7 +77,7 @@ def bound(
     alpha = checks.within("alpha", alpha, 0.0, 1.5, unit="rad", open_low=True)
     y = np.sqrt(1.0 - (np.sin(0.5 * alpha * (1.0 - peak)) / np.sin(0.5 * alpha)) ** 2) * coefficient
     mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
-    mean[SPEED], mean[MEAN] = np.log(y * p * half_cycles.overturning_speed(np.array(alpha))), np.log(coefficient)
+    mean[SPEED], mean[MEAN] = np.log(y * p * state_space.overturning_speed(np.array(alpha))), np.log(coefficient)
     deviation[START] = deviation[SPEED] = deviation[MEAN] = 10.0
     deviation[state_space.FREQUENCY] = p_error
     model = Model(np.arange(impacts - 1) % 2, (alpha, alpha), (p, p), mean, deviation)

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from rocking.conventions import FloatArray, Foot, IntArray
-from rocking.identification import half_cycles
+from rocking.identification import state_space
 from rocking.identification.association import speeds_between, start
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
@@ -55,10 +55,10 @@ class SampledSeries:
         sign = 1.0 - 2.0 * self.sides[k]
 
         def value_at(y: FloatArray, alpha: FloatArray) -> FloatArray:
-            rotation, speed = half_cycles.rotation(since, y, alpha)
+            rotation, speed = state_space.rotation(since, y, alpha)
             return rotation if row.kind == "rotation" else p * speed
 
-        rotation, speed = half_cycles.rotation(since, y, alpha)
+        rotation, speed = state_space.rotation(since, y, alpha)
         of_rotation = row.kind == "rotation"
         value = rotation if of_rotation else p * speed
         by_since = speed if of_rotation else -p * np.sin(alpha - rotation)

@@ -3,15 +3,90 @@
 The unknowns are standard normal a priori: the numbers that all impacts share, and one draw for each impact, which
 scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed side by side;
 arrays begin with that axis, called g below. All angles of the left side are mirrored.
+
+`y` is the speed after an impact over the one that would just overturn the body, `alpha` the slenderness angle over the
+foot on which it stands; times are multiplied by the frequency parameter p.
 """
 
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
+from scipy.special import ellipj, elliprd, elliprf
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.identification import half_cycles
+
+
+def overturning_speed(alpha: FloatArray) -> FloatArray:
+    """Return the angular velocity over p from which a body just overturns [-]."""
+    return np.asarray(2.0 * np.sin(0.5 * alpha))  # Eq. 264
+
+
+def duration(y: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Return p T, T the time from one impact to the next [-].
+
+    >>> round(float(duration(np.array(0.8), np.array(1e-9)) - 2.0 * np.arctanh(0.8)), 12)
+    0.0
+    """
+    return np.asarray(2.0 * y * elliprf(*_arguments(y, alpha)))  # Eq. 265
+
+
+def duration_and_slopes(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return p T, its derivative by ln y at the same alpha, and that by alpha at the same y."""
+    a, b, c = _arguments(y, alpha)
+    q, s2 = 1.0 - y * y, np.sin(0.5 * alpha) ** 2
+    by_a, by_b, by_c = -elliprd(b, c, a) / 6.0, -elliprd(a, c, b) / 6.0, -elliprd(a, b, c) / 6.0
+    found = 2.0 * y * elliprf(a, b, c)
+    by_y = (s2 - 1.0) * by_a + (s2 * q - c) * by_b + s2 * by_c  # over 2 y
+    by_s2 = -q * (by_a + q * by_b + by_c)
+    return found, found + 4.0 * y**3 * by_y, y * np.sin(alpha) * by_s2
+
+
+def speed(taken: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Return y, from p T: the inverse of `duration`."""
+    goal = np.log(np.asarray(taken, dtype=np.float64))
+    y = np.tanh(0.5 * np.exp(goal))
+    for _ in range(30):
+        found, slope, _ = duration_and_slopes(y, alpha)
+        # in ln T over atanh y, in which it is nearly straight
+        step = (np.log(found) - goal) * found / slope * y / (1.0 - y * y)
+        y = np.tanh(np.maximum(np.arctanh(y) - step, 0.5 * np.arctanh(y)))
+        if np.all(np.abs(step) <= 1e-14 * np.arctanh(y)):
+            break
+    return np.asarray(y)
+
+
+def peak(y: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Return the largest rotation until the next impact [rad]."""
+    s = np.sin(0.5 * alpha)
+    return np.asarray(alpha - 2.0 * np.arcsin(s * np.sqrt(1.0 - y * y)))  # Eq. 266
+
+
+def rotation(since: FloatArray, y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return rotation [rad] and angular velocity over p [-]; since: p times the time since the impact."""
+    low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # of half the angle at the highest point
+    m = 1.0 - low * low
+    sn, _, dn, _ = ellipj(since - 0.5 * duration(y, alpha), m)
+    return alpha - 2.0 * np.arcsin(np.minimum(low / dn, 1.0)), -2.0 * low * np.sqrt(m) * sn / dn  # Eq. 267
+
+
+def viscous_loss(y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return by how much ln y falls until the next impact for each unit of the damping ratio, of slender bodies.
+
+    Also its derivative by ln y; y is the geometric mean of those at both ends.
+    """
+    small = y < 0.05
+    z = np.where(small, 0.5, y)
+    exact = 2.0 * (z - (1.0 - z * z) * np.arctanh(z)) / (z * z)  # Eq. 268
+    slope = 4.0 * (np.arctanh(z) - z) / (z * z)
+    return np.where(small, 4.0 * y / 3.0 + 4.0 * y**3 / 15.0, exact), np.where(small, 4.0 * y / 3.0 + 0.8 * y**3, slope)
+
+
+def _arguments(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    q, s2 = 1.0 - y * y, np.sin(0.5 * alpha) ** 2
+    m = 1.0 - s2 * q
+    return (1.0 - s2) * q, m * q, m
+
 
 SHARED = (START, SPEED, MEAN, HALF, FREQUENCY, TILT, SLENDERNESS, TREND, DAMPING) = tuple(range(9))
 """When the first impact was [s]; ln of the speed after it, ln of the mean coefficient, half the difference of ln r
@@ -76,14 +151,14 @@ class Model:
             alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
             alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
             da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
-            ln_y = speed - np.log(p * half_cycles.overturning_speed(alpha))
+            ln_y = speed - np.log(p * overturning_speed(alpha))
             dy = dx - unit[FREQUENCY] - (0.5 / np.tan(0.5 * alpha))[:, None] * da
             feasible &= ln_y < np.log(_BELOW_OVERTURNING)
             y = np.exp(np.minimum(ln_y, np.log(_BELOW_OVERTURNING)))
             lost, dl = np.zeros(len(u)), np.zeros(u.shape)
             if damped:
                 y, dy, lost, dl = _damped(y, dy, z[:, DAMPING], unit[DAMPING])
-            scaled, by_y, by_alpha = half_cycles.duration_and_slopes(y, alpha)
+            scaled, by_y, by_alpha = duration_and_slopes(y, alpha)
             kept.append((time, speed, y, alpha, p, dt, dy, da))
             time = time + scaled / p
             dt = (
@@ -117,9 +192,9 @@ class Model:
         alone = np.array(self.alpha)[self.sides] * np.exp(z[:, SLENDERNESS, None])
         alpha = np.clip(alone - sign * z[:, TILT, None], 1e-3, _STEEPEST)
         p = np.array(self.p)[self.sides] * np.exp(z[:, FREQUENCY, None])
-        y = half_cycles.speed(p * np.maximum(np.diff(times), 1e-6), alpha)
-        loss = z[:, DAMPING, None] * half_cycles.viscous_loss(y)[0]
-        speeds = np.log(y * p * half_cycles.overturning_speed(alpha)) + 0.5 * loss
+        y = speed(p * np.maximum(np.diff(times), 1e-6), alpha)
+        loss = z[:, DAMPING, None] * viscous_loss(y)[0]
+        speeds = np.log(y * p * overturning_speed(alpha)) + 0.5 * loss
         mean = z[:, MEAN, None] - sign[:-1] * z[:, HALF, None] + z[:, TREND, None] * (speeds[:, :-1] - self.middle)
         draws = np.diff(speeds) - mean + loss[:, :-1]
         found[:, len(SHARED) :] = draws / np.maximum(scatter, 1e-300)[:, None]
@@ -132,10 +207,10 @@ def _damped(
     y: FloatArray, dy: FloatArray, ratio: FloatArray, unit: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Take y from the beginning to the mean of a half cycle, with the slopes of ln y; and the loss, with its slopes."""
-    each, slope = half_cycles.viscous_loss(y)
+    each, slope = viscous_loss(y)
     dy = (1.0 - 0.5 * ratio * slope)[:, None] * dy - 0.5 * each[:, None] * unit
     y = y * np.exp(-0.5 * ratio * each)
-    each, slope = half_cycles.viscous_loss(y)
+    each, slope = viscous_loss(y)
     return y, dy, ratio * each, each[:, None] * unit + (ratio * slope)[:, None] * dy
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.bodies import MassPoints, Solid
 from rocking.conventions import FloatArray, percent
-from rocking.dynamics.hull import HullBody, HullSettings, fast_engine, standing
+from rocking.dynamics.hull import HullBody, HullSettings, histories, standing
 from rocking.dynamics.hull.histories import HullRows
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.settings import processors
@@ -55,8 +55,8 @@ _WHY = {
     "azimuth": AZIMUTH_WHY,
 }
 _LAWS = {
-    "housner": fast_engine.HOUSNER, "housner-3d": fast_engine.HOUSNER,
-    "ked": fast_engine.KED, "ked-3d": fast_engine.KED,
+    "housner": histories.HOUSNER, "housner-3d": histories.HOUSNER,
+    "ked": histories.KED, "ked-3d": histories.KED,
 }  # fmt: skip
 
 
@@ -99,15 +99,15 @@ class SpaceMechanics(Mechanics):
 
     def law(self, level: float) -> Any:
         """Return what an impact costs at a probability of its distribution, as `simulate` takes it."""
-        named = {fast_engine.HOUSNER: "housner", fast_engine.KED: "ked"}
+        named = {histories.HOUSNER: "housner", histories.KED: "ked"}
         value = float(self.inputs["restitution"].quantile(np.array([level]))[0])
-        return named.get(self._law) or (FixedPosition(value) if self._law == fast_engine.POSITION else value)
+        return named.get(self._law) or (FixedPosition(value) if self._law == histories.POSITION else value)
 
     def _set_restitution(self, told: Any) -> None:
         """Take a law of impacts, and the distribution of its number."""
         word = told if isinstance(told, str) else MEASURED[0] if told is None else ""
         if word in MEASURED:
-            self._law, (found, words) = fast_engine.POSITION, self._measured()
+            self._law, (found, words) = histories.POSITION, self._measured()
             at = np.linspace(0.0, 1.0, found.size)
             one = Uncertain(words, lambda u: np.interp(u, at, found))
             self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
@@ -117,7 +117,7 @@ class SpaceMechanics(Mechanics):
                 raise InvalidValueError(f"restitution in space must be one of {names}, or a coefficient, got {word!r}")
             self._law, one = _LAWS[word], Uncertain(word, lambda u: np.zeros(u.shape), fixed=True)
         else:
-            self._law, one = fast_engine.COEFFICIENT, Uncertain.of("restitution", told, 0.0, 1.0)
+            self._law, one = histories.COEFFICIENT, Uncertain.of("restitution", told, 0.0, 1.0)
         self.inputs = {"restitution": one, **self.inputs}
 
     def _measured(self) -> tuple[FloatArray, str]:
@@ -157,8 +157,8 @@ class SpaceMechanics(Mechanics):
         numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
         numbers[:, 15:28], numbers[:, 28] = state, self._gravity
         choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law)])
-        ked = self._law == fast_engine.KED
-        rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, fast_engine.chosen("auto"), ked=ked)
+        ked = self._law == histories.KED
+        rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, histories.chosen("auto"), ked=ked)
         found = rows.run(numbers, choices, threads or processors())
         known = found["status"] == Status.GOOD.code
         pairs = zip(shapes, found["pose"].tolist(), strict=True)

@@ -6,8 +6,7 @@ from rocking.lazy import exports
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
-from rocking.restitution.recommendation import recommend
-from rocking.restitution.registry import coefficient_of_restitution, homes, model, models, register
+from rocking.restitution.registry import coefficient_of_restitution, homes, model, models, recommend, register
 
 if TYPE_CHECKING:
     from rocking.restitution.calibrated import Calibrated
@@ -53,10 +52,10 @@ __all__ = [
 ]
 
 _HOME = {
-    "EnergyBalance": "ked_stages",
+    "EnergyBalance": "ked",
     "IdentityCheck": "identities",
     "Interface": "interface",
-    "energy_balance": "ked_stages",
+    "energy_balance": "ked",
     "identity_report": "identities",
     "projected_moment": "ked",
 }

@@ -43,9 +43,9 @@ _HOMES = {
     "goodness": ("Goodness",),
     "least_squares": ("Regression", "regression"),
     "lognormal": ("LognormalFit", "fit_counts", "fit_lognormal"),
+    "maximum_likelihood": ("Separation",),
     "ordered_probit": ("OrderedFit", "fit_ordered"),
     "scores": ("Forecasts", "ReliabilityBin", "Score", "logistic_left_out"),
-    "separation": ("Separation",),
 }
 
 __getattr__, __dir__ = exports(

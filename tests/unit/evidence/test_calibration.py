@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 from rocking import Block
+from rocking.evidence import _coefficient_table as interval_module
 from rocking.evidence import all_measurements, calibrate, calibration, coefficient_table, interval_for
-from rocking.evidence import interval as interval_module
 from rocking.evidence._coefficient_table import outside_evidence
 from rocking.evidence.calibration import NAMES, calibrate_on, coverage, marginal_quantiles, posterior_grid
 from rocking.evidence.likelihood import fit_scatter, scatter

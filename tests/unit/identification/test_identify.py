@@ -8,8 +8,7 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.identification import ImpactTimes, RotationSeries, identify
-from rocking.identification.half_cycles import rotation
-from rocking.identification.state_space import MEAN, SHARED, SPEED, Model
+from rocking.identification.state_space import MEAN, SHARED, SPEED, Model, rotation
 
 BLOCK = rk.Block(width=0.1, height=0.4)
 

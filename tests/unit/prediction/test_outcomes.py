@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.prediction.outcomes import Outcomes, is_outcomes
+from rocking.prediction._score import Outcomes, is_outcomes
 
 HEAD = "motion,scale,overturned,rocked,slid,day"
 

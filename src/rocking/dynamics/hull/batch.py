@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import plausibility
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics.hull import fast_engine
+from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import HullRows, hull_histories, numbers_of
@@ -105,7 +105,7 @@ class RowsOnHull:
         assert settings.friction is not None
         self.friction = settings.friction
         grounds = [_ground(motion) for motion in motions]
-        which = fast_engine.chosen(engine)
+        which = histories.chosen(engine)
         ked = law.model == "ked-3d"
         self.rows = HullRows([law.on_hull], grounds, settings_on_hull(settings), which, ked=ked)
         if ked and law.on_hull.solid is None:
@@ -129,7 +129,7 @@ class RowsOnHull:
         friction = np.where(np.isnan(values["friction"]), self.friction, values["friction"])
         r = values["r_right"]
         modelled = r == UNIMPOSED
-        code = {"housner-3d": fast_engine.HOUSNER, "ked-3d": fast_engine.KED}.get(str(law.model), 0)
+        code = {"housner-3d": histories.HOUSNER, "ked-3d": histories.KED}.get(str(law.model), 0)
         numbers = np.zeros((count, 29))
         numbers[:, 0], numbers[:, 1], numbers[:, 3] = np.where(modelled, 0.0, r), scale, friction
         turned = np.nan_to_num(values["azimuth"])
@@ -137,7 +137,7 @@ class RowsOnHull:
         numbers[:, 4], numbers[:, 8] = np.cos(turned), np.cos(turned)
         numbers[:, 5], numbers[:, 7] = -np.sin(turned), np.sin(turned)
         numbers[:, 15:28], numbers[:, 28] = numbers_of(law.on_hull, SpatialStart()), pull
-        codes = np.where(modelled, code, fast_engine.COEFFICIENT)
+        codes = np.where(modelled, code, histories.COEFFICIENT)
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)
         found = self.rows.run(numbers, choices, threads)
         fell, unknown = found["outcome"] == Outcome.OVERTURNED.code, np.full(count, np.nan)

@@ -4,24 +4,94 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.hull import fast_engine
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import State
 from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.settings import check_progress, check_threads, processors
+from rocking.dynamics.settings import CompiledEngine, check_progress, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status, overturned
+from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
+
+FLOATS = (
+    "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance",
+    "residual_displacement", "end_time", "lost",
+)  # fmt: skip
+WHOLES = (
+    "outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking",
+)  # fmt: skip
+HOUSNER, POSITION, COEFFICIENT, KED = range(4)
+MOST_POWERS = 8
+
+_COMPILED = CompiledEngine(
+    "rocking.dynamics._hull",
+    "the batch engine of hulls was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
+    "`make engine`)",
+    "the reference engine runs instead, row by row",
+)
+available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
+
+
+def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], *, ked: bool) -> Any:
+    """Return bodies and motions as the compiled engine keeps them; ked: whether the law asks where the mass is."""
+    made = module().Library()
+    for body in bodies:
+        if body is None:
+            made.add_nobody()
+        else:
+            made.add_body(body.mass, np.array(body.tensor), **_tables(body), positions=_positions(body, ked=ked))
+    for motion in motions:
+        rows = motion.coefficients.transpose(0, 2, 1)
+        if rows.shape[1] > MOST_POWERS:
+            raise InvalidValueError(f"motions must be polynomials of degree below {MOST_POWERS}; sample them")
+        made.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), -1)))
+    return made
+
+
+def run_rows(
+    library: Any, numbers: FloatArray, choices: IntArray, settings: HullSettings, threads: int
+) -> dict[str, np.ndarray]:
+    """Return the results of rows by name: `FLOATS`, NaN without result, and `WHOLES`."""
+    results, counts = np.full((len(numbers), len(FLOATS)), np.nan), np.zeros((len(numbers), len(WHOLES)), np.int64)
+    library.run(
+        numbers, choices, results, counts, settings.rest_speed, settings.tolerance, settings.most_events, threads
+    )
+    return named(results, counts)
+
+
+def named(results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
+    """Return the columns of the tables of results by name."""
+    whole = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
+    return whole | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
+
+
+def _tables(body: HullBody) -> dict[str, Any]:
+    corners, beyond, first = body.hull.borders
+    return {
+        "vertices": np.array(body.points), "facets": np.array(body.facets), "poses": np.array(body.poses, np.int64),
+        "first": first, "beside": beyond, "first_corner": first, "corners": corners,
+    }  # fmt: skip
+
+
+def _positions(body: HullBody, *, ked: bool) -> FloatArray:
+    """Return where the impulse of a landing on the solid's own base acts: azimuths and coefficients by interval."""
+    if not ked or body.solid is None:
+        return np.zeros((0, HIGHEST + 3))
+    position = impulse_position(body.solid)
+    rows = [[*ends, *position.piece(k)] for k, ends in enumerate(pairwise(position.breaks))]
+    return np.array([row + [0.0] * (HIGHEST + 3 - len(row)) for row in rows])
+
 
 PIECE = 1 << 14
 """Histories that are handed to the engine at a time."""
@@ -130,9 +200,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    if any(
-        code == fast_engine.KED and body is not None and body.solid is None for code, _ in codes for body in several
-    ):
+    if any(code == KED and body is not None and body.solid is None for code, _ in codes for body in several):
         raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
     states = np.array([[numbers_of(body, each) for each in starts] for body in several])
@@ -145,8 +213,8 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
         planes[ground, :11], states[body, first], planes[ground, 11],
     ])  # fmt: skip
     choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
-    ked = any(code == fast_engine.KED for code, _ in codes)
-    rows = HullRows(several, [g.motion for g in under], settings, fast_engine.chosen(engine), ked=ked)
+    ked = any(code == KED for code, _ in codes)
+    rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), ked=ked)
     return HullBatch(shape, rows.run(numbers, choices, threads or processors(), progress), rows.words)
 
 
@@ -169,7 +237,7 @@ class HullRows:
     @cached_property
     def library(self) -> Any:
         """Bodies and motions as the compiled engine keeps them."""
-        return fast_engine.library_of(self.bodies, self.motions, ked=self.ked)
+        return library_of(self.bodies, self.motions, ked=self.ked)
 
     def run(
         self, numbers: FloatArray, choices: IntArray, threads: int, progress: Callable[[int], None] | None = None
@@ -184,10 +252,10 @@ class HullRows:
         for first in range(0, len(numbers), size):
             some, which = numbers[first : first + size], choices[first : first + size]
             if self.engine == "fast":
-                pieces.append(fast_engine.run_rows(self.library, some, which, self.settings, threads))
+                pieces.append(run_rows(self.library, some, which, self.settings, threads))
             else:
                 floats, whole = self._one(some[0], which[0].tolist())
-                pieces.append(fast_engine.named(np.array([floats]), np.array([whole], np.int64)))
+                pieces.append(named(np.array([floats]), np.array([whole], np.int64)))
             if progress is not None:
                 progress(len(some))
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
@@ -195,12 +263,12 @@ class HullRows:
     def _one(self, row: FloatArray, which: list[int]) -> tuple[list[float], list[int]]:
         body, unbounded = self.bodies[which[0]], np.isin(np.arange(row.size), (3, 13, 14))
         known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
-        bounded = which[2] in {fast_engine.HOUSNER, fast_engine.KED} or 0.0 <= row[0] <= 1.0
+        bounded = which[2] in {HOUSNER, KED} or 0.0 <= row[0] <= 1.0
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
-            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(fast_engine.WHOLES) - 3)]
-            return [math.nan] * len(fast_engine.FLOATS), refused
-        named = {fast_engine.HOUSNER: "housner-3d", fast_engine.KED: "ked-3d"}
-        law = FixedPosition(row[0]) if which[2] == fast_engine.POSITION else named.get(which[2], float(row[0]))
+            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(WHOLES) - 3)]
+            return [math.nan] * len(FLOATS), refused
+        named = {HOUSNER: "housner-3d", KED: "ked-3d"}
+        law = FixedPosition(row[0]) if which[2] == POSITION else named.get(which[2], float(row[0]))
         moving = self.motions[which[1]]
         ground = HullGround.placed(
             SpatialGround(moving.times, row[1] * moving.coefficients), row[4:13], row[13:15], float(row[28])
@@ -234,13 +302,13 @@ def _listed(name: str, values: Any) -> list[Any]:
 
 def _code(law: Any) -> tuple[int, float]:
     if law in ("housner", "housner-3d"):
-        return fast_engine.HOUSNER, 0.0
+        return HOUSNER, 0.0
     if law in ("ked", "ked-3d"):
-        return fast_engine.KED, 0.0
+        return KED, 0.0
     if isinstance(law, FixedPosition):
-        return fast_engine.POSITION, law.k
+        return POSITION, law.k
     if isinstance(law, (int, float)):
-        return fast_engine.COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
+        return COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
     raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
 
 
