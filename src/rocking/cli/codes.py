@@ -42,16 +42,15 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
 EXPORTS = {"csv": Export((".csv",), _csv)}
 
 
+@options.sized
 def codes(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")] = None,
+    record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
-    synthetic: Annotated[
-        str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")
-    ] = None,
+    synthetic: options.Family = None,
     count: Annotated[int | None, typer.Option(help="How many synthetic motions, 100 if not given.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")] = None,
+    seed: options.Seed = None,
     measure: Annotated[
         str, typer.Option(help="Intensity that the motions are brought to, as of rocking fragility.")
     ] = "pga/(g tan alpha)",
@@ -75,12 +74,6 @@ def codes(
             help="Height over width, in place of widths, for every height: 4,5.", rich_help_panel=options.SIZE
         ),
     ] = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,

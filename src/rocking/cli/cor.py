@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -48,17 +49,10 @@ EXPORTS = {
 }
 
 
+@partial(options.sized, before="onto")
 def cor(
     context: typer.Context,
     body: options.BodyFile = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     restitution: Annotated[
         list[str] | None,

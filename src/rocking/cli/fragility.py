@@ -61,6 +61,7 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 """Files of the curves of one restitution."""
 
 
+@options.sized
 def fragility(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -100,14 +101,6 @@ def fragility(
     states: Annotated[str, options.key(FragilityTable, "states", ": 0.2,0.5")] = "0.5",
     factor: Annotated[float | None, options.key(FragilityTable, "factor")] = None,
     restitution: options.Restitutions = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,

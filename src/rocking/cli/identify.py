@@ -56,6 +56,7 @@ EXPORTS = {
 }
 
 
+@options.sized
 def identify(
     context: typer.Context,
     body: Annotated[
@@ -68,14 +69,6 @@ def identify(
     motion: Annotated[
         list[str] | None, typer.Option(help="Record of the ground under it, or a pulse, if it did not rock freely.")
     ] = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Processes, for a folder.")] = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,

@@ -41,6 +41,7 @@ EXPORTS = {
 }
 
 
+@options.sized
 def map(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -50,14 +51,6 @@ def map(
     y: Annotated[str, options.key(MapTable, "y")] = "amplitude_ratio=1:12:100",
     restitution: options.Restitutions = None,
     refine: Annotated[int | None, options.key(MapTable, "refine")] = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,

@@ -45,6 +45,7 @@ def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
 EXPORTS = {"picture": Export(PICTURES, draw), "csv": Export((".csv",), _write_csv)}
 
 
+@options.sized
 def minimum(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -55,14 +56,6 @@ def minimum(
     highest: Annotated[str | None, options.key(MinimumTable, "highest", ": 5g")] = None,
     points: Annotated[int, options.key(MinimumTable, "points", rich_help_panel=options.HOW)] = 400,
     levels: Annotated[int, options.key(MinimumTable, "levels", rich_help_panel=options.HOW)] = 4,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,

@@ -1,5 +1,8 @@
 """Options of the commands; what they mean is said once, by the tables of `rocking.spec.document`."""
 
+from collections.abc import Callable
+from functools import wraps
+from inspect import Parameter, Signature, signature
 from typing import Annotated, Any
 
 import typer
@@ -16,28 +19,49 @@ def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
     return typer.Option(help=f"{text[:1].upper()}{text[1:]}{more}.".replace("[", r"\["), **options)
 
 
-Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --units].", rich_help_panel=SIZE)]
-Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=SIZE)]
-Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=SIZE)]
 Density = Annotated[float | None, typer.Option(help=r"Density of a block or a mesh \[kg/m3].", rich_help_panel=SIZE)]
-Mass = Annotated[float | None, typer.Option(help=r"Mass, in place of the density \[kg].", rich_help_panel=SIZE)]
-Centre = Annotated[
-    str | None,
-    typer.Option(
-        help=r"Centre of mass X,Y from the lower left corner of a block \[m, or --units].",
-        rich_help_panel=SIZE,
-    ),
-]
-Moment = Annotated[
-    float | None,
-    typer.Option("--moment-of-inertia", help=r"Polar moment about the centre of mass \[kg m2].", rich_help_panel=SIZE),
-]
 Units = Annotated[
     str | None,
     typer.Option(
         help="Units: of lengths m, cm, mm, ft, in; of a record m/s2, cm/s2, mm/s2, gal, g, g/10, mg; or mm,g."
     ),
 ]
+
+
+def _size(kind: Any, words: str) -> Any:
+    return Annotated[kind | None, typer.Option(help=words, rich_help_panel=SIZE)]
+
+
+_SIZES = {
+    "width": _size(float, r"Full width of a block \[m, or --units]."),
+    "height": _size(float, r"Full height of a block \[m, or --units]."),
+    "depth": _size(float, r"Depth of a block \[m, or --units]."),
+    "density": Density,
+    "mass": _size(float, r"Mass, in place of the density \[kg]."),
+    "centre": _size(str, r"Centre of mass X,Y from the lower left corner of a block \[m, or --units]."),
+    "moment_of_inertia": _size(float, r"Polar moment about the centre of mass \[kg m2]."),
+    "units": Units,
+}
+
+
+def sized(command: Callable[..., None], before: str = "sets") -> Callable[..., None]:
+    """Give a command the sizes of a block as options, in front of one of its own; `Arguments` reads them."""
+    own = signature(command).parameters
+    added = {name: kind for name, kind in _SIZES.items() if name not in own}
+
+    @wraps(command)
+    def sized_command(**values: Any) -> None:
+        command(**{name: value for name, value in values.items() if name not in added})
+
+    sizes = [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in added.items()]
+    at = list(own).index(before)
+    every = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own.values()]
+    every[at:at] = sizes
+    sized_command.__signature__ = Signature(every)  # type: ignore[attr-defined]
+    sized_command.__annotations__ = {**command.__annotations__, **added}
+    return sized_command
+
+
 RecordUnits = Annotated[
     str | None, typer.Option("--units", help="Unit of the record: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")
 ]
@@ -75,6 +99,7 @@ Motions = Annotated[
     list[str] | None,
     typer.Option("--motion", help="The same, as an option; again for more.", autocompletion=completion.pulses),
 ]
+SeveralRecords = Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")]
 SeveralMotions = Annotated[
     list[str] | None,
     typer.Option(
@@ -96,6 +121,12 @@ Restitutions = Annotated[
         autocompletion=completion.models,
     ),
 ]
+MeasuredRestitution = Annotated[
+    str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
+]
+FrictionOfRange = Annotated[float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")]
+Family = Annotated[str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")]
+Seed = Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")]
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 
 

@@ -46,30 +46,17 @@ EXPORTS = {
 }
 
 
+@options.sized
 def predict(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")] = None,
+    record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
-    synthetic: Annotated[
-        str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")
-    ] = None,
+    synthetic: options.Family = None,
     count: Annotated[int | None, typer.Option(help="How many synthetic motions, 20 if not given.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")] = None,
-    restitution: Annotated[
-        str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
-    ] = None,
-    friction: Annotated[
-        float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")
-    ] = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
+    seed: options.Seed = None,
+    restitution: options.MeasuredRestitution = None,
+    friction: options.FrictionOfRange = None,
     sets: options.Set = None,
     threads: options.Threads = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,

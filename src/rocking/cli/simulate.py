@@ -66,6 +66,7 @@ EXPORTS = {
 }
 
 
+@options.sized
 def simulate(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -83,14 +84,6 @@ def simulate(
     scale: options.Scale = 1.0,
     friction: Annotated[float | None, options.key(ResponseTable, "friction")] = None,
     bounce: Annotated[float | None, options.key(ResponseTable, "bounce")] = None,
-    width: options.Width = None,
-    height: options.Height = None,
-    depth: options.Depth = None,
-    density: options.Density = None,
-    mass: options.Mass = None,
-    centre: options.Centre = None,
-    moment_of_inertia: options.Moment = None,
-    units: options.Units = None,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,

@@ -49,12 +49,8 @@ def validate(
             "overturned, and if known rocked, slid; one row a trial."
         ),
     ],
-    restitution: Annotated[
-        str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
-    ] = None,
-    friction: Annotated[
-        float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")
-    ] = None,
+    restitution: options.MeasuredRestitution = None,
+    friction: options.FrictionOfRange = None,
     units: options.Units = None,
     sets: options.Set = None,
     threads: options.Threads = None,

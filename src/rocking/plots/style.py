@@ -1,22 +1,19 @@
 """One journal style for every picture: sizes, colours, and files that come out the same every time."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import wraps
-from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
-
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 
 from rocking.errors import RockingError, extra
 from rocking.restitution import models
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.text import Text
@@ -172,6 +169,8 @@ def new_figure(
     >>> len(axes)
     2
     """
+    from rocking.plots.shown_figure import ShownFigure
+
     figure = ShownFigure(_SETTINGS, figsize=(width, height), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(axes.ravel())
@@ -252,21 +251,3 @@ def write(figure: "Figure", path: str | Path) -> Path:
     except OSError as error:
         raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
     return path
-
-
-_DOTS, _PIXELS = 144.0, 96.0  # dots of the image, and pixels of a page, per inch
-
-
-class ShownFigure(Figure):
-    """A matplotlib figure that is an image wherever IPython displays it, in a style of its own."""
-
-    def __init__(self, style: Mapping[str, Any], **options: Any) -> None:
-        super().__init__(**options)
-        self._style: Any = dict(style)
-
-    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
-        image = BytesIO()
-        with rc_context(self._style):
-            self.savefig(image, format="png", dpi=_DOTS, metadata={"Software": None})
-        width, height = (self.get_size_inches() * _PIXELS).round().astype(int).tolist()
-        return image.getvalue(), {"width": width, "height": height}

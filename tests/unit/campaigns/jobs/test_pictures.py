@@ -4,7 +4,7 @@ import pytest
 from campaign_jobs import BODY, PULSE, TWO_MODELS, axes, job, search
 from campaign_jobs import finished as through
 
-from rocking.cli.campaign import write
+from rocking.cli.campaign_export import write
 from rocking.errors import InvalidValueError
 from rocking.spec.document import NEEDS
 
