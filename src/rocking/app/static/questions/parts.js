@@ -196,7 +196,7 @@ const Files = ({ questions, question }) => html`
   </div>
   <details><summary>The same on the command line</summary>
     <p class="field-help">Save it as question.toml, its files beside it${question.command === "motions" && " and the records in a folder records"}:</p>
-    <pre>rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre>${question.toml}</pre>
+    <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>
   </details>`;
 
 /** The picture of an answer, if it has one. */

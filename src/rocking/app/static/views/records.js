@@ -110,7 +110,7 @@ const Chain = ({ app, form, stations, faulty }) => {
   };
   return html`
     <div class="chain" role="group" aria-labelledby=${heading}>
-      <h3 id=${heading}>Steps, in their order</h3>
+      <h2 id=${heading}>Steps, in their order</h2>
       <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${`Step ${place + 1}, ${name}`}>
         <div class="toolbar"><strong>${name}</strong>
           <button type="button" class="button quiet" aria-label=${`${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191</button>
@@ -186,13 +186,13 @@ const Corrected = ({ answer, question, questions }) => {
     ${doubts.map((words) => html`<p class="note warning" key=${words}><span class="sign" aria-hidden="true">!</span><span>${sentence(words)}</span></p>`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
     <div class="toolbar"><button type="button" class="button primary" onClick=${() => use(questions, question)}>Use it as the motion</button></div>
-    <${Rows} caption="Before and after" head=${["", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
+    <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
       [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
     <h3>What was done</h3>
     <ul aria-label="What was done">${answer.provenance.map((words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
     <details><summary>What the file says</summary>
       <dl class="facts">${said.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
-      ${answer.metadata.header && html`<pre>${answer.metadata.header}</pre>`}
+      ${answer.metadata.header && html`<pre tabindex="0">${answer.metadata.header}</pre>`}
     </details>`;
 };
 
