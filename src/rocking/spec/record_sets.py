@@ -36,16 +36,18 @@ def record_set(
     """Return the records of a table, and how they were chosen where it has a target."""
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
+    steps = with_files(table, inputs)
+    stations = stations_of(steps)
     for name in table.records or []:
         _note(name, inputs)
         with located(f"records: {name}"):
             keys = (table.format, table.units, table.time_step)
-            found = read_records(inputs.folder / name, *keys, workers=workers, progress=progress)
+            how: dict[str, Any] = {"stations": stations, "workers": workers, "progress": progress}
+            found = read_records(inputs.folder / name, *keys, **how)
             if is_pattern(name) and found.left_out:  # these files were named
                 raise InvalidValueError(": ".join(found.left_out[0]))
         records += found.records
         left_out += found.left_out
-    steps = with_files(table, inputs)
     with located("process"):
         made = [processed(each, steps).each(lambda part: _scaled(part, table.scale)) for each in records]
     kept = RecordSet(tuple(made), tuple(left_out))

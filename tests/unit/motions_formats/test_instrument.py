@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RecordError
 from rocking.motions import GroundMotion, processed
+from rocking.motions.formats import read_records
 from rocking.motions.formats.reader import motions_in
 
 pytestmark = pytest.mark.verifies(room="motions and records")
@@ -54,6 +55,10 @@ def test_a_known_response_is_taken_out(tmp_path):
     assert found.acceleration == pytest.approx(burst, abs=2e-3 * 3.0)
     assert motion.acceleration != pytest.approx(burst, abs=0.1 * 3.0)
     assert "response of the instrument by station.xml" in found.provenance[-1]
+    (in_set,) = read_records(tmp_path / "*.mseed", stations=stations)  # as a set of one, which needs it as well
+    assert in_set.x.acceleration.tolist() == motion.acceleration.tolist()
+    with pytest.raises(RecordError, match="counts"):
+        read_records(tmp_path / "*.mseed")
     for words, message in (("low=0.2,high=45", "high must be"), ("low=0,high=20", "low must be")):
         with pytest.raises(InvalidValueError, match=message):
             processed(motion, [f"response:stations={stations},{words}"])

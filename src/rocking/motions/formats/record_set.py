@@ -111,6 +111,7 @@ def read_records(
     units: str | None = None,
     time_step: float | None = None,
     *,
+    stations: Path | None = None,
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> RecordSet:
@@ -130,6 +131,8 @@ def read_records(
         Folder, looked through with all that are in it; pattern such as ``records/*.at2``; list of files; or one file.
     format, units, time_step : optional
         As in `read_motion`, for all files.
+    stations : Path, optional
+        StationXML file, by which the counts of miniSEED files become accelerations.
     workers : int
         Processes that read many files.
     progress : callable, optional
@@ -156,7 +159,7 @@ def read_records(
     >>> len(records), [part is not None for part in records[0].parts]
     (1, [True, True, True])
     """
-    read = partial(_read, format=format, units=units, time_step=time_step)
+    read = partial(_read, format=format, units=units, time_step=time_step, stations=stations)
     path = Path(where)
     rows = rows_of_list(path)
     if rows is not None:

@@ -226,6 +226,8 @@ const Chosen = ({ answer, question }) => {
     <${Rows} caption="Records" rows=${rows}
       head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />
     <p class="field-help">The component with the largest peak is shown; the files have all of them, and their spectra.</p>
+    ${records.some((row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
+      rows=${records.filter((row) => row.doubts).map((row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
       rows=${left.map(({ file, why }) => [file, why])} />`}`;
 };
