@@ -227,7 +227,8 @@ class HullResponse(ResponseBase):
         count = self.impacts.size
         impacts = f"{count} impact{'s' * (count != 1)}"
         if self.outcome is Outcome.OVERTURNED:
-            where = "" if self.trajectory.fell else f" towards {math.degrees(self.overturning_direction):.4g} degrees"
+            degrees = round(math.degrees(self.overturning_direction), 6) + 0.0  # less is rounding
+            where = "" if self.trajectory.fell else f" towards {degrees:.4g} degrees"
             when = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
             return f"overturned{where} into pose {self.pose}{when}; {impacts}{slid}"
         sentence = f"{self.outcome.value}: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}{slid}"

@@ -7,6 +7,7 @@ import { Scene } from "/space/scene.js";
 
 /** The edges of a question's body. */
 export const Edges = ({ question, answer, children }) => {
+  const round = answer.base.kind !== "polygon";
   const models = Object.keys(answer.edges[0].coefficients);
   const doubts = [...new Set(answer.edges.flatMap(({ coefficients }) => Object.entries(coefficients)
     .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
@@ -17,10 +18,11 @@ export const Edges = ({ question, answer, children }) => {
         stage.number(stage.model.edges);
         stage.draw();
       }}
-      words=${`Its base has ${answer.edges.length + answer.edges_left_out} edges it may rock about; edge 0 runs from corner 0 to corner 1.`}
+      words=${round ? "Its base is round: it is tipped in four directions."
+        : `Its base has ${answer.edges.length + answer.edges_left_out} edges it may rock about; edge 0 runs from corner 0 to corner 1.`}
       legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}
-    <${Rows} caption="Edges and corners" head=${["from edge", "onto", "slenderness [\u00b0]", ...models]}
+    <${Rows} caption="Edges and corners" head=${[round ? "from" : "from edge", "onto", "slenderness [\u00b0]", ...models]}
       rows=${answer.edges.map((each) => [each.edge, each.lands_on, number((each.slenderness_angle_rad * 180) / Math.PI, 3),
         ...models.map((name) => number(each.coefficients[name].coefficient, 4))])} />
     ${[...doubts, ...answer.notes].map((words) => html`<p class="field-help" key=${words}>${words}</p>`)}`;

@@ -85,7 +85,7 @@ export class Stage {
     scene.add(plane);
     for (const [name, x, y] of [["x", 1, 0], ["y", 0, 1]]) {
       this.line([[0, 0, 0], [1.15 * this.size * x, 1.15 * this.size * y, 0]], "--space-axis");
-      this.label(name, [1.2 * this.size * x, 1.2 * this.size * y, 0], scene, 0.035);
+      this.label(name, [1.2 * this.size * x, 1.2 * this.size * y, 0.01 * this.size], scene, 0.035);
     }
     this.clear = new three.Color();
   }
@@ -185,6 +185,7 @@ export class Stage {
     }));
     label.position.fromArray(place);
     label.scale.setScalar(size);
+    if (into === this.scene) label.center.set(0.5, 0); // it stands on the ground
     label.renderOrder = 4;
     into.add(label);
   }
@@ -193,7 +194,7 @@ export class Stage {
   number(edges) {
     for (const { name, from, to } of edges) {
       this.line([from, to], "--space-holds", this.body, true);
-      this.label(name, from.map((value, k) => 0.5 * (value + to[k])), this.body, edges.length > 8 ? 0.03 : 0.045);
+      this.label(name.replace(" deg", "\u00b0"), from.map((value, k) => 0.5 * (value + to[k])), this.body, edges.length > 8 ? 0.03 : 0.045);
     }
     this.dots(edges.map(({ from }) => from), "dot", "--space-base");
   }
