@@ -36,9 +36,13 @@ _SHOWN = 5
 def engine_of(histories: Histories) -> str:
     """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
     engine = fast_engine.chosen(histories.engine, histories.law)
-    if histories.settings.friction is not None:
-        return f"{engine}, {_fingerprint(engine, '', histories.settings.mechanics)}"
-    return f"{engine}, {_fingerprint(engine, fast_engine.instruction_set() if engine == 'fast' else '')}"
+    mechanics = dict.fromkeys(each.settings.mechanics for each in histories.parts)
+    return f"{engine}, {'-'.join(_fingerprint(engine, _isa(engine, each), each) for each in mechanics)}"
+
+
+def _isa(engine: str, mechanics: str) -> str:
+    """Return the instruction set of which the last digits are: only rocking alone has several."""
+    return fast_engine.instruction_set() if engine == "fast" and mechanics == "rocking" else ""
 
 
 def kind_of(name: str) -> str:

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -63,6 +63,11 @@ class Histories(ABC):
     def together(self) -> int:
         """Histories of one motion that stand in a row, from a multiple of this number on: the best places to cut."""
         return 1
+
+    @property
+    def parts(self) -> "tuple[Histories, ...]":
+        """What they are joined from, each of one law and engine: themselves alone."""
+        return (self,)
 
     @abstractmethod
     def rows(self, first: int, last: int) -> Rows:
@@ -154,8 +159,7 @@ class Histories(ABC):
         InvalidValueError
             If the numbers are not of histories.
         """
-        if not 0 <= first <= last <= self.count:
-            raise InvalidValueError(f"histories must be within [0, {self.count}], got {first} to {last}")
+        checked_range(first, last, self.count)
         if self.motions.in_memory:
             return self._batch.run(last - first, lambda a, b: self.rows(first + a, first + b), threads=threads)[0]
         return self._run_made(first, last, threads)
@@ -212,6 +216,12 @@ class Histories(ABC):
             every.append(segments)
         self._forget()
         return every
+
+
+def checked_range(first: int, last: int, count: int) -> None:
+    """Refuse numbers that are not of histories."""
+    if not 0 <= first <= last <= count:
+        raise InvalidValueError(f"histories must be within [0, {count}], got {first} to {last}")
 
 
 def results_of(
@@ -345,6 +355,58 @@ class Product(Histories):
         """Return the shape and the hashes of the arrays."""
         hashes = {name: hash_of(np.ascontiguousarray(values)) for name, values in self.sides.items()}
         return {"shape": list(self.shape), "scales": hash_of(self.scales), **hashes}
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedHistories(Histories):
+    """Histories of several kinds, one after another: each part has a law, an engine and motions of its own."""
+
+    joined: tuple[Histories, ...]  # whose motions are made of the common ones
+
+    @property
+    def parts(self) -> tuple[Histories, ...]:
+        """The parts, in order."""
+        return self.joined
+
+    @property
+    def count(self) -> int:
+        """Number of histories of all parts."""
+        return sum(part.count for part in self.parts)
+
+    def _within(self, first: int, last: int) -> Iterator[tuple[Histories, int, int]]:
+        """Yield the parts of which some histories are, and which of their own these are."""
+        for part in self.parts:
+            if first < part.count and last > 0:
+                yield part, max(first, 0), min(last, part.count)
+            first, last = first - part.count, last - part.count
+
+    def rows(self, first: int, last: int) -> Rows:
+        """Return some of the rows; their motions are those of the parts."""
+        pieces = [part.rows(low, high) for part, low, high in self._within(first, last)]
+        values = {name: np.concatenate([np.empty(0), *(each.values[name] for each in pieces)]) for name in ROWS}
+        motion = np.concatenate([np.empty(0, np.int64), *(each.motion for each in pieces)])
+        return Rows(values, motion, np.arange(first, last, dtype=np.int64))
+
+    def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
+        """Return the results of some histories, part by part."""
+        checked_range(first, last, self.count)
+        results, done = empty_results(last - first), 0
+        for part, low, high in self._within(first, last):
+            for name, values in part.run(low, high, threads=threads).items():
+                results[name][done : done + high - low] = values
+            done += high - low
+            if high == part.count:  # its motions as the engine lays them out: of one part at a time there is room
+                part.__dict__.pop("_batch", None)
+        return results
+
+    def content(self) -> dict[str, Any]:
+        """Return how many parts there are, and the hash of what makes them beside the motions."""
+        parts = [
+            {"count": part.count, "content": part.content(), "law": described_law(part.law)} | part.settings.stated
+            for part in self.parts
+        ]
+        text = json.dumps(parts, sort_keys=True, allow_nan=False)
+        return {"parts": len(parts), "sha256": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def _own(array: np.ndarray, original: object) -> np.ndarray:

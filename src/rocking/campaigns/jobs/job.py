@@ -143,7 +143,9 @@ class Job:
             "histories_key": histories.key(),
             "restitution": [_model(label, restitution) for label, restitution in problem.restitutions.items()],
             "settings": problem.settings.stated,
-            "engine": engine_words(problem.settings, fast=engine == "fast"),
+            "engine": "; ".join(
+                dict.fromkeys(engine_words(each.settings, fast=engine == "fast") for each in histories.parts)
+            ),
             "seeds": {
                 "campaign": campaign.seed,
                 "motions": [table.seed or 0 for table in self.document.motions if table.synthetic is not None],

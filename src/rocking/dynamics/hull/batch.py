@@ -108,10 +108,6 @@ class RowsOnHull:
         which = histories.chosen(engine)
         ked = law.model == "ked-3d"
         self.rows = HullRows([law.on_hull], grounds, settings_on_hull(settings), which, ked=ked)
-        if ked and law.on_hull.solid is None:
-            raise InvalidValueError(
-                "restitution 'ked-3d' needs the distribution of mass, of this body moments are known"
-            )
 
     def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
         """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.

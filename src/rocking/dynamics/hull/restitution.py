@@ -139,8 +139,13 @@ class RestitutionOnHull(ConstantRestitution):
 
     @cached_property
     def on_hull(self) -> HullBody:
-        """The body on the vertices of its hull."""
-        return HullBody.of(self.body)
+        """The body on the vertices of its hull; refused where the model needs to know more of it."""
+        made = HullBody.of(self.body)
+        if self.model == "ked-3d" and made.solid is None:
+            raise InvalidValueError(
+                "restitution 'ked-3d' needs the distribution of mass, of this body moments are known"
+            )
+        return made
 
     @property
     def tabulated(self) -> bool:

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Block
-from rocking.conventions import FloatArray, g
+from rocking.conventions import FloatArray, IntArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
@@ -16,8 +17,8 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
-from rocking.studies.histories import Product, results_of
-from rocking.studies.inventory.draws import Draws, restitutions, slenderest
+from rocking.studies.histories import Histories, JoinedHistories, Product, results_of
+from rocking.studies.inventory.draws import STRATA, Draws, restitutions, slenderest
 from rocking.studies.inventory.hazard import SEED, Hazard
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
@@ -196,23 +197,54 @@ def assessment_plan(
     thresholds: Thresholds | None = None,
     gravity: float = g,
     friction: float | None = None,
-) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
-    """Return the histories of an assessment, what makes it of their results, and the objects, for campaigns.
+) -> tuple[Histories, Callable[[Arrays], Assessment], dict[str, int], tuple[InventoryObject, ...]]:
+    """Return the histories of an assessment, what makes it of their results, what they are over, and the objects.
 
-    The histories are over motion, object and direction, one scale, and the models of impact.
+    For campaigns. Objects that move in three dimensions have models of impact that change more slowly than motions.
     """
     assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
-    if any(map(assessor.in_space, assessor.inventory.objects)):
-        raise InvalidValueError("an inventory with friction or body files is assessed by rocking inventory alone")
-    product, items, refused = assessor.product(assessor.inventory.objects)
-    if product is None:
-        first = min([*assessor.inventory.not_assessed, *refused], key=lambda each: each.row)
-        raise InvalidValueError(f"no object can be assessed; line {first.row}: {first.reason}")
+    objects = assessor.inventory.objects
+    shaken, models = {"motion": len(hazard.motions)}, {"restitution": len(assessor.labels)}
+    ways = {"direction": len(DIRECTIONS)}
+    if any(map(assessor.in_space, objects)):
+        every = [assessor.object_histories(item) for item in objects]
+        rows = [each for each in every if isinstance(each, ObjectHistories)]
+        refused = [each for each in every if isinstance(each, NotAssessed)]
+        assessor.check_any(rows, refused)
+        parts = tuple(part for row in rows for part in row.parts)
+        histories = JoinedHistories(assessor.ordered, parts, settings=parts[0].settings)
+
+        def ruled(results: Arrays) -> Assessment:
+            apart = [dict(zip(results, each, strict=True)) for each in zip(
+                *(np.split(values, len(rows)) for values in results.values()), strict=True
+            )]  # fmt: skip
+            return assessor.assessment([*refused, *(row.rule(own) for row, own in zip(rows, apart, strict=True))])
+
+        over = {"object": len(rows)} | models | shaken | ways
+        return histories, ruled, over, tuple(row.item for row in rows)
+    product, items, refused = assessor.product(objects)
+    assessor.check_any(items, refused)
+    assert product is not None
 
     def finish(results: Arrays) -> Assessment:
         return assessor.assessment([*refused, *assessor.verdicts(items, product, results)])
 
-    return product, finish, tuple(items)
+    return product, finish, shaken | {"object": len(items)} | ways | models, tuple(items)
+
+
+@dataclass(frozen=True)
+class ObjectHistories:
+    """The histories of one object's verdict, and what makes it of their results."""
+
+    item: InventoryObject
+    parts: tuple[Product, ...]  # of the models one after another, each over motion and direction
+    models: int  # number of models of impact
+    make: Callable[[Arrays], Verdict | NotAssessed]  # of results over motion, direction and model
+
+    def rule(self, results: Arrays) -> Verdict | NotAssessed:
+        """Return the verdict of results over model, motion and direction."""
+        shape = (self.models, -1, len(DIRECTIONS))
+        return self.make({name: np.moveaxis(values.reshape(shape), 0, -1).ravel() for name, values in results.items()})
 
 
 class _Assessor:
@@ -323,11 +355,62 @@ class _Assessor:
         return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
 
     def _moving(
-        self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None = None
+        self, item: InventoryObject, threads: int | None = None, progress: Callable[[int], None] | None = None
     ) -> SpatialObject:
         return SpatialObject(
             item, self.hazard, self.draws, self.gravity, self._friction(item), threads=threads, progress=progress
         )
+
+    def object_histories(self, item: InventoryObject) -> ObjectHistories | NotAssessed:
+        """Return the histories of one object, whether it rocks in a plane or moves in three dimensions."""
+        if self.in_space(item):
+            try:
+                return self._histories_in_space(item)
+            except RockingError as error:
+                return NotAssessed(item.row, item.name, str(error))
+        product, _, refused = self.product([item])
+        if product is None:
+            return refused[0]
+        sides = {name: values[self.order] if values.ndim > 2 else values for name, values in product.sides.items()}
+        product = replace(product, motions=self.ordered, sides=sides)
+        parts = tuple(
+            replace(product, sides={name: values[..., k : k + 1] for name, values in sides.items()})
+            for k in range(len(self.labels))
+        )
+        return ObjectHistories(item, parts, len(parts), lambda results: next(self.verdicts([item], product, results)))
+
+    def _histories_in_space(self, item: InventoryObject) -> ObjectHistories:
+        moving, lifts = self._moving(item), self._moving(item).moves()
+        models: list[list[Product]] = []
+        for restitution in self.spatial:
+            first = self.spatial.index(restitution)
+            found = moving.histories(restitution, self.order)
+            models.append(models[first] if first < len(models) else [rows for _, rows in found])
+        angle = np.concatenate([np.full(len(one.motions), one.sides["alpha_right"].item()) for one in models[0]])
+        shape = (-1, len(DIRECTIONS), len(self.labels))
+
+        def make(results: Arrays) -> Verdict | NotAssessed:
+            ratio = np.abs(results["peak_rotation"].reshape(shape)) / angle.reshape(-1, len(DIRECTIONS), 1)
+            outcome = results["outcome"].reshape(shape)
+            return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
+
+        return ObjectHistories(item, tuple(one for own in models for one in own), len(models), make)
+
+    @cached_property
+    def order(self) -> IntArray:
+        """The motions of one body of an object of approximate sizes after those of another."""
+        return np.argsort(np.arange(len(self.hazard.motions)) % STRATA, kind="stable")
+
+    @cached_property
+    def ordered(self) -> MotionList:
+        """The motions in this order."""
+        return MotionList([self.hazard.motions[k] for k in self.order])
+
+    def check_any(self, items: Sequence[Any], refused: Sequence[NotAssessed]) -> None:
+        """Refuse an inventory of which no object can be assessed."""
+        if not items:
+            first = min([*self.inventory.not_assessed, *refused], key=lambda each: each.row)
+            raise InvalidValueError(f"no object can be assessed; line {first.row}: {first.reason}")
 
     def _verdict(
         self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,

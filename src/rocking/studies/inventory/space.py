@@ -1,6 +1,6 @@
 """An object in three dimensions: its histories on the vertices of its hull, and what would help it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -39,20 +39,26 @@ class SpatialObject:
         """Return outcomes, and peak rotations over the slenderness angle, of some motions and both directions."""
         which = np.arange(len(self.hazard.motions)) if which is None else which
         outcome, ratio = np.zeros((len(which), 2), np.int64), np.zeros((len(which), 2))
+        for own, rows in self.histories(restitution, which, scale):
+            found = results_of(rows, threads=self.threads, progress=self.progress)
+            outcome[own] = found["outcome"].reshape(-1, 2)
+            ratio[own] = np.abs(found["peak_rotation"]).reshape(-1, 2) / rows.sides["alpha_right"].item()
+        return outcome, ratio
+
+    def histories(self, restitution: Any, which: IntArray, scale: float = 1.0) -> Iterator[tuple[IntArray, Product]]:
+        """Yield the histories of each body, over motion and direction, and which of the motions are its own."""
+        word = getattr(restitution, "name", restitution)
         for k, body in enumerate(self.bodies):
             own = np.flatnonzero(self.number[which] == k)
             if not own.size:
                 continue
-            shaking = [components_of(self.hazard.motions[which[one]]) for one in own]
-            motions = MotionList([(x, None, up) for x, _, up in shaking] + [(None, x, up) for x, _, up in shaking])
-            word = getattr(restitution, "name", restitution)
+            shaking = [components_of(self.hazard.motions[one]) for one in which[own]]
+            motions = MotionList([turned for x, _, up in shaking for turned in ((x, None, up), (None, x, up))])
             parameters = RockingParameters.of_body(body, word, self.gravity, friction=self.friction)
+            law: Any = parameters.law
+            _ = law.on_hull  # what it cannot be for this body is said here, before anything is computed
             sides = {name: values[None] for name, values in sides_of([parameters]).items()}
-            rows = Product(motions, sides, np.array([scale]), law=parameters.law, settings=self.settings)
-            found = results_of(rows, threads=self.threads, progress=self.progress)
-            outcome[own] = found["outcome"].reshape(2, -1).T
-            ratio[own] = np.abs(found["peak_rotation"]).reshape(2, -1).T / parameters.right.slenderness_angle
-        return outcome, ratio
+            yield own, Product(motions, sides, np.array([scale]), law=law, settings=self.settings)
 
     def moves(self) -> list[float]:
         """Return which steady acceleration along x, and along y, lifts it over either side, or makes it slide."""

@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import HistoriesTable
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, inventory_of
-from rocking.studies.histories import Product
+from rocking.studies.histories import JoinedHistories, Product
 from rocking.studies.inventory.assessment import assessment_plan
 from rocking.studies.inventory.objects import DIRECTIONS
 from rocking.studies.motion_sets import MotionList
@@ -89,34 +89,29 @@ def product_study(problem: StudyProblem) -> Study:
 
 
 def inventory_study(problem: StudyProblem) -> Study:
-    """Return the study of an inventory.
+    """Return the study of an inventory: over motion, object, direction and the model of impact, those asked beside it.
 
-    Returns over motion, object, direction and the model of impact: the one asked for and those beside it.
+    With friction or body files over object, model of impact, motion and direction.
     """
     objects, motions, limits, restitution = inventory_of(problem)
     hazard = motions(None)
     with located("inventory"):
-        product, finish, items = assessment_plan(
+        histories, finish, dims, items = assessment_plan(
             objects, hazard, restitution=restitution, thresholds=limits, gravity=problem.settings.gravity,
             friction=problem.settings.friction,
         )  # fmt: skip
     names = ("asked", "compared") if restitution is not None else ("calibrated", "housner", "ked")
-    dims = dict(
-        zip(
-            ("motion", "object", "direction", "restitution"),
-            (len(hazard.motions), len(items), 2, len(names)),
-            strict=True,
-        )
-    )
+    if isinstance(histories, JoinedHistories) and restitution is None:
+        names = ("calibrated; ked in three dimensions", *names[1:])
     coordinates = {
-        "motion": motions_along(product.motions),
+        "motion": motions_along(histories.motions),
         "object": labels_along("object", (item.name for item in items), "name of the object"),
         "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
         "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
         "restitution": labels_along("restitution", names, "model of impact"),
     }
     attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
-    return Study(product, dims, coordinates, attributes, assess=finish)
+    return Study(histories, dims, coordinates, attributes, assess=finish)
 
 
 def _product(problem: StudyProblem, bodies: Sequence[Body], scales: np.ndarray) -> tuple[Product, dict[str, Any]]:
