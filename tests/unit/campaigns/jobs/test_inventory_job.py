@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from campaign_jobs import flip
 
+from rocking import read_body, simulate
 from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
 from rocking.errors import InvalidValueError
@@ -74,7 +75,7 @@ def test_campaign_is_assess(job, tmp_path, chunk, how):
 def test_records_thresholds_and_gravity(job, records, tmp_path):
     """Records as they are, a coefficient, thresholds and another gravity stand for the arguments of `assess`."""
     old = 'synthetic = "firm-ground"\ncount = 12\nseed = 4\n'
-    path = job(5, old, 'records = "*.txt"\nunits = "m/s2"\n[restitution]\nvalue = 0.9\n[settings]\ngravity = 3.7\n')
+    path = job(5, old, 'records = "*.txt"\nunits = "m/s2"\n[restitution]\nvalue = 0.86\n[settings]\ngravity = 3.7\n')
     limits = 'pga = "0.1g"\nthresholds = { rocking = 0.1, overturning_red = 0.5 }\n'
     path.write_text(path.read_text().replace('pga = "0.3g"\n', limits))
     folder = JobFolder.create(tmp_path / "c", Job.read(path))
@@ -172,3 +173,67 @@ def test_gravity_reaches_the_equations():
     assert lifted == {9.80665: 5, 98.0665: 0}
     heavy = assess([vase], hazard, gravity=98.0665).verdicts[0].worse
     assert np.isclose(heavy.uplift_acceleration, 98.0665 * 0.2, rtol=1e-12)
+
+
+SOLID = 'units = "m"\n[[solid.part]]\nbox = { width = 0.3, depth = 0.5, height = 0.9 }\ndensity = 2000\n'
+MIXED = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,friction,body_file,units
+tall vase,20,24,100,55,,,
+chest,60,90,70,,0.35,,
+bust,,,,,,bust.toml,m
+mirror,75,?,160,,0.35,,
+"""
+SHORT = """[campaign]
+name = "objects"
+kind = "inventory"
+chunk = 7
+[inventory]
+objects = "objects.csv"
+[motions]
+records = "shaking*.csv"
+[restitution]
+"""
+
+
+@pytest.fixture
+def mixed(tmp_path):
+    """Write a list with bodies in space, two short records, and a job beside them; return the job and the hazard."""
+    (tmp_path / "bust.toml").write_text(SOLID)
+    (tmp_path / "objects.csv").write_text(MIXED, encoding="utf-8")
+    time, motions = 0.02 * np.arange(76), []
+    for k, (size, rate) in enumerate(((6.0, 14.0), (8.0, 9.0))):
+        path = tmp_path / f"shaking{k}.csv"
+        values = size * np.sin(rate * time) * np.exp(-2.0 * time)
+        rows = (f"{t:.2f},{a:.9f}" for t, a in zip(time, values, strict=True))
+        path.write_text("\n".join(["time [s],acceleration [m/s2]", *rows]))
+        motions.append(read_motion(path))
+    path = tmp_path / "short.toml"
+    path.write_text(f"{SHORT}value = 0.9\n")
+    return path, Hazard.of_records(motions)
+
+
+def test_bodies_in_space_beside_plane_ones(mixed, tmp_path):
+    """Objects with friction and of body files: from chunks that cut across them, the verdicts of `assess`."""
+    path, hazard = mixed
+    folder = JobFolder.create(tmp_path / "c", Job.read(path))
+    folder.run(workers=2, order_seed=3)
+    found = as_plain(assessment(folder))
+    assert found == wanted_of(path, hazard, restitution=0.9)
+    assert (len(found["objects"]), len(found["not_assessed"])) == (3, 1)
+    assert found != wanted_of(path, hazard, restitution=0.9, friction=0.1)
+
+
+def test_rows_in_space_are_single_histories(mixed, tmp_path):
+    """Along its width an object in space is the history of `simulate`; along its depth it is another one."""
+    xr = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    path, hazard = mixed
+    path.write_text(f"{SHORT}value = 0.86\n[settings]\nfriction = 0.9\n")
+    folder = JobFolder.create(tmp_path / "c", Job.read(path))
+    folder.run(workers=1)
+    whole = xr.load_dataset(export(folder, tmp_path / "all.nc"), engine="h5netcdf")
+    assert whole["object"].values.tolist() == ["tall vase", "chest", "bust"]
+    found = whole.sel(restitution="asked").isel(object=2, motion=1)
+    one = simulate(read_body(tmp_path / "bust.toml"), hazard.motions[1], 0.86, friction=0.9)
+    assert int(found["outcome"].sel(direction="width")) == one.outcome.code
+    assert float(found["peak_rotation"].sel(direction="width")) == pytest.approx(one.peak_tilt, rel=1e-5)
+    assert float(found["peak_rotation"].sel(direction="depth")) < 0.5 * one.peak_tilt
