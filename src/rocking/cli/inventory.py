@@ -127,7 +127,7 @@ def _problem(context: typer.Context) -> "StudyProblem":
         synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
         if synthetic is not None and not {"pga", "pgv"} & set(table):
             raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
-        motions = [arguments.motion_table(word) for word in named] if synthetic is None else [synthetic]
+        motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
         if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
             raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
         tables: dict[str, Any] = {"inventory": table}

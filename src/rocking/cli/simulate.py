@@ -111,13 +111,8 @@ def simulate(
         problem = _problem(arguments)
     if problem.free is not None and isinstance(problem.body, Body):
         _check_share(problem.body, problem.free, "response.free" if file else "--free")
-    if problem.mechanics not in {"rocking", "space with friction"} and "animation" in exports.names:
-        raise InvalidValueError(
-            "an animation is of pure rocking in the plane, or of a body in space with friction, and this is "
-            f"{problem.mechanics}"
-        )
-    if problem.mechanics == "rocking" and any(path.suffix.lower() == ".glb" for _, path in exports.files):
-        raise InvalidValueError(".glb is of a body in space with friction; an animation in the plane is .html or .gif")
+    if problem.mechanics != "space with friction" and any(path.suffix.lower() == ".glb" for _, path in exports.files):
+        raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
     deliver(answer, exports, as_json=as_json)
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.response import HullResponse
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.plots.animation_scene import DrawnShape, HullScene, HullStage, Scene, scene_of, scene_until
+from rocking.plots.animation_hull import HullScene, HullStage, InSpace, until, words_of
+from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_until
 from rocking.plots.body import closed
 from rocking.plots.response import motion_curves, over_slenderness
 from rocking.plots.style import DASHED, GREY, INK, PALE, in_journal_style
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
-NOT_MOVED = "an animation is of pure rocking in the plane, or of a body in space with friction"
+NOT_MOVED = "an animation is of what simulate or free_rocking returned"
 MOST_FRAMES = 500  # frames of a GIF: more would make a file that no page wants to carry
 
 _LIFTED = "The vertical motion of the ground counts in the forces but is not drawn."
@@ -48,7 +48,7 @@ _ROTATION, _IMPACT = "#0072B2", "#D55E00"
 _FLASH = 0.3  # how long an impact is seen, in seconds of playing
 
 
-def animate_html(response: Response | HullResponse, path: str | Path) -> Path:
+def animate_html(response: Response | InSpace, path: str | Path) -> Path:
     """Write a web page in which the body rocks: play, slow down, step, drag to any instant.
 
     The page is one file: no network, no other script; it declares and keeps a content security policy that allows
@@ -56,8 +56,8 @@ def animate_html(response: Response | HullResponse, path: str | Path) -> Path:
 
     Parameters
     ----------
-    response : Response or HullResponse
-        What `simulate` or `free_rocking` returned of a plane body, or of one in space with friction.
+    response : Response, ContactResponse, SpatialResponse or HullResponse
+        What `simulate` or `free_rocking` returned; of bodies in space, and of plane ones that slide, the convex hull.
     path : str or Path
         File ending in .html.
 
@@ -80,9 +80,9 @@ def animate_html(response: Response | HullResponse, path: str | Path) -> Path:
     return target
 
 
-def page(response: Response | HullResponse) -> str:
+def page(response: Response | InSpace) -> str:
     """Return the web page of a response."""
-    if isinstance(response, HullResponse):
+    if isinstance(response, InSpace):
         return _page_in_space(response)
     motion = response.motion
     about = [
@@ -106,14 +106,8 @@ def page(response: Response | HullResponse) -> str:
     )
 
 
-def _page_in_space(response: HullResponse) -> str:
+def _page_in_space(response: InSpace) -> str:
     scene = HullScene.of(response)
-    about = [
-        *(f"{axis}: {name}" for axis, name in zip("xyz", response.names, strict=True) if name != "none"),
-        *([f"{response.scale:g} times"] if response.scale != 1.0 else []),
-        f"restitution {response.restitution}",
-        f"friction {response.settings.friction:g}",
-    ]
     packed = {name: _packed(getattr(scene, name)) for name in ("quaternion", "centre", "tilt")}
     data = {
         **packed,
@@ -123,9 +117,11 @@ def _page_in_space(response: HullResponse) -> str:
         "facets": scene.facets,
         "middle": scene.middle.tolist(),
         "reach": scene.reach,
+        "turned": scene.turned,
     }
     picture = html.escape(f"Animation of a body in space on its ground: {response.summary}.")
-    return _assembled("animation_hull.html", _part("animation_hull.js"), response.summary, about, data, picture=picture)
+    script, about = _part("animation_hull.js"), words_of(response)
+    return _assembled("animation_hull.html", script, response.summary, about, data, picture=picture)
 
 
 def _assembled(form: str, script: str, summary: str, about: list[str], data: dict[str, Any], **texts: Any) -> str:
@@ -172,7 +168,7 @@ def page_data(response: Response) -> dict[str, Any]:
 
 
 def animate_gif(
-    response: Response | HullResponse,
+    response: Response | InSpace,
     path: str | Path,
     fps: float = 25.0,
     speed: float = 1.0,
@@ -182,8 +178,8 @@ def animate_gif(
 
     Parameters
     ----------
-    response : Response or HullResponse
-        What `simulate` or `free_rocking` returned of a plane body, or of one in space with friction.
+    response : Response, ContactResponse, SpatialResponse or HullResponse
+        What `simulate` or `free_rocking` returned; of bodies in space, and of plane ones that slide, the convex hull.
     path : str or Path
         File ending in .gif.
     fps : float
@@ -222,16 +218,16 @@ def animate_gif(
     return target
 
 
-def slowest_speed(response: Response | HullResponse, fps: float = 25.0) -> float:
+def slowest_speed(response: Response | InSpace, fps: float = 25.0) -> float:
     """Return the slowest speed, to two digits, at which a GIF of a response has few enough frames; at least 1 [-]."""
     lasts = round(100.0 / fps) / 100.0
     return max(1.0, float(np.ceil(100.0 * _until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
 
-def _until(response: Response | HullResponse) -> float:
+def _until(response: Response | InSpace) -> float:
     """Return the time up to which a response is shown [s], refusing those of which nothing moves in pictures yet."""
-    if isinstance(response, HullResponse):
-        return response.end
+    if isinstance(response, InSpace):
+        return until(response)
     if not isinstance(response, Response):
         raise InvalidValueError(NOT_MOVED)
     return scene_until(response)
@@ -265,7 +261,7 @@ def _short(points: FloatArray) -> list[list[float]]:
 
 @in_journal_style
 def _film(
-    response: Response | HullResponse,
+    response: Response | InSpace,
     path: Path,
     lasts: float,
     step: float,
@@ -275,7 +271,7 @@ def _film(
     from matplotlib.animation import PillowWriter
 
     stage: Any = (
-        HullStage(response, step) if isinstance(response, HullResponse) else _Stage(response, scene_of(response, step))
+        HullStage(response, step) if isinstance(response, InSpace) else _Stage(response, scene_of(response, step))
     )
     # the writer cuts 1000 / fps down to whole milliseconds; it takes any number, though it is declared for whole ones
     rate: Any = (1.0 - 1e-9) / lasts

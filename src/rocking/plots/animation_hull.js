@@ -5,7 +5,7 @@ const [attitude, centre, tilt] = [data.quaternion, data.centre, data.tilt].map(u
 const last = tilt.length - 1;
 const part = (name) => document.getElementById(name);
 const [canvas, slider, play, speed] = ["scene", "time", "play", "speed"].map(part);
-let time = 0, before = null, turned = 0.6, raised = 0.35;
+let time = 0, before = null, turned = data.turned, raised = 0.35;
 slider.max = data.end;
 
 function pose() {

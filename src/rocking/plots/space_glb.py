@@ -12,7 +12,7 @@ from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.surfaces import TriangleSurface
 from rocking.conventions import FloatArray
 from rocking.dynamics.hull.response import HullResponse
-from rocking.plots.animation_scene import HullScene
+from rocking.plots.animation_hull import HullScene
 from rocking.version import SOFTWARE
 
 _TYPES = {np.dtype(np.float32): 5126, np.dtype(np.uint32): 5125, np.dtype(np.uint8): 5121}

@@ -40,6 +40,10 @@ class StudyProblem:
             axes = axes_of(document.map) if document.map is not None else ()
             stated |= friction_beside(axes, stated.get("friction"))
         turned = any(table.y is not None for table in document.motions) or any(axis.name == "azimuth" for axis in axes)
+        if turned and document.spectrum is not None:
+            from rocking.spec.document import OWN_BLOCKS
+
+            raise InvalidValueError(f"motions: its blocks move along x and z, not along y; {OWN_BLOCKS}")
         bodies = []
         for k, table in enumerate(document.body or []):
             with located("body" if len(document.body or []) == 1 else f"body[{k}]"):

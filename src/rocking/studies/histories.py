@@ -400,12 +400,13 @@ class JoinedHistories(Histories):
         return results
 
     def content(self) -> dict[str, Any]:
-        """Return how many parts there are, and the hash of what makes them beside the motions."""
+        """Return how many parts there are, and the hash of what makes them."""
         parts = [
             {"count": part.count, "content": part.content(), "law": described_law(part.law)} | part.settings.stated
             for part in self.parts
         ]
-        text = json.dumps(parts, sort_keys=True, allow_nan=False)
+        motions = [each.description() for each in dict.fromkeys(part.motions for part in self.parts)]
+        text = json.dumps([parts, motions], sort_keys=True, allow_nan=False)
         return {"parts": len(parts), "sha256": hashlib.sha256(text.encode()).hexdigest()}
 
 

@@ -105,7 +105,6 @@ def test_the_warning_names_the_option(run):
 REFUSED = {
     "linear": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.linear=true"], "so it takes no linear"),
     "engine": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.engine=fast"], "so it takes no engine"),
-    "animation": ([*SQUAT, SINE, "--friction", "1", "--out", "a.html"], "an animation is of pure rocking in the plane"),
     "friction": ([*SQUAT, SINE, "--friction", "-1"], "--friction must be a number > 0"),
     "friction nan": ([*SQUAT, SINE, "--friction", "nan"], "--friction must be a finite number"),
     "bounce": ([*SQUAT, SINE, "--friction", "1", "--bounce", "1"], "bounce must be in [0, 1)"),

@@ -149,7 +149,6 @@ REFUSED = {
     "bounce": ([SINE, "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
     "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),
     "engine": ([SINE, "--set", "settings.engine=fast"], "so it takes no engine"),
-    "animation": ([SINE, "--out", "a.gif"], "an animation is of pure rocking in the plane"),
     "model": ([SINE, "--restitution", "best"], "'best"),
     "plane model": ([SINE, "--restitution", "plastic-winkler"], "plastic-winkler"),
     "creates energy": ([SINE, "--restitution", "1.1"], "restitution must be in [0, 1], got 1.1"),

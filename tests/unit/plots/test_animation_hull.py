@@ -1,4 +1,4 @@
-"""Animations of bodies in space with friction: the page and the film hold the poses of the response."""
+"""Animations of hulls, in space or sliding in a plane: the page and the film hold the poses of the response."""
 
 import base64
 import json
@@ -12,6 +12,7 @@ from PIL import Image
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
+from rocking.dynamics import SpatialBody
 from rocking.dynamics.space.attitude import matrix
 from rocking.errors import InvalidValueError
 from rocking.plots.animation import page
@@ -64,7 +65,7 @@ def test_the_film(tmp_path):
 
 
 def test_the_command(tmp_path):
-    """--out of a page is taken for a body in space with friction, and refused in a sentence without."""
+    """--out of a page is taken for a body in space, with friction and without."""
     body = "[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 1.2 }\ndensity = 2000\n"
     (tmp_path / "body.toml").write_text(f'units = "m"\n{body}')
     words = ["simulate", str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5"]
@@ -75,15 +76,43 @@ def test_the_command(tmp_path):
     assert "friction 0.2" in (tmp_path / "a.html").read_text()
     with pytest.raises(SystemExit) as stop:
         main([*words, *out])
-    assert stop.value.code
+    assert not stop.value.code
+    assert "friction" not in (tmp_path / "a.html").read_text()
 
 
-def test_other_mechanics_are_refused(tmp_path):
-    """What slides in the plane, or turns on a flat base, has no animation yet, and says so."""
-    for response in (
-        rk.simulate(rk.Block(width=0.5, height=2.0), PULSE, friction=0.5),
-        rk.simulate(STATUE, PULSE.scaled(0.1), "housner"),
-    ):
-        for name in ("a.html", "a.gif"):
-            with pytest.raises(InvalidValueError, match="an animation is of pure rocking in the plane, or of a body"):
-                response.animate(tmp_path / name)
+LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.4, 0.0), (0.6, 1.5), (0.1, 1.5)], 2000.0)], depth=0.8)
+
+
+@pytest.mark.parametrize(
+    ("response", "turns"),
+    [
+        (lambda: rk.simulate(STATUE, {"x": PULSE, "y": PULSE.scaled(0.6)}, "housner"), 1e-2),
+        (lambda: rk.simulate(SpatialBody.cylinder(0.4, 1.6), {"x": PULSE, "y": PULSE.scaled(0.6)}, "housner"), 1e-2),
+        (lambda: rk.simulate(LEANING, PULSE, friction=0.9), 0.5),
+        (lambda: rk.simulate(LEANING, PULSE, friction=0.1), 0.0),
+    ],
+    ids=["flat base", "rim", "plane that rocks", "plane that slides"],
+)
+def test_what_is_drawn_stands_on_the_ground(response, turns):
+    """Bodies on flat bases and plane ones with friction: the lowest vertex drawn is on the ground, turned or not."""
+    scene = HullScene.of(response())
+    turned = np.array([matrix(q) for q in scene.quaternion])
+    low = (scene.points @ turned.transpose(0, 2, 1)).min(axis=1)[:, 2] + scene.centre[:, 2]
+    assert np.abs(low).max() < 2e-4 * scene.reach  # corners of a rim are 360
+    assert scene.tilt.max() >= turns
+    assert np.ptp(scene.centre[:, 0]) > 1e-3
+    wrong = low + scene.centre[::-1, 2] - scene.centre[:, 2]
+    assert turns == 0.0 or np.abs(wrong).max() > 1e-3 * scene.reach
+
+
+def test_every_response_has_an_animation(tmp_path):
+    """Rocking on a flat base, and sliding in the plane: a page that says what moves it, and a film; mass points not."""
+    space = rk.simulate(STATUE, PULSE, "housner")
+    plane = rk.simulate(LEANING, PULSE, friction=0.3)
+    for response, words in ((space, "restitution housner-3d"), (plane, "friction 0.3")):
+        assert words in response.animate(tmp_path / "a.html").read_text(encoding="utf-8")
+        film = response.animate(tmp_path / "a.gif", speed=10.0)
+        assert film.read_bytes().startswith(b"GIF8")
+    points = rk.MassPoints([[-0.1, 1.0], [0.2, 0.8]], [10.0, 20.0], feet=(-0.2, 0.3))
+    with pytest.raises(InvalidValueError, match="mass points have no outline"):
+        rk.simulate(points, PULSE, None, friction=0.2).animate(tmp_path / "b.html")

@@ -40,7 +40,7 @@ _OF_DIRECTIONS = {
 
 def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     objects: str | Path | Inventory | Sequence[InventoryObject],
-    motions: str | Hazard | GroundMotion | Sequence[GroundMotion] = FAMILY,
+    motions: str | Hazard | GroundMotion | Mapping[str, GroundMotion] | Sequence[Any] = FAMILY,
     restitution: Any = None,
     *,
     pga: str | float | None = None,
@@ -61,8 +61,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         A list as .xlsx, .ods or CSV with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, in
         English, German, Italian, Spanish, Greek, Chinese or Turkish; or the objects. Scans and other bodies in space
         are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
-    motions : str, Hazard, GroundMotion or sequence of GroundMotion
-        The family of synthetic motions, or records; each acts in either direction by itself.
+    motions : str, Hazard, GroundMotion, mapping, or a sequence of them
+        The family of synthetic motions, or records; each acts in either direction by itself. Of records by axis, as for
+        `simulate`, the one with the largest peak does, and in three dimensions the other horizontal one across it.
     restitution : str, RestitutionModel, float or mapping
         Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for). The calibrated
         default if not given, drawn with its scatter for every motion, with both beside it; in three dimensions KED.
@@ -136,7 +137,7 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
         if level is not None:
             raise InvalidValueError("a hazard is scaled already: leave pga and pgv out")
         return motions
-    return Hazard.of_records([motions] if isinstance(motions, GroundMotion) else motions, level)
+    return Hazard.of_records([motions] if isinstance(motions, (GroundMotion, Mapping)) else motions, level)
 
 
 def dataset_of(assessment: Assessment) -> "xr.Dataset":

@@ -7,9 +7,11 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
+from rocking.dynamics._simulate import in_plane, together
 from rocking.errors import InvalidValueError
 from rocking.language import language
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.processing import scaled_to
 from rocking.motions.synthetic.families import Family
@@ -73,6 +75,8 @@ class Hazard:
     level: IntensityLevel | None  # to what they are scaled; None for records as they are
     source: str  # where they come from, in words
     description: dict[str, Any]  # the same as plain values
+    # horizontal components at right angles to the motions, which objects in space feel too; None where there is none
+    across: tuple[GroundMotion | None, ...] = ()
 
     @classmethod
     def of_family(
@@ -98,17 +102,22 @@ class Hazard:
         return cls(tuple(shaken), level, words, motions.description())
 
     @classmethod
-    def of_records(cls, records: Sequence[GroundMotion], level: IntensityLevel | None = None) -> "Hazard":
-        """Return records, each scaled with its vertical component if a level is given."""
-        checked = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
+    def of_records(cls, records: Sequence[Any], level: IntensityLevel | None = None) -> "Hazard":
+        """Return records, each scaled with its other components if a level is given, which is of the leading one."""
+        pairs = [_apart(record) for record in records]
+        checked = [checked_motion(record, f"records[{k}]") for k, (record, _) in enumerate(pairs)]
         if not 1 <= len(checked) <= MOST_MOTIONS:
             raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(checked)}")
         scaled = [_scaled(record, level) for record in checked]
+        across = tuple(
+            other if other is None or new is old else other.scaled(new.peak / old.peak)
+            for (_, other), old, new in zip(pairs, checked, scaled, strict=True)
+        )
         how = "as recorded" if level is None else f"each scaled to {level}"
         names = [record.name for record in checked]
         words = f"{len(checked)} record{'s' if len(checked) > 1 else ''}, {how}"
         plain = {"kind": "records", "names": names, "provenance": [list(one.provenance) for one in scaled]}
-        return cls(tuple(scaled), level, words, plain)
+        return cls(tuple(scaled), level, words, plain, across if any(each is not None for each in across) else ())
 
     @property
     def synthetic(self) -> bool:
@@ -138,6 +147,17 @@ class Hazard:
         """Return the least and the most of the peak ground velocity [m/s]."""
         peaks = [peak_ground_velocity(motion) for motion in self.motions]
         return min(peaks), max(peaks)
+
+
+def _apart(record: Any) -> tuple[Any, GroundMotion | None]:
+    """Return the leading horizontal component with the vertical one, and what is a quarter turn from it towards y."""
+    motion = together(record)
+    if not isinstance(motion, Components):
+        return motion, None
+    x, y, z = motion.parts
+    if y is not None and (x is None or y.peak > x.peak):
+        x, y = y, None if x is None else x.scaled(-1.0)
+    return in_plane((x, None, z)), None if y is None else checked_motion(y, "motion along y")
 
 
 def _scaled(record: GroundMotion, level: IntensityLevel | None) -> GroundMotion:

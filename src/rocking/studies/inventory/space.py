@@ -52,13 +52,18 @@ class SpatialObject:
             own = np.flatnonzero(self.number[which] == k)
             if not own.size:
                 continue
-            shaking = [components_of(self.hazard.motions[one]) for one in which[own]]
-            motions = MotionList([turned for x, _, up in shaking for turned in ((x, None, up), (None, x, up))])
+            motions = MotionList([turned for one in which[own] for turned in self.turned(int(one))])
             parameters = RockingParameters.of_body(body, word, self.gravity, friction=self.friction)
             law: Any = parameters.law
             _ = law.on_hull  # what it cannot be for this body is said here, before anything is computed
             sides = {name: values[None] for name, values in sides_of([parameters]).items()}
             yield own, Product(motions, sides, np.array([scale]), law=law, settings=self.settings)
+
+    def turned(self, which: int) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
+        """Return a motion along the width, and a quarter turn from there along the depth."""
+        x, _, up = components_of(self.hazard.motions[which])
+        y = self.hazard.across[which] if self.hazard.across else None
+        return (x, y, up), (None if y is None else y.scaled(-1.0), x, up)
 
     def moves(self) -> list[float]:
         """Return which steady acceleration along x, and along y, lifts it over either side, or makes it slide."""
