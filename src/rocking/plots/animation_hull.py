@@ -72,12 +72,13 @@ def until(response: InSpace) -> float:
 def words_of(response: InSpace) -> list[str]:
     """Return what moves the body, and what holds and stops it."""
     if isinstance(response, ContactResponse):
-        moved = "free rocking, the ground at rest" if response.motion is None else response.motion.name
+        motion = response.motion
+        shaken = "free rocking, the ground at rest" if motion is None else motion.name
         law, r = response.law, response.law.restitution
         value = (
             "complementarity" if r is None else f"{r[1]:.6g}" if r[0] == r[1] else f"left {r[0]:.6g}, right {r[1]:.6g}"
         )
-        return [moved, *_times(response.scale), f"restitution {value}", f"friction {law.friction:g}"]
+        return [shaken, *_times(response.scale), f"restitution {value}", f"friction {law.friction:g}"]
     moved = [f"{axis}: {name}" for axis, name in zip("xyz", response.names, strict=True) if name != "none"]
     if isinstance(response, SpatialResponse):
         return [*moved, f"restitution {response.law.label}"]

@@ -199,7 +199,7 @@ def inventory_of(
                     motions.family, level, count=motions.count, seed=motions.seed, progress=progress
                 )
             records = [motions[k] for k in range(len(motions))]
-            return Hazard.of_records(records, level)  # type: ignore[arg-type]  # pulses are refused by the document
+            return Hazard.of_records(records, level)  # pulses are refused by the document
 
     return objects, hazard, limits, stated
 
