@@ -6,8 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from browser_pages import DECISIVE, GENTLE, MODELS, PHONE, card, link, pasted, response
+from browser_pages import DECISIVE, GENTLE, MODELS, PHONE, card, link, pasted, response, saved
 from playwright.sync_api import expect
 
 from rocking.bodies import Block
@@ -204,3 +205,68 @@ def test_many_impacts_scroll_in_a_box(answered: Callable[..., Any]) -> None:
     box.evaluate("node => node.scrollTo(0, node.scrollHeight)")
     head = table.locator("thead th").first.bounding_box()
     assert abs(head["y"] - box.bounding_box()["y"]) < 3.0
+
+
+def test_one_time_for_the_body_and_every_figure(answered: Callable[..., Any]) -> None:
+    """What is sought in the animation is read in every figure, and a pointer on a figure moves the body there."""
+    page = answered()
+    readouts = page.get_by_test_id("response-charts").locator(".chart-readout")
+    page.get_by_test_id("scene-time").focus()
+    for key in ("Home", *("PageUp",) * 3):
+        page.keyboard.press(key)
+    now = float(page.get_by_test_id("scene-now").inner_text().split()[0])
+    assert now > 1.0
+    told = [float(text.split()[1]) for text in readouts.all_inner_texts()]
+    assert len(told) == 6
+    assert told == pytest.approx([now] * 6, abs=0.02)  # each names its nearest sample
+    over = page.get_by_test_id("chart-force").locator(".u-over")
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 40)
+    expect(page.get_by_test_id("scene-now")).not_to_have_text(f"{now:.3f} s")
+    there = float(page.get_by_test_id("scene-now").inner_text().split()[0])
+    told = [float(text.split()[1]) for text in readouts.all_inner_texts()]
+    assert told == pytest.approx([there] * 6, abs=0.02)
+
+
+def test_impacts_are_ticks_on_the_axis(answered: Callable[..., Any]) -> None:
+    """A figure has a short tick for each impact of the model that is looked at, where it lies in time."""
+    page = answered()
+    script = "text => new DOMParser().parseFromString(text, 'image/svg+xml').documentElement.outerHTML"
+    text = Path(saved(page, "SVG", "chart Angular velocity").path()).read_text(encoding="utf-8").split("\n", 1)[1]
+    lines = re.findall(r"<line ([^>]*)>", page.evaluate(script, text).partition("clip-path")[2])
+    found = [dict(re.findall(r'(\w+)="([^"]*)"', line)) for line in lines]
+    ticks = [one for one in found if one["x1"] == one["x2"] and abs(float(one["y1"]) - float(one["y2"])) < 8.0]
+    impacts = response(GENTLE, "ked").impacts["time"]
+    assert len(ticks) == impacts.size
+    places = [float(one["x1"]) for one in ticks]
+    assert np.corrcoef(places, impacts)[0, 1] > 1.0 - 1e-9
+
+
+def test_looking_into_a_part_and_back(answered: Callable[..., Any]) -> None:
+    """All figures look into the part that was dragged across in one; a button shows all of it again."""
+    page = answered()
+    charts = page.get_by_test_id("response-charts").locator("..")
+    over = page.get_by_test_id("chart-energy").locator(".u-over")
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 50, steps=3)
+    page.mouse.up()
+    expect(charts).to_have_attribute("data-window", re.compile(r"\d \d"))
+    page.get_by_role("button", name="Show all of the time").click()
+    expect(charts).to_have_attribute("data-window", "")
+
+
+@pytest.mark.parametrize("width", [320, 768, 1024, 1920, 3840])
+def test_the_stage_uses_the_width(answered: Callable[..., Any], width: int) -> None:
+    """No bar below the window; results stand before what is turned where it is narrow; a wide screen is used."""
+    page = answered(viewport={"width": width, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    figures, controls = (page.locator(each).bounding_box() for each in (".stage-figures", ".response-controls"))
+    if width < 1024:
+        assert controls["y"] > figures["y"] + figures["height"]
+    else:
+        assert controls["x"] > figures["x"] + figures["width"]
+        assert controls["x"] + controls["width"] > 0.96 * width

@@ -6,15 +6,19 @@ import { lineChart } from "/charts/line.js";
 /** One time of several charts: a pointer on one is told to `onInstant` and shown on all, `onZoom` when one is looked into. */
 export const createTime = (onInstant, onZoom) => {
   const charts = new Set();
-  const point = (instant, but = null) => charts.forEach((each) => each !== but && each.point(instant));
+  let leading = null; // the chart under the pointer
+  const point = (instant) => charts.forEach((each) => each !== leading && each.point(instant));
   return {
-    point,
+    /** Shows an instant that is played or sought elsewhere. */
+    show: (instant) => leading || point(instant),
     onZoom,
     add: (chart) => {
       charts.add(chart);
       chart.setCursorHook((_, instant) => {
-        point(instant, chart);
+        leading = chart;
+        point(instant);
         onInstant?.(instant);
+        leading = null;
       });
       return () => charts.delete(chart);
     },

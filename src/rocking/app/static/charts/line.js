@@ -7,7 +7,7 @@ import { axes, colour, onTheme } from "/charts/style.js";
 import { TICK, vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
-import { number, pretty } from "/app/format.js";
+import { number, pretty, quantity } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
 
 /** Draw curves over one abscissa; see the returned object for what it can do. */
@@ -24,7 +24,8 @@ export const lineChart = (container, options) => {
   let zoomed = null;
   const table = chartTable(options, () => data);
   const vector = () => vectorOf(plot, options, data, marks);
-  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector, "chart", () => csvOf(options, data))));
+  const csv = () => csvOf(options, data);
+  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector, "chart", csv)));
 
   const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
   stage.after(shown);
@@ -90,7 +91,7 @@ export const lineChart = (container, options) => {
     /** Puts the cursor at an instant that is shown elsewhere; nobody else is told. */
     point: (instant) => {
       const left = plot.valToPos(instant, "x");
-      plot.setCursor({ left: left <= plot.over.clientWidth ? left : -10, top: 0 }, false, false);
+      plot.setCursor({ left: left * devicePixelRatio <= plot.bbox.width ? left : -10, top: -10 }, false, false);
       readout(plot);
     },
     resize,
@@ -141,8 +142,8 @@ const legendKey = ({ colour: paint, dash, points, width }) =>
   dashKey({ colour: paint, dash, dots: Boolean(points) && width === 0 });
 
 const words = ({ x, y, series }, [at, ...values]) =>
-  [`${x.label} ${number(at)} ${pretty(x.unit ?? "")}`]
-    .concat(values.map((value, index) => `${series[index].label} ${number(value)} ${pretty(y.unit ?? "")}`))
+  [`${x.label} ${quantity(at, x.unit)}`]
+    .concat(values.map((value, index) => `${series[index].label} ${quantity(value, y.unit)}`))
     .join(" \u00b7 ");
 
 const summary = ({ title, x, y, series }, [xs, ...columns]) => {

@@ -12,7 +12,8 @@ const READOUT_MS = 66;
 
 /** A rocking body that one can play, slow down and scrub. */
 export class Player {
-  constructor() {
+  constructor(onInstant = () => {}) {
+    this.onInstant = onInstant;
     this.clock = new Clock();
     this.touched = false;
     this.lead = 0;
@@ -114,6 +115,7 @@ export class Player {
     this.clock.tick(stamp);
     this.stage.draw(this.clock.now, this.clock.speed);
     this.strip.draw(this.clock.now);
+    this.onInstant(this.clock.now);
     if (stamp - this.told > READOUT_MS || !this.clock.running) {
       this.told = stamp;
       this.tell();
@@ -140,6 +142,7 @@ export class Player {
     if (!this.play) return;
     this.stage.draw(this.clock.now, this.clock.speed);
     this.strip.draw(this.clock.now);
+    this.onInstant(this.clock.now);
     this.tell();
   }
 

@@ -35,11 +35,12 @@ export const createAnswer = (app, name, keys, question) => {
     ask,
     /** Ask again for the part of the time that the figures show; null shows all of it. */
     look: async (window) => {
-      if (!window) return (part.value = null);
       const whole = answer.value;
+      part.value = window && { window, answers: [] };
+      if (!window) return undefined;
       try {
         const found = await app.latest(`${name}-part`, "response", { ...question(), window });
-        if (whole === answer.value) part.value = { window, answers: found.answers };
+        if (whole === answer.value && part.value?.window === window) part.value = { window, answers: found.answers };
       } catch (error) {
         if (!app.superseded(error)) app.say(error.message, "error");
       }

@@ -3,14 +3,7 @@
 import { html, useEffect, useRef } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { useSignal } from "/questions/parts.js";
-import { styleOf, wordsOf } from "/views/response-labels.js";
-
-/** A short line in the colour and the dash of a restitution. */
-export const Swatch = ({ label }) => {
-  const { colour, dash = [] } = styleOf(label);
-  return html`<svg class="dash-key" width="34" height="10" viewBox="0 0 34 10" aria-hidden="true" focusable="false">
-    <path d="M0 5H34" fill="none" stroke=${colour} stroke-width="2.5" stroke-dasharray=${dash.join(" ") || null} /></svg>`;
-};
+import { wordsOf } from "/views/response-labels.js";
 
 const familyOf = (label) => label.split("*").at(-1).split(":")[0];
 

@@ -8,11 +8,11 @@ import { dotsOf } from "/charts/zoom.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
 import { useSignal } from "/questions/parts.js";
 import { createAnswer } from "/views/answer.js";
-import { About, Swatch } from "/views/compare-about.js";
+import { About } from "/views/compare-about.js";
 import { Studies } from "/views/compare-studies.js";
 import { Figures, marksWords } from "/views/response-figures.js";
-import { wordsOf } from "/views/response-labels.js";
-import { complete } from "/views/response-models.js";
+import { Swatch, wordsOf } from "/views/response-labels.js";
+import { complete } from "/views/response-controls.js";
 import { readRestitution } from "/views/response-restitution.js";
 import { Banner, inWords, outcomeOf, verdictKind } from "/views/response-words.js";
 
@@ -97,7 +97,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
           ${shown.length ? html`
             <div class="figures" data-testid="compare-figures">
               <${Figures} kinds=${["rotation", "velocity", "lost", "ground"]} answers=${shown} lead=${lead} ticked=${shown}
-                part=${part.value} friction=${0.5} time=${time} height=${240} /></div>
+                part=${part.value} friction=${0.5} time=${time} /></div>
             <p class="field-help">${marksWords(shown, "each model in its colour")}</p>
             ${part.value && html`<button type="button" class="button" onClick=${() => asked.look(null)}>Show all of the time</button>`}`
           : html`<p class="field-help">No model is shown: tick one.</p>`}

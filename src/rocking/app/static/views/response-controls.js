@@ -1,110 +1,108 @@
 /** What one may turn while the answer follows: strength, size, a free start, friction, models. */
-import { el } from "/app/dom.js";
-import { card, numberField, slider, switchField } from "/app/fields.js";
+import { html, useRef } from "/parts/preact.js";
+import { numberField, slider } from "/app/fields.js";
+import { Kept, Switch, told } from "/parts/made.js";
+import { Choice, useSignal } from "/questions/parts.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
-import { modelsOf } from "/views/response-models.js";
+import { look } from "/views/response-chosen.js";
+import { Swatch, wordsOf } from "/views/response-labels.js";
+import { readRestitution, writeRestitution } from "/views/response-restitution.js";
 import { canBeScaled, scaledBody } from "/views/response-size.js";
 
-const LEAN = 0.5;
+const [LEAN, USUAL] = [0.5, 0.9];
+const CALIBRATED = "The calibrated model is fitted to the published measurements; Impact shows its interval.";
 
-/** Returns the controls of the response. */
-export const controlsOf = (app) => new ResponseControls(app);
+/** Lets the body go from a lean, on ground that stands still. */
+export const lean = (app) => {
+  rememberMotion(app.inputs.get().motion);
+  app.inputs.set("response.free", LEAN);
+  app.inputs.set("motion", undefined);
+};
 
-class ResponseControls {
-  constructor(app) {
-    this.app = app;
-    this.models = modelsOf(app);
-    this.size = this.sizeSlider();
-    this.scale = this.scaleSlider();
-    this.free = switchField({
-      label: "Let it go from a lean instead",
-      help: "Free rocking: the ground stands still.",
-      onChange: (on) => (on ? this.lean() : this.shake()),
-    });
-    this.first = slider({
-      label: "First rotation over slenderness angle",
-      unit: "",
-      min: -0.99,
-      max: 0.99,
-      step: 0.01,
-      value: LEAN,
-      onInput: (value) => app.inputs.set("response.free", value || 0.01),
-    });
-    this.friction = numberField({
-      label: "Friction between body and ground",
-      value: 0.5,
-      min: 0.01,
-      max: 10,
-      step: 0.05,
-      help: "Rocking that takes more would slide.",
-      onChange: (value) => app.inputs.set("response.assumed_friction", value),
-    });
-    const turn = card("Turn and see", this.scale, this.size, this.free, this.first, this.friction);
-    const models = card("Models of the impact", this.models.element);
-    this.element = el("div", { class: "response-controls" }, turn, models);
-  }
-
-  sizeSlider() {
-    return slider({
-      label: "Size of the body, all lengths",
-      unit: "",
-      min: 0.2,
-      max: 5,
-      value: 1,
-      log: true,
-      help: "Against the body as it was drawn; larger ones are more stable.",
-      onInput: (factor) => this.resize(factor),
-    });
-  }
-
-  scaleSlider() {
-    return slider({
-      label: "Scale of the motion",
-      unit: "",
-      min: 0.1,
-      max: 10,
-      value: 1,
-      log: true,
-      onInput: (scale) => this.app.inputs.set("motion.scale", scale),
-    });
-  }
-
-  /** Changes every length of the body, from the body as it was when the slider stood at one. */
-  resize(factor) {
-    this.made = JSON.stringify(scaledBody(this.drawn, factor));
-    this.app.inputs.set("body", JSON.parse(this.made));
-  }
-
-  /** Lets the body go from a lean, on ground that stands still. */
-  lean() {
-    rememberMotion(this.app.inputs.get().motion);
-    this.app.inputs.set("response.free", LEAN);
-    this.app.inputs.set("motion", undefined);
-  }
-
-  /** Brings the motion back. */
-  shake() {
-    this.app.inputs.set("response.free", undefined);
-    this.app.inputs.set("motion", motionBefore());
-  }
-
-  /** Shows what the inputs say. */
-  show({ body, motion, restitution, response }) {
-    if (JSON.stringify(body) !== this.made) {
-      this.drawn = body;
-      this.made = JSON.stringify(body);
-      this.size.value = 1;
-    }
-    this.size.hidden = !canBeScaled(body);
-    const free = response?.free ?? null;
-    this.free.value = free !== null;
-    this.first.hidden = free === null;
-    if (free !== null && Math.abs(this.first.value - free) > 1e-9) this.first.value = free;
-    this.scale.hidden = free !== null || !motion;
-    if (motion && this.scale.value !== (motion.scale ?? 1)) this.scale.value = clipped(motion.scale ?? 1);
-    this.friction.value = response?.assumed_friction ?? 0.5;
-    this.models.show(restitution);
-  }
-}
+const shake = (app) => {
+  app.inputs.set("response.free", undefined);
+  app.inputs.set("motion", motionBefore());
+};
 
 const clipped = (value) => Math.min(Math.max(Math.abs(value), 0.1), 10);
+
+/** The controls of the response. */
+export const Controls = ({ app, inputs }) => {
+  const { body, motion, restitution, response } = inputs;
+  const free = response?.free ?? null;
+  return html`
+    <div class="response-controls">
+      <section class="card" aria-label="Turn and see"><h2>Turn and see</h2>
+        <${Kept} make=${slider} label="Scale of the motion" unit="" min=${0.1} max=${10} log hidden=${free !== null || !motion}
+          value=${clipped(motion?.scale ?? 1)} on=${(scale) => app.inputs.set("motion.scale", scale)} />
+        <${Size} app=${app} body=${body} />
+        <${Switch} label="Let it go from a lean instead" help="Free rocking: the ground stands still."
+          value=${free !== null} on=${(yes) => (yes ? lean(app) : shake(app))} />
+        <${Kept} make=${slider} label="First rotation over slenderness angle" unit="" min=${-0.99} max=${0.99} step=${0.01}
+          hidden=${free === null} value=${free ?? LEAN} on=${(value) => app.inputs.set("response.free", value || 0.01)} />
+        <${Kept} make=${numberField} label="Friction between body and ground" min=${0.01} max=${10} step=${0.05}
+          help="Rocking that takes more would slide." value=${response?.assumed_friction ?? 0.5}
+          on=${(value) => app.inputs.set("response.assumed_friction", value)} />
+      </section>
+      <section class="card" aria-label="Models of the impact"><h2>Models of the impact</h2>
+        <${Models} app=${app} table=${restitution} /></section>
+    </div>`;
+};
+
+/** Every length of the body, from the body as it was when the slider stood at one. */
+const Size = ({ app, body }) => {
+  const drawn = useRef(body);
+  const factor = useRef(1);
+  if (JSON.stringify(body) !== JSON.stringify(scaledBody(drawn.current, factor.current))) [drawn.current, factor.current] = [body, 1];
+  const resize = (next) => {
+    factor.current = next;
+    app.inputs.set("body", scaledBody(drawn.current, next));
+  };
+  return html`<${Kept} make=${slider} label="Size of the body, all lengths" unit="" min=${0.2} max=${5} log hidden=${!canBeScaled(body)}
+    help="Against the body as it was drawn; larger ones are more stable." value=${factor.current} on=${resize} />`;
+};
+
+/** Whether a model needs no number of one's own. */
+export const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
+
+/** Which models of the impact are compared, with a coefficient of one's own beside them. */
+const Models = ({ app, table }) => {
+  const state = readRestitution(table);
+  const { models, value, feet } = state;
+  const refused = useSignal(0);
+  const change = (changes) => {
+    const next = writeRestitution({ ...state, ...changes });
+    if (next) return app.inputs.set("restitution", next);
+    refused.value += 1;
+    return app.say("At least one model or coefficient is needed.", "warning");
+  };
+  const others = (label) => models.filter((one) => one !== label);
+  const lead = (label) => {
+    change({ models: [label, ...others(label)] });
+    look(label);
+  };
+  const foot = (words, index) => html`<${Kept} make=${numberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet[index]}
+    on=${(given) => change({ feet: feet.map((one, k) => (k === index ? given : one)) })} />`;
+  const known = app.info.models.filter(complete).map(({ label }) => label);
+  return html`
+    <div class="models" data-refused=${refused.value}>
+      <fieldset class="model-list"><legend class="visually-hidden">Models</legend>
+        ${[...new Set([...known, ...models])].map((label) => html`
+          <label class="model-row" key=${label} title=${app.info.models.find((one) => one.label === label)?.title}>
+            <input type="checkbox" value=${label} checked=${models.includes(label)} disabled=${feet !== null}
+              onChange=${(event) => change({ models: event.target.checked ? [...others(label), label] : others(label) })} />
+            <${Swatch} label=${label} /><span>${wordsOf(label)}</span></label>`)}
+      </fieldset>
+      ${models.length > 1 && !feet && html`<${Choice} label="Main model" value=${told(models[0], lead)}
+        options=${models.map((label) => [label, wordsOf(label)])}
+        help="Its answer comes first: in the files, the report and on the command line." />`}
+      <${Switch} label="A coefficient of my own" hidden=${feet !== null} value=${value !== null}
+        on=${(yes) => change({ value: yes ? USUAL : null })} />
+      ${value !== null && !feet && html`<${Kept} make=${slider} label="Coefficient of restitution r" unit="" min=${0} max=${1} step=${0.005}
+        value=${Math.min(value, 1)} on=${(given) => change({ value: given })} />`}
+      <p class="field-help">${CALIBRATED}</p>
+      <${Switch} label="One coefficient for each foot" help="Stands alone, without models." value=${feet !== null}
+        on=${(yes) => change({ feet: yes ? [USUAL, USUAL] : null })} />
+      ${feet && html`<div class="fields">${foot("Onto the left foot", 0)}${foot("Onto the right foot", 1)}</div>`}
+    </div>`;
+};

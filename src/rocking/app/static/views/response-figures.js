@@ -35,7 +35,8 @@ const ENERGIES = [
   { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
-const longest = (answers) => {
+/** The answer that goes on longest. */
+export const longest = (answers) => {
   const ends = answers.map(({ series }) => series.time.at(-1));
   return answers[ends.indexOf(highest(ends))];
 };
@@ -44,10 +45,7 @@ const longest = (answers) => {
 const ofEach = (title, y, values) => ({
   title,
   y,
-  series: (answers) => answers.map(({ label }) => {
-    const { colour, dash } = styleOf(label);
-    return { label: wordsOf(label), colour, dash };
-  }),
+  series: (answers) => answers.map(({ label }) => ({ label: wordsOf(label), ...styleOf(label) })),
   data: (answers) => together(answers, (answer) => untilFall(answer, values(answer))),
 });
 
@@ -67,7 +65,11 @@ const KINDS = {
     title: (lead) => `Energy (${wordsOf(lead.label)})`,
     y: { label: "", unit: "J" },
     series: () => ENERGIES,
-    data: (_, lead) => [lead.series.time, ...ENERGIES.map(({ key }) => untilFall(lead, lead.series[key]))],
+    // over the time of all figures
+    data: (answers, lead) => [
+      [...lead.series.time, longest(answers).series.time.at(-1)],
+      ...ENERGIES.map(({ key }) => [...untilFall(lead, lead.series[key]), null]),
+    ],
   },
   lost: ofEach("Energy lost at impacts", { label: "", unit: "J" }, ({ series }) => series.lost),
   force: ofEach("Vertical force of the ground", { label: "", unit: "N" }, ({ series }) => series.vertical_force),
@@ -77,27 +79,21 @@ const KINDS = {
 };
 
 /** What the marks of the figures mean; `whose` impacts are ticked. */
-export const marksWords = (answers, whose) =>
-  `Ticks on the axis: impacts of ${whose}; dashed: the slenderness angles.${fallWords(answers)} `
+export const marksWords = (answers, whose) => `Ticks on the axis: impacts of ${whose}; dashed: the slenderness angles. `
+  + (answers.some(({ outcome }) => outcome === "overturned") ? `Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. ` : "")
   + "Drag across a chart to look into it with every sample; a double click shows all of it again.";
 
-const fallWords = (answers) =>
-  (answers.some(({ outcome }) => outcome === "overturned")
-    ? ` Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. The animation follows the fall, by the same equation, `
-      + "until a corner meets the ground; there it stays, since a landing on a side is not computed."
-    : "");
-
 /** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into. */
-export const Figures = ({ kinds, answers, lead, ticked, part, friction, time, height = 220 }) => {
+export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) => {
   const shown = useMemo(() => answers.map((answer) => {
     const found = part?.answers.find(({ label }) => label === answer.label)?.series;
     return found ? { ...answer, series: detailed(answer.series, found) } : answer;
   }), [answers, part]);
   const first = shown.find(({ label }) => label === lead) ?? shown[0];
-  const rows = useMemo(() => (ticked ?? answers).map(({ label, impacts }) =>
-    ({ colour: styleOf(label).colour, at: impacts.map(({ time_s: at }) => at) })), [answers, ticked?.map((one) => one.label).join()]);
+  const rows = useMemo(() => ticked.map(({ label, impacts }) =>
+    ({ colour: styleOf(label).colour, at: impacts.map(({ time_s: at }) => at) })), [ticked]);
   return kinds.map((kind) => html`<${OneFigure} key=${kind} kind=${kind} answers=${shown} lead=${first} rows=${rows}
-    part=${part?.window ?? null} friction=${friction} time=${time} height=${height} />`);
+    part=${part?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);
 };
 
 const OneFigure = ({ kind, answers, lead, rows, part, friction, time, height }) => {

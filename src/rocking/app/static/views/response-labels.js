@@ -1,5 +1,6 @@
 /** Names and marks of the restitutions; every coefficient that was typed looks the same, whatever it is. */
-import { dashKey, modelStyle, modelWords } from "/app/palette.js";
+import { html } from "/parts/preact.js";
+import { modelStyle, modelWords } from "/app/palette.js";
 
 const TYPED = "fixed";
 
@@ -7,10 +8,17 @@ const TYPED = "fixed";
 export const curveKey = (label) => (/^([0-9.]+(e-?[0-9]+)?$|left )/.test(label) ? TYPED : label);
 
 /** Returns colour and dash of a restitution. */
-export const styleOf = (label) => modelStyle(curveKey(label));
+export const styleOf = (label) => {
+  const { colour, dash = [] } = modelStyle(curveKey(label));
+  return { colour, dash };
+};
 
 /** Returns a restitution in words. */
 export const wordsOf = (label) => modelWords(curveKey(label));
 
-/** Returns a short line in the colour and the true dash of a restitution. */
-export const swatch = (label) => dashKey(styleOf(label));
+/** A short line in the colour and the true dash of a restitution. */
+export const Swatch = ({ label }) => {
+  const { colour, dash } = styleOf(label);
+  return html`<svg class="dash-key" width="34" height="10" viewBox="0 0 34 10" aria-hidden="true" focusable="false">
+    <path d="M0 5H34" fill="none" stroke=${colour} stroke-width="2.5" stroke-dasharray=${dash.join(" ") || null} /></svg>`;
+};

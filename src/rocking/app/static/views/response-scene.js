@@ -1,26 +1,19 @@
 /** The animation of the answers: which body is solid, which are ghosts, and where the ground is. */
-import { el } from "/app/dom.js";
+import { html, useLayoutEffect, useMemo } from "/parts/preact.js";
 import { highest } from "/app/extremes.js";
 import { chartFiles } from "/charts/save.js";
-import { Player } from "/scene/player.js";
+import { Made } from "/parts/made.js";
 import { actorOf } from "/scene/sampled.js";
 import { shapeOf } from "/scene/shape.js";
 import { peakInstant, Track } from "/scene/track.js";
-import { chosenOf } from "/views/response-chosen.js";
+import { longest } from "/views/response-figures.js";
 import { styleOf, wordsOf } from "/views/response-labels.js";
 import { sceneWords } from "/views/response-words.js";
 
 const SETTLE = 0.4;
 
-const groundOf = (answers) => {
-  const ends = answers.map(({ series }) => series.time.at(-1));
-  const { time, ground_displacement: moved } = answers[ends.indexOf(highest(ends))].series;
-  return new Track(time, moved);
-};
-
 // after everything lies or rests nothing happens: the animation ends there
 const lastOf = ({ rotation, falls }) => (falls ? rotation.end + SETTLE : quietAfter(rotation));
-const endOf = (actors) => highest(actors.map(lastOf));
 
 const quietAfter = (track) => {
   let k = track.values.length - 1;
@@ -30,37 +23,22 @@ const quietAfter = (track) => {
 
 const restOf = (actor) => (actor.falls ? actor.rotation.end : peakInstant(actor.rotation));
 
-/** Returns the player of the view, fed with answers of the API. */
-export const sceneOf = () => {
-  const player = new Player();
-  const words = "Space plays and pauses; with the picture in focus the arrow keys step.";
-  const keys = el("p", { class: "field-help" }, words);
-  let actors = [];
-  const still = () => player.still(actors.map(({ label }) => wordsOf(label)));
-  const files = chartFiles("The body at this instant", still, "picture");
-  const foot = el("div", { class: "chart-foot" }, keys, files);
-  const element = el("div", { class: "scene-holder" }, player.element, foot);
-  const leadOf = () => {
-    const labels = actors.map(({ label }) => label);
-    return Math.max(0, labels.indexOf(chosenOf(labels)));
-  };
-  const show = (answer, answers) => {
-    element.hidden = !answers.length;
-    if (!answers.length) return;
-    const shape = shapeOf(answer.body);
-    actors = answers.map((one) => actorOf(one, styleOf(one.label)));
-    const lead = leadOf();
-    const end = endOf(actors);
-    const about = { rest: restOf(actors[lead]), words: sceneWords(answers) };
-    player.show({ shape, actors, ground: groundOf(answers), end, ...about }, lead);
-  };
-  const follow = () => {
-    if (player.play) player.show(player.play, leadOf());
-  };
-  return {
-    element, show, follow,
-    toggle: () => player.toggle(),
-    pause: () => player.pause(),
-    glance: (instant) => player.glance(instant),
-  };
+/** The player, fed with answers of the API; the body of `lead` is the solid one. */
+export const Scene = ({ player, body, answers, lead, stale }) => {
+  const node = useMemo(() => {
+    const names = () => player.play.actors.map(({ label }) => wordsOf(label));
+    return chartFiles("The body at this instant", () => player.still(names()), "picture");
+  }, [player]);
+  const actors = useMemo(() => answers.map((one) => actorOf(one, styleOf(one.label))), [answers]);
+  useLayoutEffect(() => {
+    if (!actors.length) return;
+    const place = Math.max(0, actors.findIndex(({ label }) => label === lead));
+    const { time, ground_displacement: moved } = longest(answers).series;
+    const about = { rest: restOf(actors[place]), words: sceneWords(answers), end: highest(actors.map(lastOf)) };
+    player.show({ shape: shapeOf(body), actors, ground: new Track(time, moved), ...about }, place);
+  }, [actors, lead]);
+  return html`<div class=${`scene-holder ${stale ? "stale" : ""}`} hidden=${!answers.length}>
+    <${Made} node=${player.element} />
+    <div class="chart-foot"><p class="field-help">Space plays and pauses; with the picture in focus the arrow keys step.</p>
+      <${Made} node=${node} class="pushed" /></div></div>`;
 };

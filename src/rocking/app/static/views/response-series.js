@@ -19,15 +19,22 @@ const straight = (time, values, grid) => {
 };
 
 /** Returns every instant of several histories once, in order [s]. */
-export const commonTime = (histories) => {
+const commonTime = (histories) => {
   const all = Float64Array.from(histories.flatMap((time) => time)).sort();
   const grid = [];
   for (const instant of all) if (!grid.length || instant > grid[grid.length - 1]) grid.push(instant);
   return grid;
 };
 
+const grids = new WeakMap(); // of several answers, for all of their curves
+
+const gridOf = (answers) => {
+  if (!grids.has(answers)) grids.set(answers, commonTime(answers.map((answer) => answer.series.time)));
+  return grids.get(answers);
+};
+
 /** Returns [time, values of the first answer, of the second, ...]; null after a history has ended. */
 export const together = (answers, valuesOf) => {
-  const grid = commonTime(answers.map((answer) => answer.series.time));
+  const grid = gridOf(answers);
   return [grid, ...answers.map((answer) => straight(answer.series.time, valuesOf(answer), grid))];
 };

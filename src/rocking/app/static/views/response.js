@@ -1,173 +1,103 @@
-/** How the body rocks: verdict, animation, curves, impacts, for several restitution models at once. */
-import { el, fill } from "/app/dom.js";
-import { button, card, note } from "/app/fields.js";
-import { onLook } from "/views/response-chosen.js";
-import { chartsOf } from "/views/response-charts.js";
-import { controlsOf } from "/views/response-controls.js";
-import { filesOf } from "/views/response-files.js";
-import { impactsOf } from "/views/response-impacts.js";
-import { sceneOf } from "/views/response-scene.js";
-import { verdictOf } from "/views/response-verdict.js";
+/** How the body rocks: one stage of verdict, animation and linked figures, for several restitution models at once. */
+import { html, render, signal, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
+import { createTime } from "/charts/figure.js";
+import { dotsOf } from "/charts/zoom.js";
+import { Player } from "/scene/player.js";
+import { createAnswer } from "/views/answer.js";
+import { chosenOf } from "/views/response-chosen.js";
+import { Controls, lean } from "/views/response-controls.js";
+import { Figures, marksWords } from "/views/response-figures.js";
+import { wordsOf } from "/views/response-labels.js";
+import { Cards, Impacts, TakeAway } from "/views/response-results.js";
+import { Scene } from "/views/response-scene.js";
+import { Banner, inWords, verdictKind } from "/views/response-words.js";
 
 const KEYS = ["body", "motion", "restitution", "response", "settings"];
+const FIGURES = ["rotation", "velocity", "ground", "energy", "force", "friction"];
 
 /** Shows the view of the response in a section. */
 export const mount = (section, app) => {
-  const view = new ResponseView(app);
-  section.append(...view.parts);
-  view.mounted(section);
-  return { shown: () => view.shown(), hidden: () => view.hidden() };
+  const question = () => {
+    const { body, motion, restitution, response, settings } = app.inputs.get();
+    const free = response?.free ?? null;
+    if (!motion && free === null) return null;
+    const points = dotsOf(section.querySelector("[data-testid=chart-rotation]") ?? section);
+    return { body, motion: free === null ? motion : undefined, restitution, response, settings, points };
+  };
+  const asked = createAnswer(app, "response", KEYS, question);
+  const time = createTime((instant) => player.glance(instant), asked.look);
+  const player = new Player(time.show);
+  const inputs = signal(app.inputs.get());
+  const stale = signal(false);
+  app.inputs.subscribe((now) => (inputs.value = now));
+  render(html`<${Response} app=${app} asked=${asked} inputs=${inputs} player=${player} time=${time} stale=${stale} />`, section);
+  // what is drawn belongs to the last good numbers while a field is in error
+  const look = () => (stale.value = section.querySelector(".response-controls [aria-invalid=true]") !== null);
+  for (const kind of ["input", "change"]) section.addEventListener(kind, look);
+  section.addEventListener("keydown", (event) => onKey(event, player));
+  return {
+    shown: asked.shown,
+    hidden: () => {
+      asked.hidden();
+      player.pause();
+    },
+  };
 };
 
-const shownOf = ({ answers }) => answers.filter((one) => one.series);
+const onKey = (event, player) => {
+  if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey) return;
+  if (event.target.closest("button, select, summary, a, input:not([type=range]), textarea")) return;
+  event.preventDefault();
+  player.toggle();
+};
 
-class ResponseView {
-  constructor(app) {
-    this.app = app;
-    this.dirty = true;
-    this.asked = false;
-    this.verdict = verdictOf();
-    this.scene = sceneOf();
-    this.controls = controlsOf(app);
-    this.charts = chartsOf((instant) => this.scene.glance(instant), (window) => this.lookInto(window));
-    this.impacts = impactsOf(app);
-    this.refusal = el("div", { "aria-live": "polite", "data-testid": "response-refusal" });
-    this.results = el("div", { class: "response-results" });
-    this.parts = [this.head(), this.refusal, this.verdict.element, this.stage(), this.details()];
-  }
+const NONE = [];
+const falls = ({ outcome }) => outcome === "overturned";
+const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; "
+  + "there it stays, since a landing on a side is not computed.";
 
-  head() {
-    const lead = "The same body and motion with several models of the impact: does the choice matter?";
-    return el("div", { class: "view-head" }, el("h1", {}, "Response"), el("p", { class: "lead" }, lead));
-  }
+const Response = ({ app, asked, inputs, player, time, stale }) => {
+  const { answer: found, refused, part } = asked;
+  const results = useRef(null);
+  const answers = found.value?.answers ?? NONE;
+  const there = useMemo(() => answers.filter((one) => one.series), [answers]);
+  const lead = chosenOf(there.map(({ label }) => label));
+  const followed = there.find(({ label }) => label === lead);
+  const ticked = useMemo(() => (followed ? [followed] : NONE), [followed]);
+  const { motion, restitution, response } = inputs.value;
+  const friction = response?.assumed_friction ?? 0.5;
+  const old = stale.value ? "stale" : "";
+  useLayoutEffect(() => {
+    if (found.value) results.current.dataset.drawn = String(Number(results.current.dataset.drawn || 0) + 1);
+  }, [found.value]);
+  return html`
+    <header class="view-head"><h1>Response</h1>
+      <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
+    <div aria-live="polite" data-testid="response-refusal">
+      ${refused.value && html`<p class="note error"><span class="sign" aria-hidden="true">\u2715</span><span>${refused.value}</span></p>`}
+      ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
+    ${found.value && html`<div class=${`verdict-part ${old}`}>
+      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
+      <${Cards} answers=${answers} lead=${lead} /></div>`}
+    <div class="response">
+      <div class="response-stage">
+        <section class="card stage-scene" aria-label="The body on the ground"><h2>The body on the ground</h2>
+          <${Scene} player=${player} body=${found.value?.body} answers=${there} lead=${lead} stale=${stale.value} /></section>
+        ${followed && html`<section class=${`card stage-figures ${old}`} aria-label="Over time"><h2>Over time</h2>
+          <div data-window=${part.value?.window.join(" ") ?? ""}>
+            <div class="figures" data-testid="response-charts">
+              <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} part=${part.value} friction=${friction} time=${time} /></div>
+            <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && FALL}</p>
+            ${part.value && html`<button type="button" class="button" onClick=${() => asked.look(null)}>Show all of the time</button>`}
+          </div></section>`}
+      </div>
+      <${Controls} app=${app} inputs=${inputs.value} />
+      <div ref=${results} class=${`response-results ${old}`} hidden=${!followed}>
+        ${followed && html`<${Impacts} app=${app} answers=${there} answer=${followed} /><${TakeAway} app=${app} restitution=${restitution} />`}</div>
+    </div>`;
+};
 
-  stage() {
-    const scene = card("The body on the ground", this.scene.element);
-    return el("div", { class: "columns response-columns" }, scene, this.controls.element);
-  }
-
-  details() {
-    const curves = card("Curves", this.charts.element);
-    const impacts = card("Impacts", this.impacts.element);
-    return fill(this.results, curves, impacts, filesOf(this.app));
-  }
-
-  mounted(section) {
-    this.app.inputs.subscribe((inputs, changed) => {
-      if (!KEYS.some((key) => changed.has(key))) return;
-      this.dirty = true;
-      this.controls.show(inputs);
-      if (this.visible) this.ask();
-    });
-    this.controls.show(this.app.inputs.get());
-    onLook(() => this.follow());
-    for (const kind of ["input", "change"]) section.addEventListener(kind, () => this.markStale());
-    section.addEventListener("keydown", (event) => this.onKey(event));
-  }
-
-  /** What is drawn belongs to the last good numbers while a field is in error. */
-  markStale() {
-    const stale = this.controls.element.querySelector("[aria-invalid=true]") !== null;
-    const parts = [this.verdict.element, this.scene.element, this.results];
-    for (const part of parts) part.classList.toggle("stale", stale);
-  }
-
-  /** Several changes of one moment are one question. */
-  ask() {
-    if (this.asked) return;
-    this.asked = true;
-    queueMicrotask(() => {
-      this.asked = false;
-      this.refresh();
-    });
-  }
-
-  async refresh() {
-    const given = this.question();
-    this.dirty = false;
-    if (!given) return this.nothingMoves();
-    try {
-      this.show(await this.app.latest("response", "response", given));
-    } catch (error) {
-      if (!this.app.superseded(error)) this.refuse(error);
-    }
-    return undefined;
-  }
-
-  /** What is asked; null while nothing moves the body. */
-  question() {
-    const { body, motion, restitution, response, settings } = this.app.inputs.get();
-    const free = response?.free !== undefined && response?.free !== null;
-    if (!motion && !free) return null;
-    const moved = free ? undefined : motion;
-    return { body, motion: moved, restitution, response, settings, points: this.charts.dots };
-  }
-
-  /** Asks again for the part of the time that the charts show. */
-  async lookInto(window) {
-    const { answer } = this;
-    try {
-      const found = await this.app.latest("response-part", "response", { ...this.question(), window });
-      if (answer === this.answer) this.charts.draw(window, shownOf(found));
-    } catch (error) {
-      if (!this.app.superseded(error)) this.app.say(error.message, "error");
-    }
-  }
-
-  nothingMoves() {
-    const choose = button({ text: "Choose a motion", kind: "primary", onClick: () => this.app.go("motion") });
-    const lean = button({ text: "Let it go from a lean", onClick: () => this.controls.lean() });
-    const words = note("Nothing moves the body yet: choose a motion, or let it go from a lean.");
-    fill(this.refusal, words, el("div", { class: "toolbar" }, choose, lean));
-    this.hideResults(true);
-  }
-
-  refuse(error) {
-    fill(this.refusal, note(error.message, "error"));
-    this.hideResults(true);
-  }
-
-  hideResults(hidden) {
-    this.verdict.element.hidden = hidden;
-    this.results.hidden = hidden;
-    this.scene.element.hidden = hidden;
-  }
-
-  show(answer) {
-    this.answer = answer;
-    fill(this.refusal);
-    this.hideResults(false);
-    const shown = shownOf(answer);
-    this.verdict.show(answer);
-    this.scene.show(answer, shown);
-    this.charts.show(shown, this.app.inputs.get().response?.assumed_friction ?? 0.5);
-    this.impacts.show(shown);
-    this.results.dataset.drawn = String(Number(this.results.dataset.drawn || 0) + 1);
-  }
-
-  /** Shows the model that is looked at in every part. */
-  follow() {
-    if (!this.answer) return;
-    this.verdict.mark();
-    this.scene.follow();
-    this.charts.showFollowed();
-    this.impacts.draw();
-  }
-
-  onKey(event) {
-    if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.target.closest("button, select, summary, a, input:not([type=range]), textarea")) return;
-    event.preventDefault();
-    this.scene.toggle();
-  }
-
-  shown() {
-    this.visible = true;
-    if (this.dirty) this.ask();
-  }
-
-  hidden() {
-    this.visible = false;
-    this.scene.pause();
-  }
-}
+const NothingMoves = ({ app }) => html`
+  <p class="note"><span class="sign" aria-hidden="true">i</span><span>Nothing moves the body yet: choose a motion, or let it go from a lean.</span></p>
+  <div class="toolbar"><button type="button" class="button primary" onClick=${() => app.go("motion")}>Choose a motion</button>
+    <button type="button" class="button" onClick=${() => lean(app)}>Let it go from a lean</button></div>`;

@@ -1,0 +1,90 @@
+/** The verdict's cards, the impacts in a table, and files to take away. */
+import { html, useMemo } from "/parts/preact.js";
+import { tableOf } from "/app/fields.js";
+import { number, quantity } from "/app/format.js";
+import { Made, told } from "/parts/made.js";
+import { Choice } from "/questions/parts.js";
+import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
+import { curveKey, Swatch, wordsOf } from "/views/response-labels.js";
+import { outcomeOf } from "/views/response-words.js";
+import { filmButton } from "/views/takeaway-film.js";
+
+/** A card for every model; choosing one makes its model the one that is looked at. */
+export const Cards = ({ answers, lead }) => html`
+  <fieldset class="outcomes" data-testid="outcomes">
+    <legend class="visually-hidden">Model that is drawn solid in the animation</legend>
+    ${answers.map((one) => (one.error ? html`
+      <div key=${one.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${one.label} />
+        <span class="outcome-facts">${one.error}</span></div>`
+    : html`<${Card} key=${curveKey(one.label)} answer=${one} checked=${one.label === lead} />`))}
+  </fieldset>`;
+
+const Head = ({ label }) => html`<span class="outcome-model"><${Swatch} label=${label} />${wordsOf(label)}</span>`;
+
+const Card = ({ answer, checked }) => {
+  const { kind, sign, word } = outcomeOf(answer);
+  return html`
+    <label class=${`outcome outcome-${kind}`} data-testid=${`outcome-${answer.label}`} data-outcome=${answer.outcome}>
+      <input type="radio" name="followed" value=${answer.label} checked=${checked} onChange=${() => look(answer.label)} />
+      <${Head} label=${answer.label} />
+      <span class="outcome-word"><span class="outcome-sign" aria-hidden="true">${sign}</span>${word}</span>
+      <span class="outcome-facts">${factsOf(answer)}</span>
+      ${answer.warnings.map((words) => html`<span class="outcome-warning" key=${words}>${words}</span>`)}
+    </label>`;
+};
+
+const factsOf = (answer) => {
+  const { right, left } = answer.body.sides;
+  const same = Math.abs(right.coefficient - left.coefficient) < 1e-12;
+  const [onto, other] = [number(right.coefficient, 4), number(left.coefficient, 4)];
+  const r = same ? onto : `${other} left, ${onto} right`;
+  const peak = answer.outcome === "overturned"
+    ? `no return at ${quantity(answer.overturning_time_s, "s", 4)}`
+    : `peak ${quantity(answer.peak_rotation_over_alpha, "\u03b1", 3)}`;
+  const count = answer.impacts.length;
+  return `r = ${r} \u00b7 ${peak} \u00b7 ${count} impact${count === 1 ? "" : "s"}`;
+};
+
+const COLUMNS = [
+  { label: "No.", digits: 6 }, { label: "Time", unit: "s", digits: 6 }, { label: "Before", unit: "rad/s", digits: 5 },
+  { label: "After", unit: "rad/s", digits: 5 }, { label: "r", digits: 5 }, { label: "Onto", numeric: false },
+];
+const MOST = 200;
+
+const rowsOf = (impacts) =>
+  impacts.map((one, k) => [
+    k + 1, one.time_s, one.velocity_before_rad_s, one.velocity_after_rad_s, one.coefficient, one.onto,
+  ]);
+
+/** The impacts of the model that is looked at. */
+export const Impacts = ({ app, answers, answer }) => {
+  const node = useMemo(() => {
+    const rows = rowsOf(answer.impacts);
+    const more = rows.length > MOST ? `; the first ${MOST} are shown, copying takes them all` : "";
+    const caption = `${rows.length} impact${rows.length === 1 ? "" : "s"} (${wordsOf(answer.label)})${more}`;
+    const csv = () => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv");
+    return tableOf(COLUMNS, rows.slice(0, MOST), { caption, csv, testid: "impacts-table", copyRows: () => rows });
+  }, [answer]);
+  return html`<section class="card" aria-label="Impacts"><h2>Impacts</h2><div class="impacts">
+    <${Choice} label="Model" value=${told(answer.label, look)} options=${answers.map(({ label }) => [label, wordsOf(label)])} />
+    <${Made} node=${node} data-testid="impacts" /></div></section>`;
+};
+
+const FILES = [
+  ["Picture, PNG", "picture/response.png"], ["Picture, SVG", "picture/response.svg"],
+  ["Curves, CSV", "table/response.csv", true], ["Animation, page", "animation.html", true],
+];
+
+/** Files of the response; what holds one model holds the one that is looked at, and says so. */
+export const TakeAway = ({ app, restitution }) => {
+  const film = useMemo(() => filmButton(app, { text: "Animation, GIF", label: "Animation, GIF" }), [app]);
+  const save = ([, path, chosen]) =>
+    app.download(chosen ? pathOfChosen(path, restitution) : path, app.inputs.get(), path.replaceAll("/", "-"));
+  const labels = labelsOf(restitution);
+  return html`<section class="card" aria-label="Take away"><h2>Take away</h2>
+    <div class="toolbar">${FILES.map((file) => html`<button type="button" class="button" key=${file[0]} onClick=${() => save(file)}>${file[0]}</button>`)}
+      <${Made} node=${film.button} /></div>
+    <${Made} node=${film.progress} />
+    <p class="field-help" data-testid="files-model">${labels.length > 1
+      && `Pictures show all models; curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p></section>`;
+};
