@@ -31,7 +31,7 @@ export const MotionScene = ({ question, answer }) => {
   const tell = () => {
     now.value = clock.now;
     words.value = kept.played.words(clock.now);
-    kept.chart.setAim(clock.now);
+    kept.chart.point(clock.now);
   };
   const seek = (instant) => {
     if (!kept.played) return;
