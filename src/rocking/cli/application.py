@@ -10,7 +10,7 @@ import typer
 from rocking.cli.completion import words_on_the_line
 from rocking.version import SOFTWARE
 
-_MODULES = {"models": "catalogues", "formats": "catalogues"}
+_MODULES = {"models": "catalogues", "formats": "catalogues", "assess": "predict"}
 COMMANDS = (
     "cor", "equilibria", "simulate", "predict", "assess", "validate", "identify", "map", "minimum", "spectrum",
     "fragility", "inventory", "codes", "paper", "models", "motion", "motions", "convert", "formats", "serve",

@@ -11,7 +11,7 @@ from typing import Any, Literal, overload
 from rocking import checks
 from rocking.bodies import Body, Solid
 from rocking.errors import InvalidValueError
-from rocking.examples import files
+from rocking.examples import table
 from rocking.examples.catalogue import Catalogue, catalogue
 from rocking.examples.table import Example
 from rocking.motions.motion import GroundMotion
@@ -128,7 +128,7 @@ def path(name: str) -> Path:
         raise InvalidValueError(
             f"{example.name} is computed and has no file: motion({example.name!r}) makes it, write(...) its record"
         )
-    return files.HERE / example.files[0]
+    return table.HERE / example.files[0]
 
 
 def write(name: str, folder: str | Path = ".", *, force: bool = False) -> list[Path]:
@@ -160,7 +160,7 @@ def write(name: str, folder: str | Path = ".", *, force: bool = False) -> list[P
     ...     [path.name for path in write("statue", folder)]
     ['statue.toml', 'near-fault.csv']
     """
-    return files.written(_contents(_of(name)), Path(folder), force=force)
+    return table.written(_contents(_of(name)), Path(folder), force=force)
 
 
 def _of(name: str, kind: str | None = None) -> Example:
@@ -190,4 +190,4 @@ def _described(example: Example, made: GroundMotion, seed: int | None, axis: str
 def _contents(example: Example) -> dict[str, bytes]:
     made = {name: motion(name) for name in example.records}
     named = {name: each if isinstance(each, dict) else {"acceleration": each} for name, each in made.items()}
-    return files.contents(example, named)
+    return table.contents(example, named)

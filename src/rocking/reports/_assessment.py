@@ -9,8 +9,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin
+from rocking.assessment._assess import DIRECTIONS, POINTS, REACH
 from rocking.assessment.answer import StandingSolid, just_above
-from rocking.assessment.in_space import DIRECTIONS, POINTS, REACH
 from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
 from rocking.dynamics import simulate

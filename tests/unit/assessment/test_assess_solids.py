@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.assessment.in_space import DIRECTIONS
+from rocking.assessment._assess import DIRECTIONS
 from rocking.bodies.solid import Part, Solid, box
 from rocking.errors import InvalidValueError
 from rocking.reports import assessment_report

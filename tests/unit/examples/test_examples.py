@@ -13,7 +13,7 @@ import rocking as rk
 from rocking.bodies import Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
-from rocking.examples import files, table
+from rocking.examples import table
 from rocking.motions import GroundMotion, measures, spectral_acceleration
 from rocking.motions.formats import read_record
 from rocking.restitution.space import edge_coefficient, spatial_models
@@ -34,7 +34,7 @@ def parts(name, **seed):
 def test_every_file_has_its_entry_and_every_entry_its_files():
     """Nothing lies beside the table, nothing in it is missing; a file is called as its example."""
     named = {file for each in ALL.values() for file in each.files}
-    there = {str(path.relative_to(files.HERE).as_posix()) for path in files.HERE.glob("*/*.*") if path.suffix != ".pyc"}
+    there = {str(path.relative_to(table.HERE).as_posix()) for path in table.HERE.glob("*/*.*") if path.suffix != ".pyc"}
     assert named == there
     for each in ALL.values():
         assert not each.files or each.files[0].rpartition("/")[2].partition(".")[0] == each.name
