@@ -248,7 +248,7 @@ def test_a_chart_is_words_and_table_too(page: Any, tmp_path: Path) -> None:
           document.querySelector('#view-body').prepend(box);
           const chart = lineChart(box, { title: 'Probe',
             x: { label: 'time', unit: 's' }, y: { label: 'angle', unit: 'rad' },
-            series: [{ label: 'first', colour: '#0072B2' }, { label: 'second', colour: '--accent', dash: [4, 2] }] });
+            series: [{ label: 'first', colour: '#0070B2' }, { label: 'second', colour: '--accent', dash: [4, 2] }] });
           chart.setData([[0, 1, 2, 3], [0, 2, -1, 0], [0, null, 1, 1.5]]);
           chart.setMarks({ vertical: [1.5], horizontal: [1, -1] });
           window.probe = chart;

@@ -223,7 +223,7 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     # the dash is the model's: KED's line is whole, Housner's is not; no colour is that of another model
     assert {dash for words, (_, dash) in looks.items() if "KED" in words} == {None}
     assert {dash for words, (_, dash) in looks.items() if "Housner" in words} == {"6 4"}
-    assert not {colour for colour, _ in looks.values()} & {"#0072B2", "#D55E00"}
+    assert not {colour for colour, _ in looks.values()} & {"#0070B2", "#D96C00"}
     shot(studies, "studies-spectra")
 
 
@@ -302,9 +302,9 @@ def test_a_spectrum_of_one_slenderness_wears_the_look_of_its_model(studies: Any)
     keys = studies.locator("[data-testid=spectrum-chart] .legend li")
     expect(keys).to_have_count(2, timeout=60_000)
     ked, housner = (keys.filter(has_text=name).locator("path") for name in ("KED", "Housner"))
-    expect(ked).to_have_attribute("stroke", "#D55E00")
+    expect(ked).to_have_attribute("stroke", "#D96C00")
     assert ked.get_attribute("stroke-dasharray") is None
-    expect(housner).to_have_attribute("stroke", "#0072B2")
+    expect(housner).to_have_attribute("stroke", "#0070B2")
     expect(housner).to_have_attribute("stroke-dasharray", "6 4")
 
 

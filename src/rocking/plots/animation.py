@@ -44,7 +44,7 @@ _DOTS, _WIDTH, _LINE = 100, 4.8, 80
 
 _HEAD, _CURVE, _LEAST, _MOST = 0.42, 1.35, 1.4, 3.4
 _HATCHES = 40
-_ROTATION, _IMPACT = "#0072B2", "#D55E00"
+_ROTATION, _IMPACT = "#0070B2", "#D96C00"
 _FLASH = 0.3  # how long an impact is seen, in seconds of playing
 
 

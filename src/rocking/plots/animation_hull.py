@@ -25,7 +25,7 @@ _TURNED, _PLANE, _RAISED = 0.6, -1.35, 0.35
 """From where it is seen: from x towards y, one that moves in the plane of x; and above the ground [rad]."""
 
 _LIGHT = np.array([0.35, -0.25, 0.9])
-_ROTATION = "#0072B2"
+_ROTATION = "#0070B2"
 _DARK, _LINE = 0.35, 80
 _SUNK = 1e-3  # how far below the ground a corner is drawn at most, over the size
 
@@ -167,7 +167,7 @@ class HullStage:
         self.words = view.text(0.02, 0.97, "", fontsize=8, family="monospace", transform=view.transAxes, va="top")
         curve = self.figure.add_axes((0.11, 0.08, 0.86, 0.15))
         curve.plot(response.time, np.degrees(tilt_of(response)), color=_ROTATION, linewidth=1.0)
-        curve.plot(response.impacts["time"], np.zeros(response.impacts.size), ".", color="#D55E00", markersize=3.5)
+        curve.plot(response.impacts["time"], np.zeros(response.impacts.size), ".", color="#D96C00", markersize=3.5)
         curve.set_xlim(0.0, float(scene.time[-1]))
         curve.set_ylabel("tilt [deg]", fontsize=6)
         curve.set_xlabel("time [s]", fontsize=7, labelpad=1)

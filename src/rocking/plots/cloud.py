@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ROCKS, _FALLS, _BAND = "#0072B2", "#A8420A", "#D6E6F2"
+_ROCKS, _FALLS, _BAND = "#0070B2", "#A8420A", "#D6E6F2"
 
-_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0072B2")
+_COLORS = ("#009960", "#AC8191", "#008FE6", "#AC5B2B", "#0070B2")
 _LEAST = 1e-4  # smaller p-values are drawn here
 _ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 6.5, "borderaxespad": 0.2}
 
@@ -177,7 +177,7 @@ def _efficiency(axes: "Axes", found: MeasureComparison) -> None:
     rows = range(len(found.scores))
     efficiency = [score.efficiency for score in found.scores]
     dispersion = [score.overturning_dispersion for score in found.scores]
-    hollow: dict[str, Any] = {"color": "#D55E00", "markerfacecolor": "white", "markersize": 4.0}
+    hollow: dict[str, Any] = {"color": "#D96C00", "markerfacecolor": "white", "markersize": 4.0}
     axes.plot(efficiency, rows, "o", color=INK, markersize=4.0, label=r"efficiency, $\ln\,\theta$")
     axes.plot(dispersion, rows, "D", label=r"$\beta$ of overturning", **hollow)
     axes.set_xlim(0.0, 1.1 * max(value for value in efficiency + dispersion if math.isfinite(value)))

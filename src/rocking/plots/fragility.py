@@ -37,7 +37,7 @@ _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
 """Data of more levels are gathered into groups of neighbouring levels, of as many outcomes at least; stripes stay
 stripes as long as there is room."""
 
-STATES = ("#E3EDF5", "#7FB2D6", "#E69F00", "#CC79A7", "#7A2E00")
+STATES = ("#E3EDF5", "#7FB2D6", "#AC5B2B", "#AC8191", "#7A2E00")
 """From no rocking, light, to overturned, dark: apart in grey too."""
 
 _APART = 2.2  # points of different states are drawn side by side, this far apart [pt]
@@ -200,7 +200,7 @@ def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
 
 def state_colors(states: int) -> list[str]:
     """Return colours from no rocking to overturned."""
-    between = [STATES[1], STATES[2], STATES[3], "#009E73"]
+    between = [STATES[1], STATES[2], STATES[3], "#009960"]
     return [STATES[0], *(between[k % 4] for k in range(states - 1)), STATES[-1]]
 
 
@@ -232,7 +232,7 @@ def caption(analysis: Any) -> str:
     return " ".join(f"{', '.join(names)}: {verdict}" for verdict, names in states.items())
 
 
-_CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0072B2"
+_CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0070B2"
 _FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
 _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
 WIDE = 0.01  # survivals of less width over their level are not counted: in them the body balances on its corner [-]

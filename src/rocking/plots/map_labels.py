@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 FINE = (240, 300)  # rows and columns of the grid of pixels on which places are sought
 
-_COLOR, _BACK = "#0072B2", "#E4EFF8"
+_COLOR, _BACK = "#0070B2", "#E4EFF8"
 _ROOM = 0.035  # least distance of a number from other lines and from where there is nothing, in shares of the panel [-]
 
 

@@ -36,7 +36,7 @@ COLOURS = {
 }
 """One pale colour a regime, after Okabe and Ito."""
 
-_LINE, _IMPACT = "#0072B2", "#D55E00"
+_LINE, _IMPACT = "#0070B2", "#D96C00"
 
 
 @in_journal_style
@@ -159,7 +159,7 @@ def _energy(axes: "Axes", response: ContactResponse) -> None:
         ("kinetic and potential", energy.kinetic + energy.potential, INK, "-"),
         ("work of the ground", energy.work, GREY, ":"),
         ("lost in impacts", energy.lost_in_impacts, _IMPACT, "-."),
-        ("lost in friction", energy.lost_in_friction, "#009E73", "--"),
+        ("lost in friction", energy.lost_in_friction, "#009960", "--"),
     )
     for label, values, colour, line in rows:
         axes.plot(energy.time, values, color=colour, linestyle=line, linewidth=0.9, label=label, zorder=3)

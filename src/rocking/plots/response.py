@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ROTATION, _VELOCITY, _IMPACT, _FALL = "#0072B2", "#009E73", "#D55E00", "#CC79A7"
-_KINETIC, _POTENTIAL, _LOST, _WORK = "#E69F00", "#0072B2", "#D55E00", "#222222"
+_ROTATION, _VELOCITY, _IMPACT, _FALL = "#0070B2", "#009960", "#D96C00", "#AC8191"
+_KINETIC, _POTENTIAL, _LOST, _WORK = "#AC5B2B", "#0070B2", "#D96C00", "#222222"
 _BEYOND = 2.2  # how far a falling body is followed, in slenderness angles: what came before stays visible
 _SMALL = 0.2  # below this share of the slenderness angle the rotation fills its panel and +-1 is left out
 _LONGEST_LINE = 118  # characters that fit into one line of the small print

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-GAINED, LOST, SAME, UNKNOWN = "#CC79A7", "#0072B2", "#F2F2F2", "#000000"
+GAINED, LOST, SAME, UNKNOWN = "#AC8191", "#0070B2", "#F2F2F2", "#000000"
 """Overturns with the choice only, with the baseline only, the same verdict, one of the two not computed."""
 
 _BOTH = "#BDBDBD"

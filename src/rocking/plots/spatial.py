@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 _COLOURS = {
     ContactMode.REST: PALE,
-    ContactMode.EDGE: "#0072B2",
-    ContactMode.VERTEX: "#E69F00",
-    ContactMode.ROLLING: "#009E73",
+    ContactMode.EDGE: "#0070B2",
+    ContactMode.VERTEX: "#AC5B2B",
+    ContactMode.ROLLING: "#009960",
 }
-_SLIDES = "#CC79A7"
-_ON = {"face": PALE, "edge": "#0072B2", "vertex": "#E69F00", "flight": "#56B4E9"}
-_IMPACT, _TOP = "#D55E00", "#0072B2"
+_SLIDES = "#AC8191"
+_ON = {"face": PALE, "edge": "#0070B2", "vertex": "#AC5B2B", "flight": "#008FE6"}
+_IMPACT, _TOP = "#D96C00", "#0070B2"
 _SMALL = 1e-3  # below this share of the largest tilt the body leans nowhere in particular
 
 

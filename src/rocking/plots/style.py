@@ -26,10 +26,10 @@ SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4  # widths of one and of two journal c
 
 INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+COLORS = ("#0070B2", "#D96C00", "#009960", "#AC8191", "#AC5B2B", "#008FE6")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 MARKS = "osv^D<"
-"""Okabe and Ito's colours, with a line and a mark for each so that grey print keeps them apart."""
+"""Colours that every kind of sight tells apart, with a line and a mark for each, so that grey print does too."""
 
 _OVERHANG = 12.0  # dots by which a label may be longer than its axis
 DASHED = (0, (4, 2))  # how limits are drawn
@@ -58,7 +58,7 @@ _SETTINGS: Any = {
 
 
 def model_styles() -> dict[str, dict[str, Any]]:
-    """Return colour, line and legend of every restitution model that has a colour (Okabe and Ito's), by its name."""
+    """Return colour, line and legend of every restitution model that has a colour, by its name."""
     return {
         name: {"color": kind.colour, "linestyle": kind.linestyle, "label": kind.legend or kind.short_name}
         for name, kind in models().items()
@@ -180,7 +180,7 @@ def look(number: int) -> dict[str, Any]:
     """Return colour and line of a curve.
 
     >>> look(0)["color"], look(6)["color"] == look(0)["color"]
-    ('#0072B2', True)
+    ('#0070B2', True)
     """
     return {"color": COLORS[number % len(COLORS)], "linestyle": LINES[number % len(LINES)]}
 

@@ -49,7 +49,7 @@ class Calibrated(InertiaModel):
 
     name = "calibrated"
     short_name = "calibrated default"
-    colour, linestyle = "#332288", (0, (7, 1, 2, 1))
+    colour, linestyle = "#5B6E79", (0, (7, 1, 2, 1))
     title = "fitted to the published measurements: a factor times a shifted impulse"
     reference = "this project, from the measurements in Mao et al. 2024, Buildings 14(7) 2119"
     assumptions = (

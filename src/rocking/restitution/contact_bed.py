@@ -88,7 +88,7 @@ class ContactBedModel(InertiaModel):
 
     name = "contact-bed"
     short_name = "contact bed"
-    colour, linestyle = "#8C6BB1", (0, (4, 2))
+    colour, linestyle = "#9181AC", (0, (4, 2))
     title = "what emerges from an impact resolved in time on springs and dashpots along the base"
     reference = (
         "derived in this project (the contact bed of rocking.restitution.bed); beds of two springs and of Winkler "

@@ -44,7 +44,7 @@ class DistributedImpulse(InertiaModel):
 
     name = "distributed-impulse"
     short_name = "distributed impulse"
-    colour, linestyle = "#56B4E9", (0, (5, 1, 1, 1, 1, 1))
+    colour, linestyle = "#008FE6", (0, (5, 1, 1, 1, 1, 1))
     legend = "distributed, q = 1"
     title = "contact pressure over the flat base follows the downward speed to the power q"
     reference = "derived in this project (theory, Distributed impulse); no publication yet"

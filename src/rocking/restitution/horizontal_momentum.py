@@ -23,7 +23,7 @@ class HorizontalMomentum(InertiaModel):
     name = "horizontal-momentum"
     can_stop = sees_old_foot = False
     short_name = "horizontal momentum (cos\N{SUPERSCRIPT TWO}\N{GREEK SMALL LETTER ALPHA})"
-    colour, linestyle = "#009E73", "-."
+    colour, linestyle = "#009960", "-."
     legend = r"cos$^2\,\alpha$"
     title = "vertical velocities vanish, angular momentum of the horizontal ones is kept (cos^2 alpha)"
     reference = "derived in this project from stage 1 of Mao et al. 2024, doi:10.3390/buildings14072119"

@@ -23,7 +23,7 @@ class Housner(InertiaModel):
 
     name = "housner"
     short_name = "Housner"
-    colour, linestyle = "#0072B2", "--"
+    colour, linestyle = "#0070B2", "--"
     title = "angular momentum about the new foot is conserved"
     reference = "Housner 1963, Bull. Seismol. Soc. Am. 53(2) 403-417, doi:10.1785/BSSA0530020403"
     assumptions = (

@@ -119,7 +119,7 @@ class Ked(RestitutionModel):
     name = "ked"
     can_stop = sees_old_foot = False
     short_name = "KED"
-    colour, linestyle = "#D55E00", "-"
+    colour, linestyle = "#D96C00", "-"
     title = "kinetic energy distribution over the mass points (the paper)"
     reference = "Mao, Deng, Shen & Wang 2024, Buildings 14(7) 2119, doi:10.3390/buildings14072119"
     assumptions = (

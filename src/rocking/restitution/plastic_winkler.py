@@ -35,7 +35,7 @@ class PlasticWinkler(InertiaModel):
 
     name = "plastic-winkler"
     short_name = "plastic Winkler"
-    colour, linestyle = "#E69F00", (0, (6, 2))
+    colour, linestyle = "#AC5B2B", (0, (6, 2))
     title = "flat base on a bed of plastic springs that do not push back"
     reference = "derived in this project (theory, Plastic Winkler bed); no publication yet"
     assumptions = (

@@ -39,7 +39,7 @@ class ShiftedImpulse(InertiaModel):
 
     name = "shifted-impulse"
     short_name = "shifted impulse"
-    colour, linestyle = "#CC79A7", ":"
+    colour, linestyle = "#AC8191", ":"
     legend = "shifted impulse, k = 2/3"
     title = "the impulse acts inside the base, at k times the half base"
     reference = (

@@ -148,7 +148,7 @@ def test_overturning_is_marked_in_every_panel():
     figure = response_picture(response)
     fall = math.acosh(1.0 + ALPHA / (6.0 / G - ALPHA)) / P
     for panel in figure.axes:
-        (mark,) = (line for line in panel.lines if line.get_color() == "#CC79A7" and len(line.get_xdata()) == 2)
+        (mark,) = (line for line in panel.lines if line.get_color() == "#AC8191" and len(line.get_xdata()) == 2)
         assert mark.get_xdata() == pytest.approx([fall, fall], rel=1e-9)
     words = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
     assert words == ["past the point of no return"]

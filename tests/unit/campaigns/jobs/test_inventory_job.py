@@ -75,7 +75,7 @@ def test_campaign_is_assess(job, tmp_path, chunk, how):
 def test_records_thresholds_and_gravity(job, records, tmp_path):
     """Records as they are, a coefficient, thresholds and another gravity stand for the arguments of `assess`."""
     old = 'synthetic = "firm-ground"\ncount = 12\nseed = 4\n'
-    path = job(5, old, 'records = "*.txt"\nunits = "m/s2"\n[restitution]\nvalue = 0.86\n[settings]\ngravity = 3.7\n')
+    path = job(5, old, 'records = "*.txt"\nunits = "m/s2"\n[restitution]\nvalue = 0.9\n[settings]\ngravity = 3.7\n')
     limits = 'pga = "0.1g"\nthresholds = { rocking = 0.1, overturning_red = 0.5 }\n'
     path.write_text(path.read_text().replace('pga = "0.3g"\n', limits))
     folder = JobFolder.create(tmp_path / "c", Job.read(path))

@@ -11,9 +11,9 @@ export const learnModels = (told) => {
 };
 
 const SPARE = [
-  { colour: "#4D9221", dash: [3, 2, 8, 2] },
-  { colour: "#A6761D", dash: [12, 3] },
-  { colour: "#7A5195", dash: [5, 3, 1, 3] },
+  { colour: "#69994D", dash: [3, 2, 8, 2] },
+  { colour: "#8C6900", dash: [12, 3] },
+  { colour: "#7F5CB9", dash: [5, 3, 1, 3] },
 ];
 
 const spares = new Map();
@@ -47,7 +47,7 @@ export const dashKey = ({ colour, dash = [], dots = false }) => {
   }, mark);
 };
 
-const ANGLES = ["#7A5195", "#4D9221", "#A6761D", "#B5446E", "#2A7F8E", "#6B6B6B"];
+const ANGLES = ["#7F5CB9", "#69994D", "#8C6900", "#C6317C", "#237F8C", "#796E5B"];
 const DASHES = [[], [9, 3], [3, 3], [9, 3, 3, 3], [6, 2], [2, 2, 6, 2]];
 
 /** Look of a curve of one of several angles: the model's own, or a colour of the angle that no model has. */

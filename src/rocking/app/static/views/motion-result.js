@@ -8,11 +8,11 @@ import { spectrumChart } from "/views/motion-spectrum.js";
 import { plainWords } from "/views/studies-words.js";
 
 const TRACES = [
-  { key: "acceleration", label: "acceleration", unit: "m/s2", colour: "#0072B2" },
-  { key: "velocity", label: "velocity", unit: "m/s", colour: "#009E73" },
-  { key: "displacement", label: "displacement", unit: "m", colour: "#D55E00" },
+  { key: "acceleration", label: "acceleration", unit: "m/s2", colour: "#0070B2" },
+  { key: "velocity", label: "velocity", unit: "m/s", colour: "#009960" },
+  { key: "displacement", label: "displacement", unit: "m", colour: "#D96C00" },
 ];
-const UP = { key: "vertical", label: "vertical acceleration", unit: "m/s2", colour: "#CC79A7" };
+const UP = { key: "vertical", label: "vertical acceleration", unit: "m/s2", colour: "#AC8191" };
 const SYNC = "motion";
 const G = 9.80665;
 const LOOK = "Drag across a trace to look into it with every sample; a double click shows all of it again.";

@@ -4,9 +4,9 @@ import { el } from "/app/dom.js";
 import { segmented } from "/app/fields.js";
 
 const KINDS = {
-  acceleration: { text: "Acceleration", label: "pseudo-acceleration", unit: "m/s2", colour: "#0072B2" },
-  velocity: { text: "Velocity", label: "pseudo-velocity", unit: "m/s", colour: "#009E73" },
-  displacement: { text: "Displacement", label: "relative displacement", unit: "m", colour: "#D55E00" },
+  acceleration: { text: "Acceleration", label: "pseudo-acceleration", unit: "m/s2", colour: "#0070B2" },
+  velocity: { text: "Velocity", label: "pseudo-velocity", unit: "m/s", colour: "#009960" },
+  displacement: { text: "Displacement", label: "relative displacement", unit: "m", colour: "#D96C00" },
 };
 
 // a logarithmic axis has no place for a period or a value of zero

@@ -29,9 +29,9 @@ const rotationRange = (_, low, high) => {
 };
 
 const ENERGIES = [
-  { key: "kinetic", label: "kinetic", colour: "#0072B2", dash: [] },
-  { key: "potential", label: "potential", colour: "#009E73", dash: [8, 3, 2, 3] },
-  { key: "lost", label: "lost at impacts", colour: "#D55E00", dash: [6, 4] },
+  { key: "kinetic", label: "kinetic", colour: "#0070B2", dash: [] },
+  { key: "potential", label: "potential", colour: "#009960", dash: [8, 3, 2, 3] },
+  { key: "lost", label: "lost at impacts", colour: "#D96C00", dash: [6, 4] },
   { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 

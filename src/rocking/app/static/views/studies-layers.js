@@ -9,7 +9,7 @@ const VERDICTS = [
   { paint: "#F2F0E8", words: "does not lift" },
   { paint: "#9CC9E8", words: "rocks and stays standing" },
   { paint: "#B33D00", words: "overturns without an impact" },
-  { paint: "#E69F00", words: "overturns after one impact" },
+  { paint: "#AC5B2B", words: "overturns after one impact" },
   { paint: "#F5DC57", words: "overturns after more impacts" },
   { paint: FAILED, words: "could not be computed" },
 ];
@@ -70,8 +70,8 @@ const difference = (found, k, other) => {
   const names = [k, other].map((place) => modelWords(found.restitutions[place]));
   const legend = [
     { paint: "#F2F0E8", words: "same verdict" },
-    { paint: "#D55E00", words: `overturns only with ${names[0]}` },
-    { paint: "#0072B2", words: `overturns only with ${names[1]}` },
+    { paint: "#D96C00", words: `overturns only with ${names[0]}` },
+    { paint: "#0070B2", words: `overturns only with ${names[1]}` },
   ];
   const paint = (ix, iy) => {
     const [a, b] = [mine[iy][ix] === 2, theirs[iy][ix] === 2];

@@ -1,0 +1,104 @@
+"""The page in four languages from one catalogue: what appears is said in its words, and nothing else changes."""
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser_pages import GENTLE, link
+
+import rocking.language
+
+ROWS = list(
+    csv.DictReader((Path(rocking.language.__file__).parent / "page.csv").read_text("utf-8").splitlines(keepends=True))
+)
+OTHERS = ["de", "it", "zh"]
+SHOWN = """() => {
+  const found = new Set();
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+    const parent = node.parentElement;
+    if (parent.closest("pre, code, textarea, script, [translate=no]") || !parent.checkVisibility()) continue;
+    found.add(node.data.replace(/[ \\n\\t]+/g, " ").trim());
+  }
+  for (const node of document.querySelectorAll("[aria-label], [title], [placeholder]"))
+    for (const name of ["aria-label", "title", "placeholder"])
+      if (node.checkVisibility() && node.getAttribute(name) && !node.closest("[translate=no]"))
+        found.add(node.getAttribute(name).trim());
+  return [...found];
+}"""
+
+
+def texts(page: Any) -> set[str]:
+    """Return every text that can be seen or heard, in every step."""
+    found: set[str] = set()
+    for step in page.locator("[role=tab][data-view]").evaluate_all("tabs => tabs.map(tab => tab.dataset.view)"):
+        page.locator(f"#tab-{step}").click()
+        page.wait_for_selector(f"#view-{step}[data-ready=true]")
+        page.wait_for_load_state("networkidle")
+        found.update(page.evaluate(SHOWN))
+    return found
+
+
+def is_prose(text: str) -> bool:
+    """Return whether a text has three words of its own: no name, unit, number or code."""
+    return len(re.findall(r"\b[a-z]{3,}\b", text)) >= 3
+
+
+def test_every_row_has_every_language_and_the_same_places() -> None:
+    """No cell is empty, no placeholder lost, no English text twice."""
+    assert list(ROWS[0]) == ["en", *OTHERS]
+    assert len({row["en"] for row in ROWS}) == len(ROWS)
+    for row in ROWS:
+        assert all(row.values()), row
+        assert len({tuple(sorted(re.findall(r"\{\d+\}", text))) for text in row.values()}) == 1, row
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_the_page_speaks_it(open_page: Callable[..., Any], code: str, shot: Callable[..., Any]) -> None:
+    """Of all sentences of all steps no more than one in ten is still English; numbers and units are the same."""
+    page = open_page(link(), locale=code)
+    said = texts(page)
+    shot(page, f"language {code}")
+    assert page.evaluate("document.documentElement.lang") == code
+    english = texts(open_page(link(), locale="en"))
+    prose = [text for text in english if is_prose(text)]
+    left = [text for text in prose if text in said]
+    assert len(prose) > 80
+    assert len(left) <= 0.1 * len(prose), left
+    numbers = {text for text in english if re.fullmatch(r"-?\d+(\.\d+)?( (m|rad|kg|s))?", text)}
+    assert numbers <= said
+
+
+def test_a_choice_is_kept_and_english_is_untouched(open_page: Callable[..., Any]) -> None:
+    """The language is chosen beside the theme, kept over a reload, and English asks for no catalogue."""
+    page = open_page(link(GENTLE), locale="fr")
+    assert page.evaluate("document.documentElement.lang") == "en"
+    asked = page.evaluate("performance.getEntriesByType('resource').map(each => each.name)")
+    assert not any("/words/" in each for each in asked)
+    row = next(row for row in ROWS if row["en"] == "Body")
+    with page.expect_navigation():
+        page.get_by_label("Language").select_option("it")
+    page.wait_for_selector("main section[data-ready=true]:not([hidden])")
+    assert page.locator("#tab-body").inner_text().endswith(row["it"])
+    page.reload()
+    page.wait_for_selector("main section[data-ready=true]:not([hidden])")
+    assert page.locator("#tab-body").inner_text().endswith(row["it"])
+
+
+def test_only_whole_sentences_are_replaced(open_page: Callable[..., Any]) -> None:
+    """A name that somebody typed stays where it is marked so; a sentence of others is not half translated."""
+    page = open_page(link(), locale="de")
+    page.evaluate(
+        "document.querySelector('main').insertAdjacentHTML('beforeend',"
+        "'<p id=kept translate=no>Body</p><p id=said>Body</p><p id=other>from here to there and back</p>')"
+    )
+    page.wait_for_timeout(50)
+    row = next(row for row in ROWS if row["en"] == "Body")
+    assert [page.locator(f"#{name}").inner_text() for name in ("kept", "said", "other")] == [
+        "Body",
+        row["de"],
+        "from here to there and back",
+    ]
