@@ -1,13 +1,15 @@
 """Inventories: what is drawn is what the measurements leave open; what the plan says is saved stands."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rocking import simulate
+from rocking import simulate, simulate_many
 from rocking.conventions import FEET
 from rocking.evidence import restitution_distribution
+from rocking.language import language
 from rocking.outcome import Outcome
 from rocking.restitution import ImpactGeometry
 from rocking.restitution.calibrated import KEPT, drawn, kept
@@ -15,6 +17,8 @@ from rocking.studies.inventory import InventoryObject, Thresholds, assess
 from rocking.studies.inventory.draws import Draws, restitutions, slenderest
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.plan import Planner, _Subject
+from rocking.studies.inventory.table import advice, plan_words
 from rocking.studies.remedies import changed
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -84,7 +88,7 @@ def test_sizes_are_drawn_evenly_within_their_intervals():
 
 def fallen(item, way, quakes, draws, *, out=0.0, down=0.0, weaker=0.0):
     """Motions that overturn an object that is changed, by the one-history engine and the blocks of remedies."""
-    body = changed(item.body(way), out=out, down=down) if out or down else item.body(way)
+    body = changed(item.body(way), True, out=out, down=down) if out or down else item.body(way)
     pairs = restitutions(draws, [body])
     count = 0
     for k, motion in enumerate(quakes.motions):
@@ -114,6 +118,49 @@ def test_what_the_plan_saves_stands(quakes, remedy):
         worse = verdict.worse
         assert fallen(URN, worse.direction, quakes, draws) == worse.overturned > 8
         assert entry.spared == pytest.approx(3 * worse.overturned / 80)
+
+
+@pytest.mark.verifies(
+    "closed form",
+    "a mass point at the floor beside those of the object",
+    within="1e-12",
+    control="test_ballast_without_its_inertia_is_another_body",
+)
+@pytest.mark.parametrize("kind", [{"shape": "round", "depth": 0.3, "base_depth": 0.17}, {}])
+def test_ballast_counts_with_its_inertia(quakes, kind):
+    """Angle, frequency and inertia of the lowered object are those of its mass points and one more below its centre."""
+    item = replace(URN, **kind)
+    planner = Planner(quakes, Draws(len(quakes.motions), 0), None, 9.80665, 1, lambda *_: True)
+    found = _Subject(planner, item, ("width",)).sides("width", down=0.15)
+    whole, inertia = with_ballast(item.body("width"), 0.15)
+    assert whole == pytest.approx(12.0 * 0.42 / 0.27, rel=1e-12)
+    height, half = 0.27, 0.5 * 0.17
+    square = height**2 + half**2
+    about_foot = inertia + whole * square
+    assert found["alpha_right"][0] == pytest.approx(math.atan2(half, height), rel=1e-12)
+    assert found["p_right"][0] == pytest.approx(math.sqrt(whole * 9.80665 * math.sqrt(square) / about_foot), rel=1e-12)
+    assert found["q_right"][0] == pytest.approx(whole * square / about_foot, rel=1e-12)
+    block = changed(item.body("width"), True, down=0.15)
+    assert (block.mass, block.moment_of_inertia) == pytest.approx((whole, inertia), rel=1e-12)
+
+
+def with_ballast(body, down):
+    """Mass and central moment of inertia of a body with a point at the floor that brings its centre down so far."""
+    height = body.side("right").centre_height
+    added = body.mass * down / (height - down)
+    lowered = height * body.mass / (body.mass + added)
+    assert lowered == pytest.approx(height - down, rel=1e-12)
+    inertia = body.moment_of_inertia + body.mass * (height - lowered) ** 2 + added * lowered**2
+    return body.mass + added, inertia
+
+
+@pytest.mark.verifies("negative control")
+def test_ballast_without_its_inertia_is_another_body():
+    """A third of the way down it takes more than a tenth of the inertia: left out, the object would turn faster."""
+    body = URN.body("width")
+    whole, inertia = with_ballast(body, 0.15)
+    bare = changed(body, down=0.15)
+    assert abs(inertia / whole / (bare.moment_of_inertia / bare.mass) - 1.0) > 0.03
 
 
 @pytest.mark.verifies("negative control")
@@ -191,3 +238,85 @@ def test_consequences_move_the_shares():
     assert [lights["low", fell] for fell in (0, 10, 30)] == [green, amber, amber]
     assert [lights["high", fell] for fell in (0, 10, 30)] == [amber, red, red]
     assert (Thresholds().needed, Thresholds().of("high").needed) == (72, 183)
+
+
+# slender and on smooth ground, no side in the middle of the other
+BOX = InventoryObject(
+    name="box", width=0.4, depth=0.26, height=1.2, centre_of_mass_height=0.5, mass=50.0, friction=0.45, count=2
+)
+
+
+@pytest.fixture(scope="module")
+def few():
+    """Motions of which some overturn the box."""
+    return Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.4g"), count=8, seed=3)
+
+
+def spatial(item, hazard, scale=1.0):
+    """Outcomes along width and depth by one history after another of the body in space."""
+    motions = [replace(each, acceleration=scale * each.acceleration) for each in hazard.motions]
+    shaken = [{axis: each} for axis in "xy" for each in motions]
+    found = simulate_many(item.in_space(), shaken, restitution="ked", friction=item.friction)
+    return found.outcome.values.ravel()
+
+
+@pytest.mark.verifies("computed anew", "one history after another of the body in space", within="no motion")
+def test_weaker_shaking_serves_in_three_dimensions(few):
+    """Under the share that the plan names none overturns it and few make it slide; as it is some do."""
+    loose = Thresholds(overturning_green=0.4, overturning_red=0.5)  # 8 motions are enough for green
+    found = assess([BOX], few, thresholds=loose)
+    (entry,), (verdict,) = found.plan, found.verdicts
+    assert entry.in_space
+    assert (entry.wider, entry.lower, entry.ballast) == (None, None, None)
+    assert (spatial(BOX, few)[8:] == Outcome.OVERTURNED.code).sum() == verdict.worse.overturned > 0
+    assert 0.0 < entry.weaker < 1.0
+    assert Outcome.OVERTURNED.code not in spatial(BOX, few, entry.weaker)
+    words = plan_words(entry, language("de"))
+    assert "werden in drei Dimensionen nicht berechnet" in words
+    assert "Anker, die entlang einer Kante" in words
+
+
+@pytest.mark.verifies("closed form", "moments about the edge, m (a h - g b) over the base", within="1e-9")
+def test_anchors_in_three_dimensions():
+    """The force that holds a box down is that of its rectangle; what slides before it lifts needs none, but a hold."""
+    two = Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.4g"), count=2, seed=3)
+    (entry,) = assess([BOX], two).plan
+    wanted = (0.4 * 0.5 - 0.13) / 0.26
+    assert entry.pull == pytest.approx(wanted, rel=1e-9)
+    assert entry.force == pytest.approx(wanted * 50.0 * 9.80665, rel=1e-9)
+    low = replace(BOX, height=0.3, centre_of_mass_height=0.1, friction=0.1)
+    (entry,) = assess([low], two).plan
+    assert (entry.pull, entry.shear) == pytest.approx((0.0, 0.4), rel=1e-9)
+    assert "a fixing that holds 0.4 of its weight across" in plan_words(entry, language("en"))
+
+
+@pytest.mark.verifies("closed form", "friction times gravity", within="a thousandth on either side")
+def test_what_slides_often_is_not_green():
+    """Just below friction times gravity a low box stays green, just beyond it slides under each and is amber."""
+    low = replace(BOX, height=0.3, centre_of_mass_height=0.1, friction=0.1)
+    for factor, light in ((0.999, Light.GREEN), (1.001, Light.AMBER)):
+        level = IntensityLevel("PGA", factor * 0.1 * 9.80665)
+        hazard = Hazard.of_family("firm-ground", level, count=2, seed=1)
+        found = assess([low], hazard)
+        (verdict,) = found.verdicts
+        assert (verdict.light, verdict.worse.overturned) == (light, 0)
+        assert verdict.worse.slid == (2 if light is Light.AMBER else 0)
+        assert found.plan == () or found.plan[0].weaker >= 0.99
+    assert "Keep it from sliding" in advice(verdict, found)
+    assert Thresholds().light(lifted=0, overturned=0, count=100, high_rotation=0.0, slid=19) is Light.GREEN
+    assert Thresholds().of("high").light(lifted=0, overturned=0, count=100, high_rotation=0.0, slid=8) is Light.AMBER
+
+
+@pytest.mark.verifies("computed anew", "the body that each motion has, by one history each", within="nothing: equal")
+def test_sizes_are_drawn_in_three_dimensions(few):
+    """Each motion has its own body of the interval; the size as it stands gives other rotations."""
+    vague = replace(BOX, approximate={"depth": 0.05, "height": 0.1}, mass=None)
+    (found,), (bare,) = (assess([each], few).verdicts for each in (vague, replace(vague, approximate={})))
+    bodies = Draws(8, few.description["seed"]).bodies(vague)
+    fell = 0
+    for k, motion in enumerate(few.motions):
+        one = simulate_many(bodies[k % 5].in_space(), [{"y": motion}], restitution="ked", friction=0.45)
+        fell += int(one.outcome.values.item() == Outcome.OVERTURNED.code)
+    assert found.results[1].overturned == fell
+    assert found.results[1].median_rotation != bare.results[1].median_rotation
+    assert found.uplift_acceleration < bare.uplift_acceleration
