@@ -166,7 +166,7 @@ def inventory_of(
 ) -> "tuple[Inventory, Callable[[Callable[[int], None] | None], Hazard], Thresholds, Any]":
     """Return the objects of an inventory, what makes its motions, where its lights change, and the stated model."""
     from rocking.studies.inventory import Thresholds, read_inventory
-    from rocking.studies.inventory.hazard import Hazard, IntensityLevel
+    from rocking.studies.inventory.hazard import SEED, Hazard, IntensityLevel
     from rocking.studies.motion_sets import SyntheticSet
 
     table, motions = problem.document.inventory, problem.motions
@@ -195,9 +195,9 @@ def inventory_of(
         with located("inventory"):
             if isinstance(motions, SyntheticSet):
                 assert level is not None  # the document refuses to be without
-                return Hazard.of_family(
-                    motions.family, level, count=motions.count, seed=motions.seed, progress=progress
-                )
+                own = problem.document.motions[0].seed
+                seed = SEED if own is None else own  # as on the command line
+                return Hazard.of_family(motions.family, level, count=motions.count, seed=seed, progress=progress)
             records = [motions[k] for k in range(len(motions))]
             return Hazard.of_records(records, level)  # pulses are refused by the document
 

@@ -132,3 +132,15 @@ def test_in_german_with_a_plan(printed, objects):
     english = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=el")
     assert "in the language el, of which there are no words yet" in english
     assert "What to do first, any one of:" in english
+
+
+def test_one_default_seed(printed, objects, tmp_path):
+    """Without a seed a question in a file is that of the command line; another seed is another answer."""
+    few = ("--synthetic", "point-source", "--count", "5")
+    told = json.loads(printed(objects, "--pga", "0,3g", *few, "--json"))
+    job = tmp_path / "job.toml"
+    text = "[inventory]\nobjects = 'objects.csv'\npga = '0.3g'\n[motions]\nsynthetic = 'point-source'\ncount = 5\n"
+    job.write_text(text, encoding="utf-8")
+    assert json.loads(printed(job, "--json"))["objects"] == told["objects"]
+    job.write_text(f"{text}seed = 0\n", encoding="utf-8")
+    assert json.loads(printed(job, "--json"))["objects"] != told["objects"]

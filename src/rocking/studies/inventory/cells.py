@@ -230,7 +230,7 @@ def parts(
     >>> {side: one.value for side, one in found.items()}
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
-    text, about = _without_about(_tidied(str(cell)))
+    text, about = _without_about(_tidied(cell if isinstance(cell, str) else f"{cell:.10g}"))
     if match := _TWICE.fullmatch(text):
         found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
         if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):
@@ -258,6 +258,8 @@ def parts(
     units = [[by for _, word in _PAIR.findall(piece) if (by := LENGTH_UNITS.get(_unit(word)))] for piece in pieces]
     found = {}
     for side, piece, own in zip(labels, pieces, units, strict=True):
+        if is_missing(piece):
+            raise InvalidValueError(f"{title} is {text[:40]!r}")
         one = ("~" if about and not piece.startswith("~") else "") + piece
         found[side] = measure(title, one, None if own else next(iter(units[-1]), factor), mark)
     if "length" in found:

@@ -26,7 +26,8 @@ MOST_MOTIONS = 5000
 FAMILY, COUNT, SEED = "firm-ground", 200, 1
 """What serves where nobody says otherwise."""
 
-_LEVEL = re.compile(r"((?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
+_LEVEL = re.compile(r"((?:[0-9]+(?:[.,][0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
+_THOUSANDS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class IntensityLevel:
 
     @classmethod
     def of(cls, kind: str, words: str) -> "IntensityLevel":
-        """Return a level from a number with its unit, such as ``0.3g`` or ``25cm/s``: it is never guessed."""
+        """Return a level from a number with its unit, such as ``0.3g``, ``0,3g`` or ``25cm/s``: it is never guessed."""
         if kind not in {"PGA", "PGV"}:
             raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
         units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
@@ -64,7 +65,12 @@ class IntensityLevel:
                 f"{kind} must be a number with its unit, one of {', '.join(units)}, "
                 f"such as {'0.3g' if kind == 'PGA' else '25cm/s'}, got {words!r:.40}"
             )
-        return cls(kind, float(match[1]) * units[match[2]])
+        if _THOUSANDS.fullmatch(match[1]):
+            decimal, whole = match[1].replace(",", "."), match[1].replace(",", "")
+            raise InvalidValueError(
+                f"{kind} is ambiguous: {words!r:.40} could be {decimal} or {whole} {match[2]}; write one of them"
+            )
+        return cls(kind, float(match[1].replace(",", ".")) * units[match[2]])
 
 
 @dataclass(frozen=True, eq=False)

@@ -125,6 +125,8 @@ RECORDS = [GroundMotion([0.0, 1.0, -2.0, 0.0], 0.1, name="one"), GroundMotion([0
         ("PGA", ".3g", 0.3 * G),
         ("PGA", "2.5m/s2", 2.5),
         ("PGA", "300 gal", 3.0),
+        ("PGA", "0,3g", 0.3 * G),
+        ("PGA", "2,5 m/s2", 2.5),
         ("PGA", "3e2cm/s2", 3.0),
         ("PGV", "25cm/s", 0.25),
         ("PGV", "0.25 m/s", 0.25),
@@ -137,7 +139,8 @@ def test_level_from_words(kind, words, value):
 
 @pytest.mark.parametrize(
     ("kind", "words"),
-    [("PGA", "0.3"), ("PGA", "g"), ("PGA", "0,3g"), ("PGA", "-0.3g"), ("PGA", "0g"), ("PGA", "nang"), ("PGA", "1e9g"),
+    [("PGA", "0.3"), ("PGA", "g"), ("PGA", "1,234cm/s2"), ("PGA", "-0.3g"), ("PGA", "0g"), ("PGA", "nang"),
+     ("PGA", "1e9g"),
      ("PGA", "30cm/s"), ("PGV", "0.3g"), ("PGV", "1e999m/s"), ("PGA", 0.3), ("SA", "0.3g")],
 )  # fmt: skip
 def test_level_refused(kind, words):
