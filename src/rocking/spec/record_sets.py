@@ -36,6 +36,8 @@ def record_set(
     """Return the records of a table, and how they were chosen where it has a target."""
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
+    if odd := sorted({"component", "vertical", "vertical_file"} & table.model_fields_set):
+        raise InvalidValueError(f"a set takes no {', '.join(odd)}: all components of its records are read")
     steps = with_files(table, inputs)
     stations = stations_of(steps)
     for name in table.records or []:

@@ -130,6 +130,7 @@ def test_what_is_no_set_is_refused(refuses, folder):
     refuses(["fragility", *BLOCK, str(folder / "*.at2")], "damaged.at2")
     refuses(["motions", folder / "nothing"], "no such file or folder")
     refuses(["motions", folder, "--set", "motion.count=2"], "goes with target")
+    refuses(["motions", folder, "--set", "motion.component=000"], "a set takes no component")
     refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
     refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
 
