@@ -9,6 +9,7 @@ import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.campaigns.jobs import Job, JobFolder, analyses
 from rocking.cli import main
+from rocking.errors import InvalidValueError
 from rocking.motions.components import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import incremental_dynamic_analysis, multiple_stripe_analysis
@@ -119,3 +120,12 @@ def test_an_incremental_campaign_of_a_solid(files):
     assert np.array_equal(found.responses.rotation, python.responses.rotation)
     smooth = incremental_dynamic_analysis(body, [pair], [4.0, 8.0], 0.9, friction=0.2)
     assert not np.array_equal(found.responses.rotation, smooth.responses.rotation)
+
+
+@pytest.mark.verifies("damage")
+def test_mass_at_one_point_is_no_body_that_slides():
+    """A mass without a moment of inertia of its own is refused with friction, and rocks without."""
+    point = rk.MassPoints([(0.0, 1.0)], [10.0], feet=(-0.2, 0.2))
+    with pytest.raises(InvalidValueError, match="needs a moment of inertia about its centre"):
+        rk.simulate(point, X, None, friction=0.3)
+    assert rk.simulate(point, X, 0.9).outcome is not rk.Outcome.FAILED

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from rocking import checks
 from rocking.bodies import Body
+from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 
 LEFT, RIGHT = -1, 1
@@ -35,6 +36,11 @@ class PlaneBase:
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         left, right = body.side("left"), body.side("right")
         mass = body.mass
+        if not body.moment_of_inertia > 0.0:
+            raise InvalidValueError(
+                "with friction a body needs a moment of inertia about its centre of mass, and mass at one point has "
+                "none: say where the mass is"
+            )
         return cls(mass, body.moment_of_inertia / mass, right.centre_height, left.half_width, right.half_width)
 
     @property
