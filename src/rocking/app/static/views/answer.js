@@ -14,7 +14,8 @@ export const createAnswer = (app, name, keys, question) => {
     const given = question();
     if (!given) return become(null);
     try {
-      become(await app.latest(name, "response", given));
+      const found = await app.latest(name, "response", given);
+      if (question()) become(found); // else nothing moves any more
     } catch (error) {
       if (!app.superseded(error)) become(null, error.message);
     }

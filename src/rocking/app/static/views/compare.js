@@ -1,6 +1,6 @@
 /** Compare: does it stand, and does the model matter? Every model of the impact, side by side. */
 
-import { computed, html, render, useEffect, useMemo } from "/parts/preact.js";
+import { computed, html, render, signal, useEffect, useMemo } from "/parts/preact.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number } from "/app/format.js";
 import { createTime } from "/charts/figure.js";
@@ -48,17 +48,17 @@ export const mount = (section, app) => {
 const createMargins = (app) => {
   const questions = createQuestions(app, "assess");
   const keyOf = ({ body, motion, settings }) => JSON.stringify([body, motion, settings]);
-  let of = "";
-  app.inputs.subscribe((inputs) => {
-    if (keyOf(inputs) !== of) questions.shown.value = null;
-  });
+  const [now, of] = [signal(keyOf(app.inputs.get())), signal("")];
+  app.inputs.subscribe((inputs) => (now.value = keyOf(inputs)));
+  const question = computed(() => (now.value === of.value ? questions.shown.value : null));
   return {
     questions,
-    found: computed(() => questions.shown.value?.answer?.models ?? null),
+    question,
+    found: computed(() => question.value?.answer?.models ?? null),
     ask: () => {
       const inputs = app.inputs.get();
       const { tables, files } = motionOf(inputs);
-      of = keyOf(inputs);
+      of.value = keyOf(inputs);
       const name = `Margins of ${inputs.body.name || app.project.here.value.name}`;
       return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name);
     },
@@ -169,9 +169,10 @@ const Margins = ({ app, margins }) => {
   useEffect(() => void questions.look(), []);
   const inputs = app.inputs.get();
   if (!inputs.motion || inputs.response?.free != null) return null;
-  const wrong = questions.shown.value?.state === "refused" ? questions.shown.value.message : "";
+  const asked = margins.question.value;
+  const wrong = asked?.state === "refused" ? asked.message : "";
   return html`<div class="toolbar">
-      ${questions.busy.value ? html`<progress aria-label="The margins are being computed"></progress>`
+      ${asked && questions.busy.value ? html`<progress aria-label="The margins are being computed"></progress>`
         : html`<button type="button" class="button" disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins</button>`}
     </div>
     ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
