@@ -2,22 +2,27 @@
 
 What the header states is read a second time by `stated_by_headers`, which shares nothing with the readers. The number
 of damaged copies a format is 1000, or the environment variable ROCKING_FUZZ; the tests of miniSEED and SAC, beside
-their other tests, follow it with a part of it.
+their other tests, follow it with a part of it, and so do lists of objects.
 """
 
+import io
 import os
 import re
 import time
+import zipfile
 from typing import Any
 
 import numpy as np
 import pytest
 from random_cases import record
+from unit.studies.inventory.museum_list import LIST, write_museum_list
+from unit.studies.inventory.test_lists import open_document
 from verification.record_mutations import mutated
 from verification.stated_by_headers import HEADERS
 
-from rocking.errors import InvalidValueError, RecordError
+from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
+from rocking.studies.inventory import read_inventory
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 
@@ -184,3 +189,40 @@ def test_a_lax_reader_is_caught() -> None:
     assert len(wrong) > 40
     raised, *_ = findings("knet", _Raising(), 400)
     assert any("IndexError" in line or "ValueError" in line for line in raised)
+
+
+def _repacked(content: bytes, member: str, seed: int) -> bytes:
+    """A workbook of which one member is damaged, so that the damage reaches the reader."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(file, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, mutated(old.read(name), seed) if name == member else old.read(name))
+    return file.getvalue()
+
+
+@pytest.mark.verifies("behaviour")
+@pytest.mark.parametrize("kind", ["xlsx", "ods", "csv"])
+def test_damaged_lists(kind, tmp_path):
+    """A list with damage is read, each row an object or a reason, or refused by our exception, within seconds."""
+    path = tmp_path / f"list.{kind}"
+    write_museum_list(path)
+    table = [line.split("|") for line in LIST.splitlines()]
+    whole = {
+        "xlsx": path.read_bytes(),
+        "ods": open_document([[float(cell) if cell.isdigit() else cell for cell in row] for row in table[:8]]),
+        "csv": "\n".join(";".join(row) for row in table).encode(),
+    }[kind]
+    member = {"xlsx": "xl/worksheets/sheet2.xml", "ods": "content.xml"}.get(kind)
+    count, read_anyway = max(20, COPIES // {"xlsx": 25, "ods": 10, "csv": 10}[kind]), 0
+    for seed in range(count):
+        path.write_bytes(_repacked(whole, member, seed) if member and seed % 4 else mutated(whole, seed))
+        begun = time.process_time()
+        try:
+            found = read_inventory(path)
+        except RockingError:
+            continue
+        finally:
+            assert time.process_time() - begun < SLOWEST, seed
+        assert found.objects or found.not_assessed
+        read_anyway += 1
+    assert read_anyway > 0.1 * count

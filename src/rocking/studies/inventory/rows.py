@@ -79,7 +79,7 @@ class RowValues:
                 self.approximate[other] = self.approximate[own]
         elif len(sides) < 2:
             return
-        if shape != "round":
+        if shape != "round" and min(fields["width"], fields["depth"]) > 0.0:  # others are refused as they are
             self._inscribe(shape, word)
         fields["shape"] = "round"
 

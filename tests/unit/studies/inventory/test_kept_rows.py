@@ -189,6 +189,7 @@ def test_a_polygon_is_no_better_than_it_is(sides, turn):
     radius = 0.5 * taken("achteckig", width, depth).base("width")
     assert 0.8 * nearest_side(corners) < radius <= nearest_side(corners) * (1.0 + 1e-9)
     assert 0.5 * min(width, depth) > nearest_side(corners) * 0.999
+    assert parse_inventory(f"{HEAD};Form\na;0;0;120;achteckig").not_assessed[0].reason.startswith("width must be in")
     alone = parse_inventory("Objekt;Breite cm;Höhe cm;Form\na;40;120;sechseckig").objects[0]
     assert alone.width == alone.depth == pytest.approx(0.4 * math.cos(math.pi / 5.0))
 
