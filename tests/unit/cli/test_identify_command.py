@@ -315,7 +315,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
 @pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU", room="doors")
 def test_a_minute_takes_seconds(answered, phone, tmp_path):
     """From file to answer, with a rocking body in the middle."""
-    from rocking.identification.readers.wav import read_wav
+    from rocking.identification.readers.recording import read_wav
 
     samples = read_wav(phone.read_bytes(), "phone").samples[:, 0]
     quiet = np.random.default_rng(1).normal(0.0, samples[: RATE // 4].std(), (2, 27 * RATE))

@@ -19,28 +19,15 @@ from rocking.dynamics.parameters import UNIMPOSED
 from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch
+from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch, made_or_refused
 from rocking.dynamics.space.ground import SpatialGround, ground_of, joined
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.segments import Segments
 from rocking.outcome import UNCOUNTED, Outcome
 
 RENAMED = {"held": "contacts_held", "replaced": "landings_replaced"}
 """Results whose names in the engine mean something else in `rocking.quantities`."""
-
-
-def hull_bodies(bodies: Sequence[Any]) -> tuple[list[HullBody | None], dict[int, str]]:
-    """Return bodies on their hulls, None for what cannot be one, and why by its number."""
-    made: list[HullBody | None] = []
-    refused: dict[int, str] = {}
-    for number, body in enumerate(bodies):
-        try:
-            made.append(HullBody.of(body))
-        except RockingError as error:
-            made.append(None)
-            refused[number] = str(error)
-    return made, refused
 
 
 def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
@@ -57,7 +44,7 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
     progress: Callable[[int], None] | None = None,
 ) -> SpatialBatch:
     """Return the outcome of every combination; motions are tuples of components, None for ground at rest."""
-    made, refused = hull_bodies(bodies)
+    made, refused = made_or_refused(HullBody.of, bodies)
     if not made or not motions or not restitutions or not starts:
         raise InvalidValueError("bodies, motions, restitution and start must be at least one each, got none")
     if (frictions < 0.0).any():

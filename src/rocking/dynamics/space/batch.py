@@ -5,7 +5,7 @@ import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from rocking.version import SOFTWARE
 if TYPE_CHECKING:
     import xarray as xr
 
+Made = TypeVar("Made")
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")  # axes of the arrays of a batch, in order
 _LONG = 300.0
 _FEW = 100  # up to so many bodies are spelled out; of more of them the digest alone is kept
@@ -108,7 +109,10 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     """Return the outcome of every combination; motions: tuples of components."""
     # the reference engine is thousands of times slower
     settings = settings or Settings(mechanics="space, many")
-    several, refused = _bodies(bodies)
+    listed = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
+    several, refused = made_or_refused(SpatialBody.of, listed)
+    if not several:
+        raise InvalidValueError("bodies must be at least one, got none")
     motion_list = _listed("motions", motions)
     grounds, names = _grounds(motion_list, duration)
     laws = [batch_law(each) for each in _listed("restitution", restitution)]
@@ -152,17 +156,16 @@ def _components(motion: Any) -> Sequence[Any]:
     return motion if isinstance(motion, tuple) else (motion,)
 
 
-def _bodies(bodies: Any) -> tuple[list[SpatialBody | None], dict[int, str]]:
-    several: list[SpatialBody | None] = []
+def made_or_refused(make: Callable[[Any], Made], bodies: Sequence[Any]) -> tuple[list[Made | None], dict[int, str]]:
+    """Return what is made of bodies, None for what cannot be, and why by its number."""
+    several: list[Made | None] = []
     refused: dict[int, str] = {}
-    for number, body in enumerate(bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]):
+    for number, body in enumerate(bodies):
         try:
-            several.append(SpatialBody.of(body))
+            several.append(make(body))
         except RockingError as error:
             several.append(None)
             refused[number] = str(error)
-    if not several:
-        raise InvalidValueError("bodies must be at least one, got none")
     return several, refused
 
 

@@ -7,10 +7,9 @@ from rocking import checks
 from rocking.errors import MeasurementError, RecordError, RockingError
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.readers.columns import ReaderOptions, impact_list, motion_series
-from rocking.identification.readers.recording import COMPRESSED, read_compressed
+from rocking.identification.readers.recording import COMPRESSED, read_compressed, read_wav
 from rocking.identification.readers.sound import impacts_heard, refuse_sound
 from rocking.identification.readers.video import VIDEOS, rotation_seen
-from rocking.identification.readers.wav import read_wav
 from rocking.motions.formats.record import Source
 
 Measurement = ImpactTimes | RotationSeries

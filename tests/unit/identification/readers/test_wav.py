@@ -9,8 +9,7 @@ from rocking_sounds import RATE, rocking, wav
 
 from rocking.errors import MeasurementError, MissingExtraError
 from rocking.identification.readers import read_measurement
-from rocking.identification.readers.recording import read_compressed
-from rocking.identification.readers.wav import read_wav
+from rocking.identification.readers.recording import read_compressed, read_wav
 
 SINE = 0.5 * np.sin(np.arange(4410) * 0.1)
 
