@@ -16,7 +16,7 @@ from rocking.dynamics import SpatialBody
 from rocking.dynamics.space.attitude import matrix
 from rocking.errors import InvalidValueError
 from rocking.plots.animation import page
-from rocking.plots.animation_scene import HullScene
+from rocking.plots.animation_hull import HullScene
 
 # a pedestal and an eccentric block on it: no symmetry
 STATUE = Solid([Part(box(0.5, 0.7, 0.9), 2400.0), Part(box(0.3, 0.2, 0.5), 1500.0).moved(0.06, 0.1, 0.9)])
