@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.assessment._assess import DIRECTIONS
+from rocking.assessment._assess import SPACE_DIRECTIONS
 from rocking.bodies.solid import Part, Solid, box
 from rocking.errors import InvalidValueError
 from rocking.reports import assessment_report
@@ -53,9 +53,9 @@ def test_it_falls_over_that_edge(found):
 
 def test_directions_and_ways(found):
     """It is turned into directions over a whole turn; one that is the same half round has one way less."""
-    assert len(found.motions) == DIRECTIONS
-    assert found.several == f"1 motion (in {DIRECTIONS} directions)"
-    assert {each.least.shape for each in found.models.values()} == {(2, DIRECTIONS)}
+    assert len(found.motions) == SPACE_DIRECTIONS
+    assert found.several == f"1 motion (in {SPACE_DIRECTIONS} directions)"
+    assert {each.least.shape for each in found.models.values()} == {(2, SPACE_DIRECTIONS)}
     even = rk.assess(Solid(box(0.5, 0.9, 1.2)), PULSE, 0.9, azimuth=0.4, **QUICK)
     assert even.models["r = 0.9"].least.shape == (1, 1)
     assert len(even.motions) == 1
