@@ -76,6 +76,11 @@ def convert(
     with hinted(None, record[0].removeprefix("x="), upright):
         if file is None:
             scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
+            if any(word.startswith("y=") for word in record):
+                raise InvalidValueError(
+                    "one horizontal component is written, x= with z=; rocking motions turns two of them, by "
+                    "--set motion.process=rotate:angle=30"
+                )
             table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
         else:
             table = checked(RecordDocument, with_sets(tables_in(file) or {}, arguments.sets)).motion

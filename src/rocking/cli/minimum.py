@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rocking.studies.minimum_acceleration import Transitions
 
 _SPOKEN = 4  # stretches of overturning that a sentence names
+_MOST_ROWS = 12  # crossings that the terminal lists
 
 
 _COLUMNS = {
@@ -149,11 +150,16 @@ class MinimumAnswer:
         first = "lifts it:     " if lifts < slides else "slides from:  "
         page.line(f"{first}{_g(min(lifts, slides))}, {in_unit(min(lifts, slides), unit, '.6g')}")
         page.line()
+        if transitions.minimum is not None and (peak := problem.motions[0].peak) > 0.0:
+            share = f"{transitions.minimum / peak:.4g} times this motion"
+            page.line(f"The lowest at which it overturns is {share}, {_g(transitions.minimum)}.", "bold")
         page.line(sentence(stretches(transitions)), "bold")
         if len(transitions):
-            head = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above")
+            head, rows = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above"), transitions_facts(transitions)
             page.line()
-            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in transitions_facts(transitions)])
+            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in rows[:_MOST_ROWS]])
+            if len(rows) > _MOST_ROWS:
+                page.line(f"{len(rows) - _MOST_ROWS} more crossings above these; --json and --out a.csv have all.")
         if transitions.failed:
             page.warn([f"{transitions.failed} of {transitions.samples} histories could not be computed"])
         page.warn(filter(None, [transitions.contact]))

@@ -162,7 +162,7 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
     ----------
     words : str or TargetSpectrum
         ``eurocode8:ag=0.25g,ground=C,type=1``, ``asce7:sds=1.0g,sd1=0.6g,tl=8``, or a CSV file whose heading states the
-        unit, as in ``T [s], Sa [g]``. Accelerations without a unit are in m/s2.
+        unit, as in ``T [s], Sa [g]``. Accelerations need a unit.
     folder : Path, optional
         Where the file is looked for.
 
@@ -205,7 +205,8 @@ CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce
 def _acceleration(key: str, text: str) -> float:
     """Return a number, in SI units where it has a unit of acceleration."""
     found = _QUANTITY.fullmatch(text)
-    unit = (found[2] or "m/s2") if found else ""
-    if found is None or unit not in (ACCELERATION_UNITS if key in {"ag", "sds", "sd1"} else {"m/s2", "s"}):
-        raise InvalidValueError(f"{key} of a target must be a number such as 2.5 or 0.25g, got {text!r:.40}")
-    return float(found[1]) * (ACCELERATION_UNITS[unit] if found[2] and unit != "s" else 1.0)
+    is_acceleration = key in {"ag", "sds", "sd1"}
+    if found is None or found[2] not in (ACCELERATION_UNITS if is_acceleration else {"", "s"}):
+        like = "an acceleration with its unit such as 0.25g or 2.5m/s2" if is_acceleration else "a number such as 8"
+        raise InvalidValueError(f"{key} of a target must be {like}, got {text!r:.40}")
+    return float(found[1]) * (ACCELERATION_UNITS[found[2]] if is_acceleration else 1.0)

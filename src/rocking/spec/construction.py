@@ -233,17 +233,21 @@ def motions_of(
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
-            sets.append(_motions(table, inputs, paired))
+            sets.append(_motions(table, inputs, paired, alone=len(tables) == 1))
     if len(sets) == 1 and isinstance(sets[0], SyntheticSet):
         return sets[0]
     count = sum(len(each) for each in sets)
     if count > MOST_IN_MEMORY:
         raise InvalidValueError(f"motions: a set of several sources may have up to {MOST_IN_MEMORY}, got {count}")
+    if not count:
+        raise InvalidValueError("motions: no record of any source has a horizontal component that moves")
     with located("motions"):
         return MotionList([each[k] for each in sets for k in range(len(each))], plane=plane)
 
 
-def _motions(table: "MotionTable", inputs: InputFiles, paired: bool) -> "list[Motion] | SyntheticSet":
+def _motions(
+    table: "MotionTable", inputs: InputFiles, paired: bool, *, alone: bool = True
+) -> "list[Motion] | SyntheticSet":
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         return _family(table, table.count)
@@ -251,7 +255,7 @@ def _motions(table: "MotionTable", inputs: InputFiles, paired: bool) -> "list[Mo
         return [components_of(table, inputs, table.scale)]
     if table.records and (table.target or table.mirrored or any(is_set(one, inputs) for one in table.records)):
         if not (table.component or table.vertical or table.vertical_file):
-            return motions_of_set(table, inputs, paired=paired)
+            return motions_of_set(table, inputs, paired=paired, alone=alone)
         if table.target or table.mirrored:
             raise InvalidValueError("component, vertical and vertical_file do not go with target or mirrored")
     motions: list[Motion] = [pulse(text) for text in table.pulse or ()] or _records(table, inputs)

@@ -67,8 +67,11 @@ def record_set(
     return kept.mirrored() if table.mirrored else kept, chosen
 
 
-def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool) -> list[Any]:
-    """Return the motions of a study; paired: two horizontal components are one motion, which no plane body takes."""
+def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, alone: bool = True) -> list[Any]:
+    """Return the motions of a study; paired: two horizontal components are one motion, which no plane body takes.
+
+    Of records alone there must be one that moves; among others they are left out.
+    """
     found, _ = record_set(table, inputs)
     motions: list[Any] = []
     left_out = [*found.left_out]
@@ -78,10 +81,12 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool) ->
         both = paired and record.y is not None and moving
         left_out += [] if both else [(each.name, STILL) for each in level if not each.peak > 0.0]
         motions += [record] if both else moving
+    none = not motions and not any(why == STILL for _, why in left_out)
+    left_out += [(name, "no horizontal component") for name in table.records or () if none and not alone]
     plausibility.warn(f"left out: {name}: {why}" for name, why in left_out[:MOST_NAMED])
     if (more := len(left_out) - MOST_NAMED) > 0:
         plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
-    if not motions:
+    if not motions and alone:
         still = any(why == STILL for _, why in left_out)
         raise InvalidValueError(f"every record is {STILL}" if still else "no record has a horizontal component")
     return motions

@@ -133,6 +133,35 @@ def test_what_is_no_set_is_refused(refuses, folder):
     refuses(["motions", folder, "--set", "motion.component=000"], "a set takes no component")
     refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
     refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
+    refuses(["motions", folder, "--set", "motion.target=eurocode8:ag=0.25,ground=C"], "with its unit such as 0.25g")
+    first = folder / "RSN0_A000.AT2"
+    refuses(["convert", f"x={first}", f"y={first}", "--out", folder / "o.csv"], "rocking motions turns two of them")
+
+
+def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
+    """A factor scales, in words that people use; what a list cannot say of a row is refused, not passed over."""
+    name = "RSN0_A000.AT2"
+    peaks = []
+    for head, factor in (("motion,scale", 1), ("file,factor", 3), ("Aufzeichnung,Skalierung", 3)):
+        (folder / "list.csv").write_text(f"{head}\n{name},{factor}\n")
+        _, out, _ = run("motions", folder / "list.csv", "--periods", "1", "--json")
+        (record,) = json.loads(out)["records"]
+        peaks.append(max(record[key] for key in ("pga_x", "pga_y") if record[key] is not None))
+    assert peaks[1:] == pytest.approx([3.0 * peaks[0]] * 2)
+    (folder / "list.csv").write_text(f"file,units\n{name},g\n")
+    refuses(["motions", folder / "list.csv"], "a list has no column 'units'")
+
+
+@pytest.mark.filterwarnings("always:check the input")
+def test_a_source_without_horizontal_records_is_left_out(run, refuses, folder, tmp_path):
+    """Beside others it is told; alone it is refused."""
+    upright = tmp_path / "upright"
+    upright.mkdir()
+    write_motion(GroundMotion([0.0, 1.0, -1.0, 0.0] * 20, 0.02), upright / "S-UP.AT2", "peer")
+    words = ["codes", *BLOCK]
+    code, _, err = run(*words, folder / "RSN0_A000.AT2", upright)
+    assert (code, "no horizontal component" in err) == (0, True)
+    refuses([*words, upright], "horizontal component")
 
 
 @pytest.mark.parametrize("word", ["{}", "x={}", "{}#acceleration"])

@@ -78,7 +78,7 @@ REFUSED = {
     "gravity huge": ([*SIZE, PULSE, "--set", "settings.gravity=1e9"], "gravity"),
     "friction": ([*SIZE, PULSE, "--friction", "0"], "--friction must be a number > 0"),
     "picture": ([*SIZE, PULSE, "--out", "a.bmp"], ".png, .svg or .pdf"),
-    "animation": ([*SIZE, PULSE, "--out", "a.mp4"], "animation (.html or .gif)"),
+    "animation": ([*SIZE, PULSE, "--out", "a.mp4"], "animation (.html, .gif or .glb)"),
     "folder": ([*SIZE, PULSE, "--out", "none/a.csv"], "no folder 'none'"),
     "unknown": ([*SIZE, PULSE, "--speed", "2"], "--speed"),
 }

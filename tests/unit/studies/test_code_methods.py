@@ -11,6 +11,7 @@ from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.comparison import _quantiles
 from rocking.studies.code_methods.methods import BodySides
+from rocking.studies.remedies import Margins
 
 SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
 PULSES = [rk.pulses.sine(1.0, period) for period in (0.3, 0.4, 0.5, 0.6, 0.8, 1.2)]
@@ -101,6 +102,6 @@ def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():
     assert np.array_equal(one.overturning, twin.overturning)
     assert one.asymmetric.all()
     assert one.overturning[0] == one.overturning[1]
-    ways = [rk.studies.margins.Margins.of(LARGE, pushes, r, "pga", None, {}).least_each for r in (pair, 0.9)]
+    ways = [Margins.of(LARGE, pushes, r, "pga", None, {}).least_each for r in (pair, 0.9)]
     assert [len(each) for each in ways] == [2, 1]
     assert ways[0][0][0] != pytest.approx(ways[0][1][0], rel=0.01)

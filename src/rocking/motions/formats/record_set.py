@@ -32,6 +32,9 @@ _OF_NAMES = re.compile(r"^(horizontal-1|horizontal-2|vertical) acc\.? filename$"
 _PEER_AXES = {"horizontal-1": "x", "horizontal-2": "y", "vertical": "z"}
 _PEER = "horizontal-1 acc. filename"
 _TITLES = {"motion", "file", "x"}
+_ALSO = {"record": "motion", "factor": "scale", "aufzeichnung": "motion", "datei": "motion", "faktor": "scale",
+         "skalierung": "scale", "registrazione": "motion", "fattore": "scale"}  # fmt: skip
+_MEANT = {"units": "units", "unit": "units", "time_step": "time_step", "dt": "time_step", "format": "format"}
 LARGEST_LIST = 1 << 24  # no list of records is larger [bytes]
 _TOP = 500  # lines within which PEER's list of files begins
 _SPECIAL = "*?["
@@ -383,6 +386,7 @@ def _rows(lines: Sequence[str], source: str) -> list[ListedRecord] | None:
     head = "".join(lines[top : top + 1])
     mark = next((mark for mark in ",;\t" if mark in head), ",")
     titles = [title.strip().casefold() for title in next(csv.reader([head], delimiter=mark), [])]
+    titles = [_ALSO.get(title, title) for title in titles]
     if of_peer is None and not _TITLES & set(titles):
         return None
     table = csv.reader(lines[top + 1 :], delimiter=mark)
@@ -412,6 +416,8 @@ def _row(row: Mapping[str, str], mark: str, source: str) -> ListedRecord:
             f"{source}: a row has a motion, or x with y and z, and its scale is a number; got {dict(row)!r:.120}"
         )
     known = {"x", "y", "z", "motion", "file", "scale", "name", ""}
+    if odd := next((title for title, cell in row.items() if title in _MEANT and cell), ""):
+        raise InvalidValueError(f"{source}: a list has no column {odd!r}; it is said for all records, as {_MEANT[odd]}")
     told = {title: cell for title, cell in row.items() if title not in known and cell}
     return ListedRecord({"": alone} if alone else axes, float(factor), row.get("name", ""), told)
 

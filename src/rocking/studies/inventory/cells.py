@@ -79,7 +79,8 @@ _ABOUT_FIRST = re.compile(rf"(?:~|≈|±|(?:{_ABOUT})(?=[\s.0-9])\.?)\s*(?=\S)")
 _BETWEEN = re.compile(rf"({_QUANTITY})\s*(-|–|—|/|bis|to|until|a|hasta|εως|至|~)\s*({_QUANTITY})")
 _BESIDE = re.compile(rf"({_QUANTITY})\s*\(=?\s*({_QUANTITY})[^\d()]*\)")
 _IN_BRACKETS = re.compile(rf"[(\[]([^()\[\]]*\d[^()\[\]]*)[)\]]\s*({_UNIT})?")
-_UNIT_FIRST = re.compile(rf"({_UNIT})\s*(\D{{0,20}}\d.*)")
+# a foot before a number is that of the object, and "in" a word
+_UNIT_FIRST = re.compile(r"(mm|cm|m|kg|g|lbs?)\.?\s*(\D{0,20}\d.*)")
 _DOUBT = re.compile(rf"\s*(?:\?+|[(\[][^\d()\[\]]*[)\]]|\b(?:ca|circa|approx)\.?|\b(?:{_WITH})\b[^\d()]*)$")
 _GIVE_OR_TAKE = re.compile(rf"({_QUANTITY})\s*(?:±|\+ ?/ ?-|\+-)\s*({_QUANTITY})")
 _PAIR = re.compile(rf"({_ONE})\s*([^\W\d]{{1,15}}|['\"])?\.?\s*")
@@ -164,7 +165,7 @@ def _without_about(text: str) -> tuple[str, bool]:
     if bare != whole:
         return _without_about(bare)[0], True
     match = _UNIT_FIRST.fullmatch(whole)
-    if match and _unit(match[1]) in FACTORS and match[1] not in header_words.SIDES:  # t is the depth, no tonne
+    if match:
         return _without_about(f"{match[2]} {match[1]}")
     return whole, False
 
