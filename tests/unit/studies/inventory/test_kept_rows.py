@@ -215,3 +215,11 @@ def test_an_unknown_shape_is_refused_with_those_that_are_known(word):
     found = parse_inventory(f"{HEAD};Form\na;40;30;120;{word}\nb;40;30;120;\nc;40;30;120;?\nd;40;30;120;eckig")
     assert [(one.name, one.shape) for one in found.objects] == [("b", "box"), ("c", "box"), ("d", "box")]
     assert "known are round, oval, rectangular, triangular and polygonal" in found.not_assessed[0].reason
+
+
+@pytest.mark.parametrize("cell", ["Fuß 12", "Piedi 12", "in 12", "Fuss: 12"])
+def test_a_foot_before_a_number_is_no_unit(cell):
+    """It is that of the object: 12 cm would become 3.66 m, which stands better; behind the number it is one."""
+    with pytest.raises(InvalidValueError, match="must be one number"):
+        measure("Breite cm", cell, 0.01, DecimalMark([]))
+    assert measure("Breite cm", "12 Fuß", 0.01, DecimalMark([])).value == pytest.approx(12 * 0.3048)
