@@ -128,7 +128,7 @@ def _constant() -> dict[str, Any]:
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic.families import families
-    from rocking.spec.document import NEEDS, MinimumTable, MotionTable, OneMotionTable
+    from rocking.spec.document import NEEDS, MinimumTable, MotionTable, OneMotionTable, PredictTable
     from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 
@@ -163,6 +163,7 @@ def _constant() -> dict[str, Any]:
         "targets": targets(),
         "keys": {
             "motion": described(OneMotionTable), "motions": described(MotionTable), "minimum": described(MinimumTable),
+            "predict": described(PredictTable),
         },
     }  # fmt: skip
 

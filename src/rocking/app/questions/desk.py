@@ -38,9 +38,11 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
     "convert": ("picture.svg", "record.csv", "provenance.json"),
     "motions": ("picture.svg", "table.csv", "table.xlsx"),
     "minimum": ("picture.svg", "table.csv"),
+    "paper": ("report.html", "report.pdf", "results.json"),
 }
 """Commands, and the files that they write beside their answer."""
 
+WITHOUT_FILE = "paper"  # the command that takes none, and writes a folder
 FOLDER = "records"  # of a question, in which the files of a set are
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
 _SECONDS = 1800.0  # longest time of a question [s]
@@ -101,6 +103,8 @@ class QuestionDesk:
             raise Refused(f"command must be one of {', '.join(OUTPUTS)}, got {command!r:.40}")
         if format and (command != "convert" or format not in formats()):
             raise Refused(f"format is that of a record that convert writes, one of {', '.join(formats())}")
+        if command == WITHOUT_FILE and (tables or files):
+            raise Refused(f"{command} is recomputed from published measurements alone: it takes no tables and no files")
         refuse_outside(tables)
         known = self._paths(files)
         with self._changed:
@@ -253,9 +257,7 @@ class QuestionDesk:
         for each in (own, cache):
             each.mkdir(mode=0o700, exist_ok=True)
         environment = {**os.environ, "TMPDIR": str(own), "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"}
-        outputs = [word for name in _written(question) for word in ("--out", name)]
-        command = [question.command, QUESTION, "--json", *outputs]
-        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), *command]
+        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), *_command(question)]
         with (place / _ANSWER).open("wb") as answer, (place / _LOG).open("wb") as log:
             process = subprocess.Popen(
                 words, stdin=subprocess.PIPE, stdout=answer, stderr=log, start_new_session=True, env=environment
@@ -304,6 +306,14 @@ def _written(question: HostedQuestion) -> list[str]:
     """Return what a question writes, as --out says it."""
     form = question.format
     return [*OUTPUTS[question.command], *([f"{form}=record{formats()[form].suffixes[0]}"] if form else [])]
+
+
+def _command(question: HostedQuestion) -> list[str]:
+    """Return the words of the command line that answer a question."""
+    if question.command == WITHOUT_FILE:
+        return [question.command, "--json", "--out", "."]
+    outputs = [word for name in _written(question) for word in ("--out", name)]
+    return [question.command, QUESTION, "--json", *outputs]
 
 
 def refuse_outside(tables: dict[str, Any]) -> None:

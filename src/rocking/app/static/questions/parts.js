@@ -72,10 +72,19 @@ export const filled = (texts, known) => Object.fromEntries(Object.entries(texts)
 ));
 const valueOf = (text, kind) => {
   if (kind === "true or false") return text === "true";
+  if (kind === "any") return numbersOf(text.replace(/^\[(.*)\]$/, "$1")) ?? text;
   if (!kind.includes("number")) return text;
   if (!kind.startsWith("list")) return parseNumber(text) ?? text;
-  const parts = text.split(/\s*;\s*|,\s+|\s+/);
-  return (parts.length > 1 ? parts : text.split(",")).map((part) => parseNumber(part) ?? part);
+  return partsOf(text).map((part) => parseNumber(part) ?? part);
+};
+const partsOf = (text) => {
+  const parts = text.trim().split(/\s*;\s*|,\s+|\s+/);
+  return parts.length > 1 ? parts : text.split(",");
+};
+// One number, or several; null where something is none.
+const numbersOf = (text) => {
+  const found = parseNumber(text) ?? partsOf(text).map(parseNumber);
+  return Array.isArray(found) && found.includes(null) ? null : found;
 };
 
 /** Files by dropping or choosing; `files` is a signal of what was sent. */
@@ -183,10 +192,11 @@ const Waiting = ({ questions, question }) => html`
 
 const WORDS = {
   pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
+  "results.json": "All numbers (JSON)",
 };
 const wordsOf = (name) => {
   const ending = name.split(".").at(-1);
-  return name.startsWith("record.") ? `Record (${ending.toUpperCase()})` : WORDS[ending];
+  return name.startsWith("record.") ? `Record (${ending.toUpperCase()})` : WORDS[name] ?? WORDS[ending];
 };
 
 const Files = ({ questions, question }) => html`
@@ -195,8 +205,9 @@ const Files = ({ questions, question }) => html`
       ${wordsOf(name)}</button>`)}
   </div>
   <details><summary>The same on the command line</summary>
+    ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} --out ${question.command}</pre>` : html`
     <p class="field-help">Save it as question.toml, its files beside it${question.command === "motions" && " and the records in a folder records"}:</p>
-    <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>
+    <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
 /** The picture of an answer, if it has one. */

@@ -13,7 +13,7 @@ const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.zip,.ac
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "assess", "minimum");
+  const questions = createQuestions(app, "assess", "predict", "minimum");
   render(html`<${Decide} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
@@ -27,6 +27,7 @@ const Decide = ({ app, questions }) => {
   const wrong = useSignal("");
   const what = useSignal("assess");
   const range = useForm("rocking.crossings", {});
+  const unknown = useForm("rocking.unknown", {});
   const ask = (event) => {
     event.preventDefault();
     if (what.value === "minimum") {
@@ -36,24 +37,28 @@ const Decide = ({ app, questions }) => {
     const inputs = app.inputs.get();
     const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value });
     const factor = Number(margin.value.replace(",", "."));
+    const predicts = what.value === "predict";
     const faulty = app.faults.sentence({ inputs: true }) || asked.missing
-      || (factor > 0 ? "" : "What it must hold is a number above 0.");
+      || (predicts || factor > 0 ? "" : "What it must hold is a number above 0.");
     wrong.value = faulty || "";
     if (faulty) return;
     const name = inputs.body.name || app.project.here.value.name;
+    const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
+    if (predicts) {
+      const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
+      questions.ask(tables, asked.files, `How likely does ${name} overturn?`, { command: "predict" });
+      return;
+    }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    const tables = {
-      body: inputs.body, ...asked.tables, assess: { ...told, margin: factor },
-      ...(inputs.settings ? { settings: inputs.settings } : {}),
-    };
-    questions.ask(tables, asked.files, `Does ${name} stand?`);
+    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files, `Does ${name} stand?`);
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="Does it stand?"
       lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
       <${Choice} label="Question" value=${what} options=${[["assess", "does it stand, and what to do about it"],
+        ["predict", "how likely is it, and what decides that"],
         ["minimum", "from which acceleration on does it overturn, and where that changes"]]} />
       ${what.value === "minimum" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
@@ -65,10 +70,14 @@ const Decide = ({ app, questions }) => {
         <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)
         && html`<${Field} label="Peak acceleration" unit="g" value=${pga} inputmode="decimal" />`}
+      ${what.value === "predict" ? html`
+        <p class="field-help">What is not known of the body: one number, two as the ends of a range, or nothing for what is usual.</p>
+        <div class="fields">${Object.entries(app.info.keys.predict).map(([name, facts]) => html`
+          <${KeyField} key=${name} name=${name} facts=${facts} value=${unknown.at(name)} />`)}</div>` : html`
       <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
         help="What is proposed holds this much." />
       <${Field} label="Signed by" value=${author} help="For the report." />
-      <${Field} label="Date" value=${date} help="Today if empty." />`}
+      <${Field} label="Date" value=${date} help="Today if empty." />`}`}
     <//>`;
 };
 
@@ -106,7 +115,7 @@ const crossings = (app, questions, range) => {
   return "";
 };
 
-const Found = (given) => (given.question.command === "minimum" ? html`<${Crossings} ...${given} />` : html`<${Verdict} ...${given} />`);
+const Found = (given) => html`<${{ minimum: Crossings, predict: Forecast }[given.question.command] ?? Verdict} ...${given} />`;
 
 const G = 9.80665;
 const MOST = 20; // crossings in the table
@@ -133,10 +142,6 @@ const Verdict = ({ answer, question }) => {
     [`${fallen(each)} of ${each.overturned.length}`, fallen(each) ? "bad" : "good"],
     each.lowest === null ? "none found" : number(each.lowest, 3),
   ]);
-  const chances = Object.entries(answer.prediction.probability).map(([what, each]) => [
-    { uplift: "rocks", sliding: "slides", overturning: "overturns" }[what], percent(each.value),
-    `${percent(each.low)} to ${percent(each.high)}`,
-  ]);
   const some = Object.values(answer.models).some(fallen);
   return html`
     <p class=${`verdict ${some ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
@@ -145,9 +150,40 @@ const Verdict = ({ answer, question }) => {
     <h3>With each model of the impact</h3>
     <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns under", "least factor"]} rows=${rows} />
     <h3>How likely is it?</h3>
-    <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval"]} rows=${chances} />
+    <${Chances} of=${answer.prediction} />
     ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">Models that say nothing of this body:
       ${Object.entries(answer.refused).map(([name, why]) => `${name}: ${why}`).join("; ")}</p>`}`;
+};
+
+const WHAT = { uplift: "rocks", sliding: "slides", overturning: "overturns" };
+const between = (low, high) => (low === null ? "\u2013" : `${percent(low)} to ${percent(high)}`);
+
+/** Probabilities, under these motions and if others like them came; beside them those with another restitution. */
+const Chances = ({ of: { probability, beside } }) => html`
+  <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval", "with other motions like these"]}
+    rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
+      ...Object.entries(beside).map(([model, each]) => [`overturns, by ${model}`, each])].map(([words, each]) => [
+      words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
+
+const Forecast = ({ answer, question }) => {
+  const { value } = answer.probability.overturning;
+  const shares = Object.entries(answer.shares).sort(([, one], [, other]) => other.total - one.total);
+  const share = (low, at, high) => `${number(at, 2)} (${number(low, 2)} to ${number(high, 2)})`;
+  return html`
+    <p class=${`verdict ${value < 0.01 ? "good" : value < 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
+    <p>${answer.growth.sentence}</p>
+    <${Drawing} question=${question} alt="How likely it rocks, slides and overturns, and what decides that" />
+    <h3>How likely is it?</h3>
+    <${Chances} of=${answer} />
+    ${shares.length > 0 && html`<h3>What decides it?</h3>
+      <${Rows} caption="Shares" head=${["what is not known", "alone", "with the others"]}
+        rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
+      <p class="field-help">Shares of the variance of whether it overturns (Sobol indices), with 95 % intervals.</p>
+      <${Rows} caption="Ends of the ranges" head=${["input", "overturns at its low end", "overturns at its high end"]}
+        rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.low, 3)})`,
+          `${percent(e.probability_high)} (${number(e.high, 3)})`])} />`}
+    <details><summary>What was assumed</summary>
+      <ul>${answer.assumed.map((words) => html`<li key=${words}>${words}</li>`)}</ul></details>`;
 };
 
 const percent = (value) => `${number(100 * value, 3)}\u00a0%`;

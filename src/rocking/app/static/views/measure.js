@@ -1,4 +1,4 @@
-/** Measure: the coefficient of restitution from a sound, a table of times or rotations, or the microphone. */
+/** Measure: the coefficient of restitution from a sound, a table, or the microphone; and what was published of it. */
 
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
@@ -13,7 +13,7 @@ const KINDS = [
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "identify");
+  const questions = createQuestions(app, "identify", "paper");
   render(html`<${Measure} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
@@ -22,6 +22,7 @@ const Measure = ({ app, questions }) => {
   const files = useSignal([]);
   const [kind, column, unit, known] = ["", "", "", "yes"].map(useSignal);
   const wrong = useSignal("");
+  const what = useSignal("identify");
   const recording = useSignal(null);
   const listen = async () => {
     if (recording.value) {
@@ -38,6 +39,11 @@ const Measure = ({ app, questions }) => {
   };
   const ask = (event) => {
     event.preventDefault();
+    if (what.value === "paper") {
+      wrong.value = "";
+      questions.ask({}, {}, "What the published measurements say", { command: "paper" });
+      return;
+    }
     const inputs = app.inputs.get();
     wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : "Nothing was sent yet.");
     if (wrong.value) return;
@@ -51,6 +57,10 @@ const Measure = ({ app, questions }) => {
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="What does an impact cost?"
       lead="Let the body go from a tilt and record it: each knock tells how much of the speed was left.">
+      <${Choice} label="Question" value=${what} options=${[["identify", "what my recording says"],
+        ["paper", "what the published measurements say"]]} />
+      ${what.value === "paper" ? html`<p class="field-help">Every table, figure and claim of Mao et al. (2024), recomputed, and all
+        models against its 39 measurements; as a report. It takes about half a minute.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
       <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
@@ -58,11 +68,27 @@ const Measure = ({ app, questions }) => {
       <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
       <${Field} label="Column" value=${column} help="Of a table with several." />
       <${Field} label="Unit" value=${unit} help="Where the table states none." />
-      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
+      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />`}
     <//>`;
 };
 
-const Found = ({ answer, question }) => {
+const Found = (given) => (given.question.command === "paper" ? html`<${Published} ...${given} />` : html`<${Recording} ...${given} />`);
+
+const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
+
+const Published = ({ answer }) => html`
+  <p class="verdict" data-testid="verdict">
+    ${`${answer.claims.filter((one) => one.verdict === "holds").length} of ${answer.claims.length} claims hold`}</p>
+  ${answer.verdict.map((words) => html`<p key=${words}>${words}</p>`)}
+  <h3>All models against all measurements</h3>
+  <${Rows} caption="Models" head=${["model", "RMSE of r", "95 % interval", "bias"]}
+    rows=${answer.league.map((one) => [one.name, number(one.rmse, 3), `${number(one.rmse_low, 3)} to ${number(one.rmse_high, 3)}`,
+      number(one.bias, 2)])} />
+  <h3>Claims</h3>
+  <${Rows} caption="Claims" head=${["claim", "verdict"]}
+    rows=${answer.claims.map((one) => [`${one.section}: ${one.claim}`, [one.verdict, MARK[one.verdict]]])} />`;
+
+const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
