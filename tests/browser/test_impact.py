@@ -201,3 +201,21 @@ def test_every_model_has_a_key_of_its_own_without_colour(impact: Any) -> None:
     assert len(dashes) == len(rows(impact)) >= 7
     named = [dash for dash in dashes if dash]
     assert len(set(named)) == len(named) >= 5
+
+
+def test_the_contact_bed(impact: Any) -> None:
+    """The laboratory takes the body's slenderness and width, draws what comes out, and refuses in words."""
+    bed = impact.get_by_test_id("bed")
+    bed.get_by_label("What changes").select_option("damping")
+    with impact.expect_response("**/api/contact-bed") as told:
+        bed.get_by_role("button", name="Compute").click()
+    asked = json.loads(told.value.request.post_data)
+    assert (asked["varied"], asked["slenderness"], asked["width"]) == ("damping", 4.0, 0.5)
+    chart = bed.get_by_test_id("bed-chart")
+    expect(chart.locator(".chart-stage")).to_have_attribute("aria-label", re.compile("damping.*contact bed.*Housner"))
+    bed.get_by_label("Show", exact=True).select_option("peak_force")
+    expect(chart.locator("figcaption")).to_contain_text("peak force")
+    bed.get_by_text("From where to where").click()
+    bed.get_by_label("from", exact=True).fill("-1")
+    bed.get_by_role("button", name="Compute").click()
+    expect(bed.get_by_role("alert")).to_contain_text("damping must be >= 0")

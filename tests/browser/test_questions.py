@@ -48,6 +48,44 @@ def test_does_it_stand(open_page: Callable[..., Any], shot: Callable[..., Any], 
     expect(page.get_by_test_id("verdict")).to_have_text(verdict)
 
 
+def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
+    """One number and a range go as such; verdict, probabilities and shares are those of the command line."""
+    page = open_page(link("sine:amplitude=3.2,period=0.8"))
+    page.locator("#tab-decide").click()
+    section = page.locator("#view-decide")
+    section.get_by_label("Question").select_option("predict")
+    for label, text in (("friction", "0.4, 0.6"), ("centre", "1,02"), ("restitution", "ked"), ("count", "16")):
+        section.get_by_label(label, exact=True).fill(text)
+    outcome = asked(page, "decide")
+    question = served.api("questions", method="GET")["questions"][0]
+    whole = served.api(f"questions/{question['id']}", method="GET")
+    told = whole["toml"].split("[predict]")[1]
+    lines = ("friction = [0.4, 0.6]", "centre = 1.02", 'restitution = "ked"', "count = 16")
+    assert [each for each in lines if each not in told] == []
+    assert outcome.get_by_test_id("verdict").inner_text() == whole["answer"]["verdict"]
+    for name, rows in (("Probabilities", 3), ("Shares", len(whole["answer"]["shares"]))):
+        assert outcome.get_by_role("table", name=name).locator("tbody tr").count() == rows
+    expect(outcome.locator("img.drawing")).to_be_visible()
+    section.get_by_label("friction", exact=True).fill("-1")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(section.get_by_role("alert")).to_contain_text("riction", timeout=LONG)
+
+
+def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """One button recomputes the paper; its report can be taken away, and the command that makes it is told."""
+    page = open_page(link())
+    page.locator("#tab-measure").click()
+    page.locator("#view-measure").get_by_label("Question").select_option("paper")
+    outcome = asked(page, "measure")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("claims hold")
+    assert outcome.get_by_role("table", name="Models").locator("tbody tr").count() > 10
+    with page.expect_download() as told:
+        outcome.get_by_role("button", name="Report (PDF)").click()
+    told.value.save_as(tmp_path / "report.pdf")
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+    expect(outcome.locator("pre")).to_have_text("rocking paper --out paper")
+
+
 def test_records_are_sent_together(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """Two files make two motions; none, and a body that is wrong, are told before anything is asked."""
     page = open_page(link())

@@ -16,7 +16,7 @@ from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
 from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, refusal
-from rocking.app.api import body, impact, info, motion, records, response
+from rocking.app.api import body, contact_bed, impact, info, motion, records, response
 from rocking.app.downloads import documents, pictures, tables
 from rocking.app.errors import kind_of_status
 from rocking.app.projects import router as projects
@@ -125,7 +125,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_exception_handler(ValidationError, _handler(_invalid))
     app.add_exception_handler(HTTPException, _handler(_refused))
     of_results = (pictures, tables, documents, projects, questions, studies)
-    for part in (session, info, body, impact, records, motion, response, *of_results):
+    for part in (session, info, body, impact, contact_bed, records, motion, response, *of_results):
         app.include_router(part.router, responses=ERRORS)
     describe_api(app)
     _add_pages(app)

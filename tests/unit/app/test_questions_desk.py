@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rocking.app.errors import NotFound, Refused, TooLarge
-from rocking.app.questions.desk import QuestionDesk, refuse_outside
+from rocking.app.questions.desk import OUTPUTS, QuestionDesk, refuse_outside
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.motions.formats import read_motion
@@ -76,6 +76,24 @@ def test_a_list_that_was_sent_is_assessed(desk):
     assert without.state == "refused"
     assert "list.csv" in without.message
     assert str(desk.folder) not in without.message
+
+
+def test_the_paper_takes_nothing(desk):
+    """What is recomputed from published measurements alone takes neither tables nor files, and can be stopped."""
+    for tables, files in ((TABLES, {}), ({}, {"list.csv": desk.store.add(LIST.encode(), "list.csv").record})):
+        with pytest.raises(Refused, match="takes no tables and no files"):
+            desk.ask("paper", tables, files)
+    asked = desk.ask("paper", {}, {})
+    assert (desk.tables(asked.id).strip(), desk.stop(asked.id).state) == ("", "stopped")
+
+
+def test_commands_that_are_declared_are_those_that_run():
+    """The schema names every command, and none that does not run."""
+    from typing import get_args
+
+    from rocking.app.questions.router import Command
+
+    assert set(get_args(Command)) == set(OUTPUTS)
 
 
 PLY = """ply

@@ -123,6 +123,7 @@ def info(request: Request) -> JsonAnswer:
 
 @cache
 def _constant() -> dict[str, Any]:
+    from rocking.app.api.contact_bed import ContactBedRequest
     from rocking.app.studies.job_document import KINDS
     from rocking.dynamics.plane import fast_engine
     from rocking.motions.formats import formats
@@ -163,7 +164,7 @@ def _constant() -> dict[str, Any]:
         "targets": targets(),
         "keys": {
             "motion": described(OneMotionTable), "motions": described(MotionTable), "minimum": described(MinimumTable),
-            "predict": described(PredictTable),
+            "predict": described(PredictTable), "contact_bed": described(ContactBedRequest),
         },
     }  # fmt: skip
 

@@ -26,8 +26,8 @@ from rocking.app.settings import state_of
 router = APIRouter(prefix="/api", tags=["questions"])
 _TABLES = """\
 The tables of a file that the command of the same name takes, as JSON; those of `equilibria` and `cor` have a table
-`response` beside `body`, and `simulate` is of a body in space with friction; `paper` has none. Files in them are named as in `files`, and
-were sent to `/api/files` or `/api/records`."""
+`response` beside `body`, and `simulate` is of a body in space with friction; `paper` has none. Files in them are named
+as in `files`, and were sent to `/api/files` or `/api/records`."""
 Command = Literal[
     "assess", "predict", "identify", "inventory", "convert", "motions", "minimum", "equilibria", "cor", "simulate",
     "paper",

@@ -207,6 +207,7 @@ def _ask_bodies(script: Asker) -> None:
     for body in (BLOCK, HOLLOW, POINTS, {"units": "m", "ellipse": {"width": 1, "height": 4, "feet": [-0.02, 0.02]}}):
         script.ask("POST", "/api/body", json={"body": body})
         script.ask("POST", "/api/impact", json={"body": body})
+    script.ask("POST", "/api/contact-bed", json={"varied": "damping", "count": 3, "points": 11})
     words = {"name": "a.wkt", "units": "m"}
     outline = b"POLYGON ((0 0, 1 0, 1 3, 0 3, 0 0))"
     script.ask("POST", "/api/body/file", params=words, content=outline, headers=OCTETS)

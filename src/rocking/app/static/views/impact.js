@@ -5,6 +5,7 @@ import { el, fill } from "/app/dom.js";
 import { coefficientTable, warningNotes } from "/views/impact-table.js";
 import { impulseRows } from "/views/impact-impulse.js";
 import { evidenceParts } from "/views/impact-evidence.js";
+import { bedPart } from "/views/impact-bed.js";
 import { ledgerPicture } from "/drawing/ledger-picture.js";
 import { pictureTools } from "/drawing/picture-tools.js";
 import { chartFiles } from "/charts/save.js";
@@ -29,6 +30,7 @@ export const mount = (section, app) => {
   const table = el("div", {});
   const warnings = el("div", { class: "stack", "data-testid": "impact-warnings" });
   const evidence = evidenceParts();
+  const bed = bedPart(app);
   feet.hidden = true;
   const drawn = (picture) => responsive(
     (width) => (state.answer ? picture(state.answer, state.foot, width) : null)
@@ -66,7 +68,12 @@ export const mount = (section, app) => {
         el("p", { class: "lead" }, "Kinetic energy kept and lost (hatched), from 100\u202f%."),
         ledger, still(ledger, "Where the energy goes, by KED"),
       )),
-    card("The three stages of KED", stages, tools("stages")));
+    card("The three stages of KED", stages, tools("stages")),
+    card("The contact bed",
+      el("p", { class: "lead" },
+        "An impact that takes its time, on springs and dashpots under a block as slender and wide as this body: what comes "
+          + "out of it, beside models of one instant."),
+      bed.node));
 
   const draw = () => {
     const { answer } = state;
@@ -77,6 +84,7 @@ export const mount = (section, app) => {
     fill(table, coefficientTable(answer, state.foot, app));
     fill(warnings, warningNotes(answer, state.foot));
     evidence.follow(answer, state.foot);
+    bed.follow(answer, state.foot);
     for (const each of [impulse, ledger, stages]) each.redraw();
   };
   const look = () => {

@@ -1,0 +1,138 @@
+"""POST /api/contact-bed: what a bed of springs and dashpots makes of an impact, as one thing of it changes."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Request
+from pydantic import ConfigDict, Field, model_validator
+
+from rocking.app.answers import JsonAnswer, answered, shape
+from rocking.app.studies.results import plain
+from rocking.app.work import heavy
+from rocking.spec.fields import JobTable, Positive, Seed, Values, refused
+
+router = APIRouter(prefix="/api", tags=["impact"])
+MOST_VALUES, MOST_POINTS = 200, 401
+
+Varied = Literal[
+    "slenderness", "damping", "modulus_over_thickness", "friction", "release", "density", "width", "points",
+    "amplitude", "seed",
+]  # fmt: skip
+
+_USUAL: dict[str, tuple[float, float, str]] = {
+    "slenderness": (1.5, 8.0, "linear"), "damping": (0.01, 3.0, "log"), "modulus_over_thickness": (1e7, 1e11, "log"),
+    "friction": (0.05, 1.0, "linear"), "release": (0.05, 0.95, "linear"), "density": (500.0, 8000.0, "linear"),
+    "width": (0.05, 5.0, "log"), "points": (3.0, 81.0, "linear"), "amplitude": (0.0, 1e-3, "linear"),
+    "seed": (0.0, 39.0, "linear"),
+}  # fmt: skip
+"""From where to where, and how, where nobody says."""
+_OPTIONS: dict[str, dict[str, Any]] = {"amplitude": {"shape": "concave"}, "seed": {"amplitude": 1e-4}}
+_OF_LABORATORY = {
+    "slenderness", "width", "density", "points", "frequency", "modulus_over_thickness", "damping", "release",
+}  # fmt: skip
+
+
+class ContactBedRequest(JobTable):
+    """A block on a bed of points, and what changes of it."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False)
+
+    varied: Varied = Field("slenderness", description="what changes; amplitude and seed are of an uneven base")
+    start: float | None = Field(None, alias="from", description="its first value; of a usual range if not given")
+    stop: float | None = Field(None, alias="to", description="its last value; of a usual range if not given")
+    count: Annotated[int, Field(ge=1, le=MOST_VALUES)] = Field(40, description="how many values")
+    spacing: Literal["linear", "log"] | None = Field(None, description="how they lie; as is usual if not given")
+    slenderness: Positive = Field(2.0, description="h/b of the block [-]")
+    width: Positive = Field(0.2, description="width of the base [m]")
+    density: Positive = Field(2400.0, description="density of the block [kg/m3]")
+    points: Annotated[int, Field(ge=2, le=MOST_POINTS)] = Field(41, description="contact points")
+    frequency: Positive = Field(400.0, description="of the whole bed beneath the block, where no layer is given [Hz]")
+    modulus_over_thickness: Positive | None = Field(
+        None, description="of an elastic layer, per metre of depth, in place of the frequency [Pa/m]"
+    )
+    damping: Annotated[float, Field(ge=0.0)] = Field(1.0, description="damping ratio of the whole bed [-]")
+    release: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
+        0.5, description="rotation from which the block falls, over its slenderness angle [-]"
+    )
+    friction: Annotated[float, Field(gt=0.0)] | None = Field(
+        None, description="coefficient of friction; a base that cannot slide if not given [-]"
+    )
+    shape: Literal["convex", "concave", "tilted", "random"] | None = Field(
+        None, description="of an uneven base, where its amplitude changes; concave if not given"
+    )
+    amplitude: Positive | None = Field(
+        None, description="of a random base, where its seed changes; 0.0001 if not given [m]"
+    )
+    seed: Seed | None = Field(None, description="of a random base, where its amplitude changes")
+
+    @model_validator(mode="after")
+    def _range(self) -> "ContactBedRequest":
+        ends = [each for each in (self.start, self.stop) if each is not None]
+        may_vanish = self.varied in {"damping", "amplitude", "seed"}
+        for each in ends:
+            if each < 0.0 or (each == 0.0 and not may_vanish):
+                raise refused(f"{self.varied} must be {'>=' if may_vanish else '>'} 0, got {each:g}")
+            if self.varied == "points" and each > MOST_POINTS:
+                raise refused(f"points must be at most {MOST_POINTS}, got {each:g}")
+        return self
+
+
+BedResult: Any = shape(
+    "BedResult", "What was found, over what changes.", unit=str, words=str, values=(list[float | None], "in `unit`")
+)
+ContactBedAnswered: Any = shape(
+    "ContactBedAnswered",
+    "What a bed makes of an impact.",
+    varied=Varied,
+    unit=str,
+    values=(list[float], "of what changes, in `unit`"),
+    results=(dict[str, BedResult], "`coefficient` is that of restitution; null where an impact failed"),
+    rigid=(dict[str, list[float]], "the coefficient of the same blocks by models of one instant [-]"),
+)
+
+
+@router.post(
+    "/contact-bed", summary="An impact on a contact bed", responses=answered(ContactBedAnswered, "What was found.")
+)
+async def contact_bed(request: Request, inputs: ContactBedRequest) -> JsonAnswer:
+    """Answer with what `rocking.studies.impact_laboratory.study` finds, and with Housner and KED beside it."""
+    return await heavy(request, answer, inputs)
+
+
+def answer(inputs: ContactBedRequest) -> JsonAnswer:
+    """Return what a bed makes of the impacts of a study."""
+    from rocking.restitution import Housner, Ked
+    from rocking.restitution.bed import Coulomb
+    from rocking.studies.impact_laboratory import STUDIES, Laboratory, study
+
+    first, last, spacing = _USUAL[inputs.varied]
+    ends = {"from": first if inputs.start is None else inputs.start, "to": last if inputs.stop is None else inputs.stop}
+    values = Values.model_validate({**ends, "spacing": inputs.spacing or spacing, "count": inputs.count}).numbers()
+    if inputs.varied in {"points", "seed"}:
+        values = np.unique(values.round())
+    stated = inputs.model_dump(include={"shape", "amplitude", "seed"}, exclude_none=True)
+    options = {**_OPTIONS.get(inputs.varied, {}), **stated}
+    start = Laboratory(
+        **inputs.model_dump(include=_OF_LABORATORY),
+        **({} if inputs.friction is None else {"friction": Coulomb(inputs.friction)}),
+    )
+    found = study(inputs.varied, values, start, **options)
+    slender = [each if inputs.varied == "slenderness" else inputs.slenderness for each in values.tolist()]
+    return JsonAnswer(plain({
+        "varied": inputs.varied, "unit": _unit(STUDIES[inputs.varied][0]), "values": values,
+        "results": {
+            str(name): {
+                "unit": _unit(each.attrs["units"]), "words": each.attrs.get("long_name", ""),
+                "values": each.values,
+            }
+            for name, each in found.data_vars.items()
+        },
+        "rigid": {
+            name: [model.coefficient(start.but(slenderness=each).block) for each in slender]
+            for name, model in (("ked", Ked()), ("housner", Housner()))
+        },
+    }))  # fmt: skip
+
+
+def _unit(unit: str) -> str:
+    return "-" if unit == "1" else unit

@@ -1,0 +1,81 @@
+/** The contact bed as a laboratory: the coefficient that emerges from springs and dashpots, as one thing changes. */
+
+import { html, render, signal, useMemo, useRef } from "/parts/preact.js";
+import { el } from "/app/dom.js";
+import { number } from "/app/format.js";
+import { modelStyle, modelWords } from "/app/palette.js";
+import { createTime, Figure } from "/charts/figure.js";
+import { Choice, KeyField, Wrong, filled, sentence, useForm, useSignal } from "/questions/parts.js";
+
+const VARIED = {
+  slenderness: "slenderness", damping: "damping", modulus_over_thickness: "stiffness of a layer", friction: "friction",
+  release: "rotation from which it falls", density: "density, on one layer", width: "width, on one layer",
+  points: "number of contact points", amplitude: "unevenness of the base", seed: "chance of an uneven base",
+};
+const RANGE = ["from", "to", "count", "spacing"];
+const NOTHING = {};
+const BED = { label: "contact bed", colour: "--accent", points: true };
+
+/** The part and how it follows the body: {node, follow(answer, foot)}. */
+export const bedPart = (app) => {
+  const body = signal({});
+  const node = el("div", { class: "question", "data-testid": "bed" });
+  render(html`<${Laboratory} app=${app} body=${body} />`, node);
+  return {
+    node,
+    follow: ({ body: { sides, base } }, foot) => (body.value = {
+      slenderness: sides[foot === "right" ? "left" : "right"].slenderness_ratio, width: base[1] - base[0],
+    }),
+  };
+};
+
+const Laboratory = ({ app, body }) => {
+  const keys = app.info.keys.contact_bed;
+  const form = useForm("rocking.bed", {});
+  const varied = useSignal("slenderness");
+  const [found, wrong, busy] = [null, "", false].map(useSignal);
+  const compute = async (event) => {
+    event.preventDefault();
+    busy.value = true;
+    try {
+      const json = { ...body.value, ...filled(form.value, keys), varied: varied.value };
+      found.value = await app.call("contact-bed", { json });
+      wrong.value = "";
+    } catch (error) {
+      wrong.value = sentence(error.message);
+    }
+    busy.value = false;
+  };
+  const field = (name) => html`<${KeyField} key=${name} name=${name} facts=${keys[name]} value=${form.at(name)}
+    ...${name in body.value ? { placeholder: number(body.value[name], 4) } : {}} />`;
+  const others = Object.keys(keys).filter((name) => name !== "varied" && !RANGE.includes(name));
+  return html`
+    <form class="stack" onSubmit=${compute} aria-label="Contact bed">
+      <${Choice} label="What changes" value=${varied} options=${Object.entries(VARIED)} />
+      <details><summary>From where to where, and what the bed is</summary>
+        <div class="fields">${[...RANGE, ...others].map(field)}</div></details>
+      ${wrong.value && html`<${Wrong} words=${wrong.value} />`}
+      <div class="toolbar"><button type="submit" class="button" disabled=${busy.value}>Compute</button></div>
+    </form>
+    ${found.value && html`<${Emerged} found=${found.value} />`}`;
+};
+
+const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
+  const shown = useSignal("coefficient");
+  const time = useRef(createTime()).current;
+  const { unit: of, values: curve } = results[shown.value];
+  const beside = shown.value === "coefficient" ? Object.entries(rigid) : [];
+  const log = values[0] > 0 && values.at(-1) / values[0] > 8;
+  const words = shown.value.replaceAll("_", " ");
+  const shape = {
+    title: `The contact bed: ${words}`, x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
+    series: [BED, ...beside.map(([name]) => ({ ...modelStyle(name), label: modelWords(name) }))], height: 300,
+  };
+  const data = useMemo(() => [values, curve, ...beside.map(([, each]) => each)], [values, shown.value]);
+  return html`
+    <div class="stack" data-testid="bed-results">
+      <${Choice} label="Show" value=${shown} help=${results[shown.value].words && sentence(results[shown.value].words)}
+        options=${Object.keys(results).map((name) => [name, name.replaceAll("_", " ")])} />
+      <${Figure} shape=${shape} data=${data} part=${null} marks=${NOTHING} time=${time} testid="bed-chart" />
+    </div>`;
+};
