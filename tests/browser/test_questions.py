@@ -63,8 +63,9 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     lines = ("friction = [0.4, 0.6]", "centre = 1.02", 'restitution = "ked"', "count = 16")
     assert [each for each in lines if each not in told] == []
     assert outcome.get_by_test_id("verdict").inner_text() == whole["answer"]["verdict"]
-    for name, rows in (("Probabilities", 3), ("Shares", len(whole["answer"]["shares"]))):
-        assert outcome.get_by_role("table", name=name).locator("tbody tr").count() == rows
+    assert outcome.get_by_role("table", name="Probabilities").locator("tbody tr").count() == 3
+    decided = any(share["total"] for share in whole["answer"]["shares"].values())
+    assert outcome.get_by_role("table", name="Shares").count() == decided
     expect(outcome.locator("img.drawing")).to_be_visible()
     section.get_by_label("friction", exact=True).fill("-1")
     section.get_by_role("button", name="Ask", exact=True).click()

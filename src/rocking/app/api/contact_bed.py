@@ -35,13 +35,15 @@ _OF_LABORATORY = {
 class ContactBedRequest(JobTable):
     """A block on a bed of points, and what changes of it."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False)
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False
+    )
 
     varied: Varied = Field("slenderness", description="what changes; amplitude and seed are of an uneven base")
     start: float | None = Field(None, alias="from", description="its first value; of a usual range if not given")
     stop: float | None = Field(None, alias="to", description="its last value; of a usual range if not given")
     count: Annotated[int, Field(ge=1, le=MOST_VALUES)] = Field(40, description="how many values")
-    spacing: Literal["linear", "log"] | None = Field(None, description="how they lie; as is usual if not given")
+    spacing: Literal["usual", "linear", "log"] = Field("usual", description="how they lie")
     slenderness: Positive = Field(2.0, description="h/b of the block [-]")
     width: Positive = Field(0.2, description="width of the base [m]")
     density: Positive = Field(2400.0, description="density of the block [kg/m3]")
@@ -57,8 +59,8 @@ class ContactBedRequest(JobTable):
     friction: Annotated[float, Field(gt=0.0)] | None = Field(
         None, description="coefficient of friction; a base that cannot slide if not given [-]"
     )
-    shape: Literal["convex", "concave", "tilted", "random"] | None = Field(
-        None, description="of an uneven base, where its amplitude changes; concave if not given"
+    shape: Literal["usual", "convex", "concave", "tilted", "random"] = Field(
+        "usual", description="of an uneven base, where its amplitude changes; concave is usual"
     )
     amplitude: Positive | None = Field(
         None, description="of a random base, where its seed changes; 0.0001 if not given [m]"
@@ -107,15 +109,16 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
 
     first, last, spacing = _USUAL[inputs.varied]
     ends = {"from": first if inputs.start is None else inputs.start, "to": last if inputs.stop is None else inputs.stop}
-    values = Values.model_validate({**ends, "spacing": inputs.spacing or spacing, "count": inputs.count}).numbers()
+    values = Values.model_validate(
+        {**ends, "spacing": spacing if inputs.spacing == "usual" else inputs.spacing, "count": inputs.count}
+    ).numbers()
     if inputs.varied in {"points", "seed"}:
         values = np.unique(values.round())
-    stated = inputs.model_dump(include={"shape", "amplitude", "seed"}, exclude_none=True)
+    stated = inputs.model_dump(include={"shape", "amplitude", "seed"}, exclude_defaults=True)
     options = {**_OPTIONS.get(inputs.varied, {}), **stated}
-    start = Laboratory(
-        **inputs.model_dump(include=_OF_LABORATORY),
-        **({} if inputs.friction is None else {"friction": Coulomb(inputs.friction)}),
-    )
+    start = Laboratory(**inputs.model_dump(include=_OF_LABORATORY))
+    if inputs.friction is not None:
+        start = start.but(friction=Coulomb(inputs.friction))
     found = study(inputs.varied, values, start, **options)
     slender = [each if inputs.varied == "slenderness" else inputs.slenderness for each in values.tolist()]
     return JsonAnswer(plain({

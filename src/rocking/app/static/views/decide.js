@@ -2,6 +2,7 @@
 
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
+import { modelWords } from "/app/palette.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
 import { Choice, Drawing, Field, FileDrop, KeyField, QuestionView, Rows, filled, sentence, useForm, useSignal } from "/questions/parts.js";
 
@@ -162,7 +163,7 @@ const between = (low, high) => (low === null ? "\u2013" : `${percent(low)} to ${
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval", "with other motions like these"]}
     rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
-      ...Object.entries(beside).map(([model, each]) => [`overturns, by ${model}`, each])].map(([words, each]) => [
+      ...Object.entries(beside).map(([model, each]) => [`overturns, all else alike, by ${modelWords(model)}`, each])].map(([words, each]) => [
       words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
 
 const Forecast = ({ answer, question }) => {
@@ -175,7 +176,8 @@ const Forecast = ({ answer, question }) => {
     <${Drawing} question=${question} alt="How likely it rocks, slides and overturns, and what decides that" />
     <h3>How likely is it?</h3>
     <${Chances} of=${answer} />
-    ${shares.length > 0 && html`<h3>What decides it?</h3>
+    ${shares.length > 0 && !shares.some(([, each]) => each.total) && html`<p>Nothing decides it: all bodies end alike.</p>`}
+    ${shares.some(([, each]) => each.total) && html`<h3>What decides it?</h3>
       <${Rows} caption="Shares" head=${["what is not known", "alone", "with the others"]}
         rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
       <p class="field-help">Shares of the variance of whether it overturns (Sobol indices), with 95 % intervals.</p>
