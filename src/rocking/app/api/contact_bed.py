@@ -97,7 +97,7 @@ ContactBedAnswered: Any = shape(
     "/contact-bed", summary="An impact on a contact bed", responses=answered(ContactBedAnswered, "What was found.")
 )
 async def contact_bed(request: Request, inputs: ContactBedRequest) -> JsonAnswer:
-    """Answer with what `rocking.studies.impact_laboratory.study` finds, and with Housner and KED beside it."""
+    """Answer with what the impact laboratory of Python finds, and with Housner and KED beside it."""
     return await heavy(request, answer, inputs)
 
 
