@@ -129,7 +129,7 @@ def _constant() -> dict[str, Any]:
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic.families import families
-    from rocking.spec.document import NEEDS, MinimumTable, MotionTable, OneMotionTable, PredictTable
+    from rocking.spec.document import NEEDS, InventoryTable, MinimumTable, MotionTable, OneMotionTable, PredictTable
     from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 
@@ -165,6 +165,7 @@ def _constant() -> dict[str, Any]:
         "keys": {
             "motion": described(OneMotionTable), "motions": described(MotionTable), "minimum": described(MinimumTable),
             "predict": described(PredictTable), "contact_bed": described(ContactBedRequest),
+            "inventory": described(InventoryTable),
         },
     }  # fmt: skip
 

@@ -61,10 +61,10 @@ export const createQuestions = (app, ...commands) => {
       if (shown.value?.id === id) shown.value = null;
       await look();
     }),
-    /** Send a file; resolves to its hash and the plain name that tables call it. */
+    /** Send a file; resolves to its hash, the plain name that tables call it, and itself. */
     send: async (file) => {
       const kept = await app.call("files", { method: "POST", body: await file.arrayBuffer(), query: { name: file.name } });
-      return { name: apart(kept.file_name, kept.record), sha: kept.record };
+      return { name: apart(kept.file_name, kept.record), sha: kept.record, file };
     },
     take: (name) => app.download(`questions/${shown.value.id}/${name}`, undefined, name),
   };

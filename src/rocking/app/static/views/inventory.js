@@ -3,7 +3,7 @@
 import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
+import { Choice, Field, FileDrop, KeyField, QuestionView, Rows, filled, useForm, useSignal } from "/questions/parts.js";
 
 const LIGHTS = { red: "bad", amber: "fair", green: "good" };
 
@@ -17,8 +17,17 @@ export const mount = (section, app) => {
 const Inventory = ({ app, questions }) => {
   const files = useSignal([]);
   const [kind, level, family, count] = ["pga", "0.3", "firm-ground", "200"].map(useSignal);
+  const form = useForm("rocking.list", {});
   const wrong = useSignal("");
-  const ask = (event) => {
+  const text = useSignal(null); // the lines of the list, and the question that was asked of them
+  const fixed = useSignal({}); // lines that were corrected, by their number
+  const corrected = async (list) => {
+    const lines = text.value.lines.map((line, k) => fixed.value[k + 1] ?? line);
+    form.at("encoding").value = "";
+    fixed.value = {};
+    return { ...await questions.send(new File([lines.join("\n")], list.name)), name: list.name };
+  };
+  const ask = async (event) => {
     event.preventDefault();
     const strength = Number(level.value.replace(",", "."));
     const many = Number(count.value);
@@ -26,13 +35,17 @@ const Inventory = ({ app, questions }) => {
       : !(strength > 0) ? "How strong is the shaking? A number above 0 is needed."
         : !(Number.isInteger(many) && many > 0) ? "The number of motions is a whole number above 0." : "";
     if (wrong.value) return;
+    if (text.value?.of === files.value[0] && Object.keys(fixed.value).length) files.value = [await corrected(files.value[0])];
     const [list] = files.value;
+    const shaking = { [kind.value]: kind.value === "pga" ? `${strength}g` : `${strength}cm/s` };
     const tables = {
       campaign: { name: list.name, kind: "inventory" },
-      inventory: { objects: list.name, [kind.value]: kind.value === "pga" ? `${strength}g` : `${strength}cm/s` },
+      inventory: { ...filled(form.value, app.info.keys.inventory), objects: list.name, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
-    questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
+    await questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
+    const lines = await linesOf(list.file, form.at("encoding").value);
+    text.value = lines && { of: list, lines, id: questions.shown.value?.id };
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Ranking}
@@ -47,7 +60,37 @@ const Inventory = ({ app, questions }) => {
         ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
         ["pulse-like", "near a fault, pulse-like"]]} />
       <${Field} label="How many motions" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
+      <details><summary>How the list is read</summary>${["columns", "encoding"].map((name) => html`
+        <${KeyField} key=${name} name=${name} facts=${app.info.keys.inventory[name]} value=${form.at(name)} />`)}</details>
+      <${Corrections} question=${questions.shown.value} text=${text.value?.of === files.value[0] ? text.value : null} fixed=${fixed} />
     <//>`;
+};
+
+const MOST = 20; // rows that are corrected at a time
+
+// Lines of a list that is text; null of a workbook, which is corrected where it was made.
+const linesOf = async (file, encoding) => {
+  if (/\.(xlsx|ods)$/i.test(file.name)) return null;
+  const content = await file.arrayBuffer();
+  try {
+    return new TextDecoder(encoding || "utf-8", { fatal: true }).decode(content).split(/\r\n|\r|\n/);
+  } catch {
+    return encoding ? null : new TextDecoder("windows-1252").decode(content).split(/\r\n|\r|\n/);
+  }
+};
+
+// Rows of the list that were not assessed, as they stand in it.
+const Corrections = ({ question, text, fixed }) => {
+  const rows = text && question?.id === text.id ? question.answer?.not_assessed ?? [] : [];
+  const at = ({ row }) => ({
+    get value() { return fixed.value[row] ?? text.lines[row - 1]; },
+    set value(line) { fixed.value = { ...fixed.value, [row]: line }; },
+  });
+  return rows.length > 0 && html`
+    <fieldset class="stack"><legend>Correct rows, and ask again</legend>
+      <pre tabindex="0" aria-label="The first line of the list">${text.lines[0]}</pre>
+      ${rows.slice(0, MOST).map((each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${`Line ${each.row}`} help=${each.reason}
+        value=${at(each)} />`)}</fieldset>`;
 };
 
 const Ranking = ({ answer }) => {
@@ -64,5 +107,6 @@ const Ranking = ({ answer }) => {
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
       rows=${answer.not_assessed.map((each) => [each.name || "no name", String(each.row), each.reason])} />`}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:
-      ${answer.columns_not_read.join(", ")}</p>`}`;
+      ${answer.columns_not_read.join(", ")}</p>
+      <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;
 };
