@@ -87,7 +87,7 @@ const Corrections = ({ question, text, fixed }) => {
     set value(line) { fixed.value = { ...fixed.value, [row]: line }; },
   });
   return rows.length > 0 && html`
-    <fieldset class="stack"><legend>Correct rows, and ask again</legend>
+    <fieldset><legend>Correct rows, and ask again</legend>
       <pre tabindex="0" aria-label="The first line of the list">${text.lines[0]}</pre>
       ${rows.slice(0, MOST).map((each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${`Line ${each.row}`} help=${each.reason}
         value=${at(each)} />`)}</fieldset>`;
@@ -106,7 +106,7 @@ const Ranking = ({ answer }) => {
       head=${["object", "light", "overturns [%]", "what it does", "what to do"]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
       rows=${answer.not_assessed.map((each) => [each.name || "no name", String(each.row), each.reason])} />`}
-    ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:
+    ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:${" "}
       ${answer.columns_not_read.join(", ")}</p>
       <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;
 };
