@@ -11,7 +11,7 @@ import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { learnModels } from "/app/palette.js";
 import { whenBack } from "/app/offline.js";
 import { mountLent } from "/app/lent.js";
-import { fieldOf, plainWords } from "/app/refusal.js";
+import { fieldOf, placeOf, plainWords } from "/app/refusal.js";
 import { say } from "/app/say.js";
 import { showFailure } from "/app/failure.js";
 import { exchange, linkForAnother, showDoor } from "/app/session.js";
@@ -69,6 +69,7 @@ const createApp = (inputs, info) => {
 
 const inPlainWords = (error, body) => {
   error.field = fieldOf(error.message);
+  error.place = placeOf(error.message);
   error.message = plainWords(error.message, body);
 };
 

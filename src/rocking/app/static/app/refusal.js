@@ -19,6 +19,18 @@ export const plainWords = (message, body) => {
 /** The key of the body's field that a refusal is about; nothing if it names none. */
 export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z]+) must /)?.[1] ?? null;
 
+/** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index. */
+export const placeOf = (message) => {
+  if (!message.startsWith("body")) return null;
+  const found = (pattern) => message.match(pattern)?.slice(1).map(Number);
+  const [x, y] = found(/ x = (\S+) m, y = (\S+?) m\b/) ?? [
+    found(/ foot must lie on the base, .*, got (\S+)$/)?.[0], found(/ lowest point is y = (\S+) m/)?.[0],
+  ];
+  const regions = found(/\bregions (\d+) and (\d+)\b/) ?? found(/section\.region\[(\d+)\]/) ?? [];
+  const hole = found(/ hole (\d+)\b/)?.[0];
+  return x === undefined && y === undefined && !regions.length ? null : { x, y, regions, hole };
+};
+
 const withoutPlaces = (words) =>
   words.replace(/^body: /, "")
     .replace(/^section\.region\[(\d+)\]: region: /, (_, index) => `Region ${Number(index) + 1}: `)

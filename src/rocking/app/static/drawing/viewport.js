@@ -17,6 +17,14 @@ export const viewport = (box, { width, height, margin }) => {
   };
 };
 
+/** A viewport about a point in the middle of the pixels. */
+export const viewportAt = ([x, y], scale, { width, height }) => ({
+  scale,
+  x: (length) => width / 2 + scale * (length - x),
+  y: (length) => height / 2 - scale * (length - y),
+  back: (px, py) => [x + (px - width / 2) / scale, y + (height / 2 - py) / scale],
+});
+
 /** The box around points. */
 export const boxOf = (points) => {
   const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };

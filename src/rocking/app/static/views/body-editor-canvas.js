@@ -1,89 +1,172 @@
-/** The board on which regions are drawn: drag a vertex, click an edge, or use the keys. */
+/** The board on which regions are drawn: by pointer or by keys alike, seen from as near as one likes. */
 
 import { el, fill, number, svg, tidy } from "/views/body-parts.js";
 import * as model from "/views/body-editor-model.js";
-import { regionPaths } from "/drawing/outline.js";
-import { centreMark, footMark } from "/drawing/symbols.js";
-import { boxOf, multiples, roundStep, viewport } from "/drawing/viewport.js";
+import { pathOf, regionPaths } from "/drawing/outline.js";
+import { centreMark, footMark, words } from "/drawing/symbols.js";
+import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/viewport.js";
 
 const HEIGHT = 460;
+const CELL = 12; // pixels that a cell of the grid has at least
+const REACH = 16; // pixels from a vertex within which it is picked
+const ZOOM = 1.25;
+const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body fills the board
 
-/** The board: {element, follow}. */
+const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
+  + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
+
+/** The board: {element, follow, zoom, pan, fit, focus, show}. */
 export const createCanvas = (editor) => {
   const board = svg("svg", {
-    class: "picture board", role: "group", "data-testid": "board",
-    "aria-label": "Drawing board. Tab reaches the vertices; arrow keys move one, "
-      + "Delete removes it, Insert adds one after it.",
+    class: "picture board", role: "group", tabindex: "0", "data-testid": "board", "aria-label": ABOUT,
   });
   const element = el("div", { class: "board-box" }, board);
-  let view = null;
-  let drag = null;
-  let width = 0;
+  let [view, width, drag] = [null, 0, null];
+  let look = null; // {middle, scale} once zoomed or panned; until then the whole body is shown
+  let units = editor.units();
 
   const follow = () => {
     if (!width) return;
     const regions = editor.regions();
     if (!regions.length) return fill(board);
-    if (!drag) view = fitted(regions, width);
+    if (units !== editor.units()) [look, units] = [null, editor.units()];
+    if (look) view = viewportAt(look.middle, look.scale, { width, height: HEIGHT });
+    else if (!drag) view = fitted(regions, width, editor.state.photo);
     const focused = document.activeElement?.dataset?.place;
+    editor.state.grid = gridStep(view, editor.state.step);
     set(board, width);
     fill(
-      board, gridLines(view, width), regionPaths(regions, view), statics(editor, view), edges(regions, view),
-      vertices(editor, regions, view),
+      board, photograph(editor.state.photo, view), gridLines(view, width, editor.step()), regionPaths(regions, view),
+      statics(editor, view), edges(regions, view), picked(editor, regions, view), refused(editor, regions, view, width),
+      vertices(editor, regions, view), toolMarks(editor, view),
     );
+    board.dataset.tool = editor.state.tool?.kind ?? "";
     if (
       focused && element.contains(document.activeElement) === false
-    ) board.querySelector(`[data-place="${focused}"]`)?.focus();
+    ) board.querySelector(`[data-place="${focused}"]`)?.focus({ preventScroll: true });
   };
 
-  const pointOf = (event) => {
+  const middle = () => view.back(width / 2, HEIGHT / 2);
+  const lookAt = (point, scale = view.scale) => {
+    const whole = fitted(editor.regions(), width, editor.state.photo).scale;
+    look = { middle: point, scale: Math.min(NEAREST * whole, Math.max(FARTHEST * whole, scale)) };
+    editor.tell();
+  };
+  /** Nearer by a factor; the point stays where it is. */
+  const zoom = (factor, point = chosenPoint(editor, view, width) ?? middle()) => {
+    const [x, y] = [view.x(point[0]), view.y(point[1])];
+    lookAt(middle(), view.scale * factor);
+    pan(x - view.x(point[0]), y - view.y(point[1]));
+  };
+  const pan = (dx, dy) => lookAt(view.back(width / 2 - dx, HEIGHT / 2 - dy));
+  const fit = () => {
+    look = null;
+    editor.tell();
+  };
+  const pixelOf = (event) => {
     const box = board.getBoundingClientRect();
-    return view.back(
-      ((event.clientX - box.left) * width) / box.width, ((event.clientY - box.top) * HEIGHT) / box.height,
-    );
+    return [((event.clientX - box.left) * width) / box.width, ((event.clientY - box.top) * HEIGHT) / box.height];
+  };
+  const pointOf = (event) => view.back(...pixelOf(event));
+  const neat = (point) => editor.snapped(point).map((each) => tidy(each, 9));
+
+  const fingers = new Map();
+  const begin = (event) => {
+    const regions = editor.regions();
+    const point = pointOf(event);
+    const place = model.nearest(regions, point, REACH / view.scale, editor.state.place);
+    const edge = event.target.closest("[data-edge]");
+    if (editor.state.tool) {
+      editor.tool.put(editor.state.tool.kind === "pen" ? neat(point) : point, REACH / view.scale);
+      return board.focus({ preventScroll: true });
+    }
+    if (place) drag = { place, begun: false };
+    else if (edge) {
+      const after = placeOf(edge.dataset.edge);
+      editor.change(model.inserted(regions, after, neat(point)), { ...after, vertex: after.vertex + 1 });
+      drag = { place: editor.state.place, begun: true };
+    } else drag = { from: pixelOf(event) };
+    if (!drag.place) return board.focus({ preventScroll: true });
+    editor.select(drag.place);
+    board.querySelector(`[data-place="${keyOf(drag.place)}"]`)?.focus({ preventScroll: true });
   };
   board.addEventListener("pointerdown", (event) => {
-    const handle = event.target.closest("[data-place]");
-    const edge = event.target.closest("[data-edge]");
-    if (handle) drag = { place: placeOf(handle.dataset.place), begun: false };
-    else if (edge) addOn(editor, placeOf(edge.dataset.edge), pointOf(event));
-    else return;
+    if (event.button > 0) return;
     event.preventDefault();
-    if (drag) {
+    fingers.set(event.pointerId, pixelOf(event));
+    try {
       board.setPointerCapture(event.pointerId);
-      editor.select(drag.place);
-      board.querySelector(`[data-place="${keyOf(drag.place)}"]`)?.focus();
+    } catch {
+      // A pointer that has left already is not followed.
     }
+    if (fingers.size > 1) drag = { pinch: true };
+    else begin(event);
   });
   board.addEventListener("pointermove", (event) => {
-    if (!drag) return;
+    const before = fingers.get(event.pointerId);
+    if (!before || !drag) return;
+    const now = pixelOf(event);
+    fingers.set(event.pointerId, now);
+    if (drag.pinch) return pinch(event.pointerId, before, now);
+    if (drag.from) {
+      pan(now[0] - drag.from[0], now[1] - drag.from[1]);
+      drag.from = now;
+      return undefined;
+    }
     if (!drag.begun) editor.keep();
     drag.begun = true;
-    editor.adjust(
-      model.moved(editor.regions(), drag.place, editor.snapped(pointOf(event)).map((each) => tidy(each, 6))),
-      drag.place,
-    );
+    return editor.adjust(model.moved(editor.regions(), drag.place, neat(pointOf(event))), drag.place);
   });
+  const pinch = (id, before, now) => {
+    const other = [...fingers].find(([each]) => each !== id)?.[1];
+    if (!other) return;
+    const spread = (each) => Math.hypot(each[0] - other[0], each[1] - other[1]);
+    const held = view.back((before[0] + other[0]) / 2, (before[1] + other[1]) / 2);
+    if (spread(before) > 8 && spread(now) > 8) zoom(spread(now) / spread(before), held);
+    pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
+  };
   for (const end of ["pointerup", "pointercancel"]) {
-    board.addEventListener(end, () => {
-      if (!drag) return;
+    board.addEventListener(end, (event) => {
+      fingers.delete(event.pointerId);
+      if (!drag || (drag.pinch && fingers.size)) return;
       drag = null;
       follow();
     });
   }
+  // Two fingers are the board's; one finger up or down scrolls the page, as everywhere.
+  board.addEventListener("touchmove", (event) => event.touches.length > 1 && event.preventDefault(), { passive: false });
+  board.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey && !board.contains(document.activeElement)) return;
+    event.preventDefault();
+    zoom(ZOOM ** (-event.deltaY / (event.deltaMode ? 3 : 100)), pointOf(event));
+  }, { passive: false });
   board.addEventListener("focusin", (event) => {
     const key = event.target.dataset?.place;
-    if (key && key !== keyOf(editor.state.place)) editor.select(placeOf(key));
+    if (!key) return;
+    if (key !== keyOf(editor.state.place)) editor.select(placeOf(key));
+    const point = model.ringAt(editor.regions(), editor.state.place)[editor.state.place.vertex];
+    if (!inSight(view, width, point)) lookAt(point);
   });
-  board.addEventListener("keydown", (event) => onKey(event, editor));
+  const views = {
+    PageUp: () => zoom(ZOOM), PageDown: () => zoom(1 / ZOOM), Home: fit,
+    "Control+ArrowLeft": () => pan(60, 0), "Control+ArrowRight": () => pan(-60, 0),
+    "Control+ArrowUp": () => pan(0, 60), "Control+ArrowDown": () => pan(0, -60),
+  };
+  board.addEventListener("keydown", (event) => {
+    const seen = views[`${event.ctrlKey || event.metaKey ? "Control+" : ""}${event.key}`];
+    if (seen) {
+      event.preventDefault();
+      seen();
+    } else onKey(event, editor, () => chosenPoint(editor, view, width) ?? middle());
+  });
   new ResizeObserver(([entry]) => {
     const next = Math.floor(entry.contentRect.width);
     if (next && next !== width) {
       width = next;
-      follow();
+      editor.tell();
     }
   }).observe(element);
-  return { element, follow };
+  return { element, follow, zoom, pan, fit, focus: () => board.focus(), show: (point) => lookAt(point, view.scale) };
 };
 
 const set = (board, width) => {
@@ -91,8 +174,9 @@ const set = (board, width) => {
   board.setAttribute("height", HEIGHT);
 };
 
-const fitted = (regions, width) => {
-  const box = boxOf(regions.flatMap((each) => each.outline));
+const fitted = (regions, width, photo) => {
+  const corners = photo ? [[photo.x, photo.y], [photo.x + photo.scale * photo.width, photo.y + photo.scale * photo.height]] : [];
+  const box = boxOf([...regions.flatMap((each) => each.outline), ...corners]);
   const air = 0.08 * Math.max(box.right - box.left, box.top - box.bottom);
   const roomy = {
     left: box.left - air, right: box.right + air, top: box.top + air, bottom: Math.min(box.bottom, 0) - air,
@@ -100,23 +184,48 @@ const fitted = (regions, width) => {
   return viewport(roomy, { width, height: HEIGHT, margin: { left: 44, right: 12, top: 10, bottom: 26 } });
 };
 
-const gridLines = (view, width) => {
+// The step that is drawn is the step that is snapped to: the typed one, doubled and so on while its cells are too
+// small to see; without one, a round step whose cells are seen.
+const gridStep = (view, typed) => {
+  if (!typed) return tidy(roundStep(CELL / view.scale, 1));
+  const times = [1, 2, 5].flatMap((each) => Array.from({ length: 12 }, (_, power) => each * 10 ** power));
+  return tidy(typed * times.sort((one, two) => one - two).find((each) => typed * each * view.scale >= CELL / 3));
+};
+
+const inSight = (view, width, [x, y]) =>
+  view.x(x) >= 0 && view.x(x) <= width && view.y(y) >= 0 && view.y(y) <= HEIGHT;
+
+const chosenPoint = (editor, view, width) => {
+  const { place, tool } = editor.state;
+  const point = tool ? tool.cursor : model.ringAt(editor.regions(), place)?.[place.vertex];
+  return point && inSight(view, width, point) ? point : null;
+};
+
+const gridLines = (view, width, step) => {
   const [[left, top], [right, bottom]] = [view.back(0, 0), view.back(width, HEIGHT)];
-  const step = roundStep(right - left, Math.max(4, width / 70));
-  const lines = (values, draw) => values.map(draw);
-  return svg("g", { "aria-hidden": "true" },
-    lines(multiples(left, right, step), (value) => [
-      svg("path", { class: value === 0 ? "axis" : "grid-line", d: `M${view.x(value)} 0V${HEIGHT}` }),
-      svg(
+  const many = [1, 2, 5, 10, 20, 50, 100].find((each) => each * step * view.scale >= 60) ?? 100;
+  const told = (value) => Math.round(value / step) % many === 0;
+  const digits = Math.max(4, Math.ceil(Math.log10(Math.max(Math.abs(left), Math.abs(right), Math.abs(top)) / step)) + 1);
+  const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : told(value) ? "grid-line told" : "grid-line", d });
+  return svg("g", { "aria-hidden": "true", "data-step": step },
+    multiples(left, right, step).map((value) => [
+      line(value, "axis", `M${view.x(value)} 0V${HEIGHT}`),
+      told(value) && svg(
         "text", { class: "soft", x: view.x(value), y: HEIGHT - 6, "text-anchor": "middle" },
-        number(tidy(value), 4),
+        number(tidy(value), digits),
       ),
     ]),
-    lines(multiples(bottom, top, step), (value) => [
-      svg("path", { class: value === 0 ? "ground" : "grid-line", d: `M0 ${view.y(value)}H${width}` }),
-      svg("text", { class: "soft", x: 6, y: view.y(value) - 4 }, number(tidy(value), 4)),
+    multiples(bottom, top, step).map((value) => [
+      line(value, "ground", `M0 ${view.y(value)}H${width}`),
+      told(value) && svg("text", { class: "soft", x: 6, y: view.y(value) - 4 }, number(tidy(value), digits)),
     ]));
 };
+
+const photograph = (photo, view) => photo && svg("image", {
+  href: photo.url, x: view.x(photo.x), y: view.y(photo.y + photo.scale * photo.height), opacity: photo.opacity,
+  width: photo.scale * photo.width * view.scale, height: photo.scale * photo.height * view.scale,
+  preserveAspectRatio: "none", "aria-hidden": "true",
+});
 
 const statics = (editor, view) => {
   const facts = editor.facts();
@@ -137,6 +246,28 @@ const edges = (regions, view) =>
       });
     }));
 
+// The edge after the chosen vertex, with its dimensions beside it.
+const picked = (editor, regions, view) => {
+  const { from, to, length, angle } = model.edgeAt(regions, editor.state.place);
+  const [[x1, y1], [x2, y2]] = [from, to].map(([x, y]) => [view.x(x), view.y(y)]);
+  return svg("g", { class: "edge-picked", "aria-hidden": "true" },
+    svg("path", { class: "accent-line", d: `M${x1} ${y1}L${x2} ${y2}` }),
+    words((x1 + x2) / 2 + 6, (y1 + y2) / 2 - 6, `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`));
+};
+
+// Where the server says that it cannot be: a ring about the point, a line at its height, or the outlines it names.
+const refused = (editor, regions, view, width) => {
+  const place = editor.refusal();
+  if (!place) return null;
+  const named = place.regions.map((index) => regions[index]).filter(Boolean)
+    .map((each) => (place.hole === undefined ? each.outline : each.holes?.[place.hole] ?? each.outline));
+  const marks = place.y === undefined ? named.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
+    : place.x === undefined ? [svg("path", { class: "refused", d: `M0 ${view.y(place.y)}H${width}` })]
+      : [[place.x, place.y]].map(([x, y]) => svg("g", { class: "refused", transform: `translate(${view.x(x)} ${view.y(y)})` },
+        svg("circle", { r: 13 }), svg("path", { d: "M-5 -5L5 5M-5 5L5 -5" })));
+  return svg("g", { "data-testid": "board-refusal", role: "img", "aria-label": editor.refusalWords() }, marks);
+};
+
 const vertices = (editor, regions, view) => {
   const chosen = keyOf(editor.state.place);
   return model.ringsOf(regions).flatMap(({ region, ring, points }) =>
@@ -151,24 +282,31 @@ const vertices = (editor, regions, view) => {
     }));
 };
 
-const addOn = (editor, place, point) => {
-  const regions = editor.regions();
-  editor.change(
-    model.inserted(regions, place, editor.snapped(point).map((each) => tidy(each, 6))),
-    { ...place, vertex: place.vertex + 1 },
-  );
+// Points set so far, and where the next one would be.
+const toolMarks = (editor, view) => {
+  const { tool } = editor.state;
+  if (!tool) return null;
+  const at = ([x, y]) => `${view.x(x)} ${view.y(y)}`;
+  return svg("g", { class: "tool-marks", "data-testid": "tool-marks", "aria-hidden": "true" },
+    tool.points.length > 1 && svg("path", { class: "accent-line", d: `M${tool.points.map(at).join("L")}` }),
+    tool.points.map((point) => svg("circle", { r: 5.5, cx: view.x(point[0]), cy: view.y(point[1]) })),
+    tool.cursor && svg("path", { class: "cursor", d: "M-12 0H12M0 -12V12", transform: `translate(${at(tool.cursor)})` }));
 };
 
-const onKey = (event, editor) => {
+const onKey = (event, editor, start) => {
   const key = event.target.dataset?.place;
   if (event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey)) {
     event.preventDefault();
     return editor.travel(event.shiftKey ? "redo" : "undo");
   }
+  if (editor.state.tool) {
+    if (editor.tool.key(event.key, event.shiftKey ? 10 : 1, start)) event.preventDefault();
+    return undefined;
+  }
   const action = key && actions[event.key];
-  if (!action) return;
+  if (!action) return undefined;
   event.preventDefault();
-  action(editor, placeOf(key), event.shiftKey ? 10 : 1);
+  return action(editor, placeOf(key), event.shiftKey ? 10 : 1);
 };
 
 const shifted = (dx, dy) => (editor, place, times) => {
@@ -180,14 +318,13 @@ const shifted = (dx, dy) => (editor, place, times) => {
 const drop = (editor, place) => {
   const next = model.removed(editor.regions(), place);
   if (next === editor.regions()) return editor.say("A polygon keeps at least three vertices.", "warning");
-  editor.change(next, { ...place, vertex: Math.max(0, place.vertex - 1) });
+  return editor.change(next, { ...place, vertex: Math.max(0, place.vertex - 1) });
 };
 
 const add = (editor, place) => {
-  const ring = model.ringAt(editor.regions(), place);
-  const [[x, y], [nextX, nextY]] = [ring[place.vertex], ring[(place.vertex + 1) % ring.length]];
+  const { from, to } = model.edgeAt(editor.regions(), place);
   editor.change(
-    model.inserted(editor.regions(), place, [tidy((x + nextX) / 2), tidy((y + nextY) / 2)]),
+    model.inserted(editor.regions(), place, [0, 1].map((axis) => tidy((from[axis] + to[axis]) / 2))),
     { ...place, vertex: place.vertex + 1 },
   );
 };

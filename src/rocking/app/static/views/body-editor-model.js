@@ -1,6 +1,6 @@
 /** Regions of a polygon body, changed one step at a time, with undo and redo. */
 
-import { lowest, spanOf } from "/app/extremes.js";
+import { highest, lowest, spanOf } from "/app/extremes.js";
 // A place is {region, ring, vertex}: ring -1 is the outline, others are holes.
 
 /** The ring at a place. */
@@ -63,6 +63,90 @@ export const middleHole = (outline, exact = (value) => value) => {
   return [
     [x - dx, y - dy], [x + dx, y - dy], [x + dx, y + dy], [x - dx, y + dy],
   ].map((point) => point.map(exact));
+};
+
+/** The edge after a vertex: both ends, its length and its angle from the horizontal in degrees. */
+export const edgeAt = (regions, place) => {
+  const ring = ringAt(regions, place);
+  const [from, to] = [ring[place.vertex], ring[(place.vertex + 1) % ring.length]];
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  return { from, to, length: Math.hypot(dx, dy), angle: (Math.atan2(dy, dx) * 180) / Math.PI };
+};
+
+/** With another length or angle of an edge: its second end moves. */
+export const withEdge = (regions, place, { length, angle }, exact = (value) => value) => {
+  const { from } = edgeAt(regions, place);
+  const turn = (angle * Math.PI) / 180;
+  const end = [from[0] + length * Math.cos(turn), from[1] + length * Math.sin(turn)].map(exact);
+  return moved(regions, { ...place, vertex: (place.vertex + 1) % ringAt(regions, place).length }, end);
+};
+
+/** An edge as an arc that rises by so much out of the ring: {regions, chords, error}, the error at most what is asked. */
+export const withArc = (regions, place, rise, most, exact = (value) => value) => {
+  const { from, to, length } = edgeAt(regions, place);
+  const radius = (length ** 2 / 4 + rise ** 2) / (2 * Math.abs(rise));
+  const whole = 4 * Math.atan((2 * Math.abs(rise)) / length);
+  const chords = Math.max(2, Math.ceil(whole / (2 * Math.acos(Math.max(0, 1 - most / radius))) - 1e-9));
+  if (!(chords <= MOST_CHORDS)) return null;
+  const out = Math.sign(rise) * Math.sign(signedArea(ringAt(regions, place)) || 1);
+  const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  const points = Array.from({ length: chords - 1 }, (_, k) => {
+    const at = ((k + 1) / chords - 0.5) * whole;
+    const [along, up] = [length / 2 + radius * Math.sin(at), out * (radius * Math.cos(at) - radius + Math.abs(rise))];
+    return [from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map(exact);
+  });
+  const next = withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, ...points));
+  return { regions: next, chords, error: radius * (1 - Math.cos(whole / (2 * chords))) };
+};
+
+const MOST_CHORDS = 1000;
+
+/** Twice the area of a ring, positive if it runs counter-clockwise. */
+const signedArea = (ring) => ring.reduce((sum, [x, y], index) => {
+  const [nextX, nextY] = ring[(index + 1) % ring.length];
+  return sum + x * nextY - nextX * y;
+}, 0);
+
+/** A section turned left for right about its middle, its feet and its centre too. */
+export const mirrored = (section, regions, exact = (value) => value) => {
+  const xs = regions.flatMap((each) => each.outline).map((point) => point[0]);
+  const sum = lowest(xs) + highest(xs);
+  const turned = (x) => exact(sum - x);
+  const ring = (points) => points.map(([x, y]) => [turned(x), y]).reverse();
+  const { feet, centre } = section;
+  return {
+    ...section,
+    region: regions.map((each) => tidied({ ...each, outline: ring(each.outline), holes: each.holes?.map(ring) })),
+    ...(feet ? { feet: [turned(feet[1]), turned(feet[0])] } : {}),
+    ...(centre ? { centre: [turned(centre[0]), centre[1]] } : {}),
+  };
+};
+
+/** A ring and its image beyond an edge as one: half a profile becomes the whole. */
+export const doubled = (regions, place, exact = (value) => value) => {
+  const { from, to, length } = edgeAt(regions, place);
+  const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  const image = ([x, y]) => {
+    const along = (x - from[0]) * ux + (y - from[1]) * uy;
+    return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map(exact);
+  };
+  return withRing(regions, place, (ring) => {
+    const rest = Array.from({ length: ring.length - 2 }, (_, k) => ring[(place.vertex + 2 + k) % ring.length]);
+    return [to, ...rest, from, ...rest.map(image).reverse()];
+  });
+};
+
+/** The place of the vertex nearest to a point within reach, of equals the chosen one; null if there is none. */
+export const nearest = (regions, [x, y], reach, chosen) => {
+  let [best, found] = [reach, null];
+  for (const { region, ring, points } of ringsOf(regions)) {
+    points.forEach((point, vertex) => {
+      const away = Math.hypot(point[0] - x, point[1] - y);
+      const same = chosen.region === region && chosen.ring === ring && chosen.vertex === vertex;
+      if (away < best || (away === best && same)) [best, found] = [away, { region, ring, vertex }];
+    });
+  }
+  return found;
 };
 
 /** Round a point to a grid; a step of nothing leaves it. */

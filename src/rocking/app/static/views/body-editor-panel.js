@@ -1,6 +1,7 @@
 /** What stands around the board: undo, regions and holes, densities, the grid, the chosen vertex. */
 
 import { highest, lowest } from "/app/extremes.js";
+import { editable } from "/app/format.js";
 import { button, el, fill, numberField, switchField, tidy, toolbar } from "/views/body-parts.js";
 import * as model from "/views/body-editor-model.js";
 
@@ -15,15 +16,17 @@ export const createPanel = (editor) => {
     text: "Stand on the ground", onClick: () => editor.change(model.onTheGround(editor.regions(), tidy)),
   });
   const snap = switchField({
-    label: "Snap to grid", value: editor.state.snap, onChange: (on) => Object.assign(
-      editor.state, { snap: on },
-    ),
+    label: "Snap to grid", value: editor.state.snap, onChange: (on) => {
+      editor.state.snap = on;
+    },
   });
   const grid = numberField({
-    label: "Grid step", above: 0, value: editor.step(), onChange: (value) => value > 0 && Object.assign(
-      editor.state, { step: value },
-    ),
-    help: "Of the grid and of the arrow keys; with Shift ten times.",
+    label: "Grid step", above: 0, optional: true, value: null,
+    onChange: (value) => {
+      editor.state.step = value;
+      editor.tell();
+    },
+    help: "Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks.",
   });
   const vertex = vertexFields(editor);
   const densities = el("div", { class: "fields", "data-testid": "densities" });
@@ -35,7 +38,7 @@ export const createPanel = (editor) => {
     able(undo, editor.history.canUndo());
     able(redo, editor.history.canRedo());
     dropRing.disabled = editor.state.place.ring < 0 && regions.length < 2;
-    if (document.activeElement !== grid.input) grid.value = editor.step();
+    grid.input.placeholder = editable(editor.step());
     vertex.follow();
     if (shown !== regions.length) {
       boxes = regions.map((_, index) => densityField(editor, index));

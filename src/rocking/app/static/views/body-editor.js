@@ -1,27 +1,32 @@
 /** The polygon editor: vertices that pointer and keyboard move alike, holes, densities, undo. */
 
-import { highest, spanOf } from "/app/extremes.js";
 import { createCanvas } from "/views/body-editor-canvas.js";
 import * as model from "/views/body-editor-model.js";
 import { createPanel } from "/views/body-editor-panel.js";
+import { createTools } from "/views/body-editor-tools.js";
 import { pastePart } from "/views/body-paste.js";
 import { card, el, fill, tidy } from "/views/body-parts.js";
 import { regionsOf, shapeOf } from "/views/body-shapes.js";
 import { inUnits, METRES } from "/views/body-units.js";
-import { roundStep } from "/drawing/viewport.js";
 
 /** Put the editor in its place; follow() shows it for a polygon and takes it away for any other shape. */
 export const mountEditor = (place, app) => {
   const editor = createEditor(app);
-  const parts = [createPanel(editor), createCanvas(editor)];
-  const [panel, canvas] = parts;
+  const canvas = createCanvas(editor);
+  const [panel, tools] = [createPanel(editor), createTools(editor, canvas)];
+  panel.tools.append(...tools.pen);
+  const parts = [canvas, panel, tools]; // the board first: it knows the step of its grid
   const board = card("Draw", panel.tools,
-    el("div", { class: "board-row" }, canvas.element, panel.details), pastePart(editor));
+    el("div", { class: "board-row" }, el("div", { class: "stack" }, canvas.element, tools.told, tools.ends), panel.details),
+    tools.edge, tools.photo, pastePart(editor));
   board.dataset.testid = "editor";
   fill(place, board);
   const follow = () => {
     place.hidden = shapeOf(app.inputs.get().body) !== "section";
-    if (!place.hidden) for (const part of parts) part.follow();
+    if (place.hidden) return;
+    const regions = editor.regions();
+    if (regions.length) editor.state.place = withinReach(regions, editor.state.place);
+    for (const part of parts) part.follow();
   };
   editor.watch(follow);
   app.inputs.subscribe((_, changed) => changed.has("body") && follow());
@@ -32,7 +37,8 @@ export const mountEditor = (place, app) => {
 const createEditor = (app) => {
   const history = model.createHistory();
   const watchers = new Set();
-  const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null };
+  // Photograph and tool are this browser's alone: they are no part of the body.
+  const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   const tell = () => watchers.forEach((each) => each());
@@ -42,13 +48,15 @@ const createEditor = (app) => {
     return { section, regions: regions(), units, whole };
   };
   const put = (next) => app.inputs.set("body.section.region", next);
-  const step = () => state.step ?? firstStep(regions());
+  const step = () => state.grid ?? state.step ?? 0.05;
   const editor = {
     state, history, regions, step,
     section: () => body().section,
     units: () => body().units,
     facts: () => app.body.get(),
     metres: () => METRES[body().units],
+    refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
+    refusalWords: () => app.body.error()?.message ?? "",
     watch: (watcher) => watchers.add(watcher),
     change: (next, place = state.place) => {
       history.keep(now());
@@ -89,19 +97,14 @@ const createEditor = (app) => {
   return editor;
 };
 
+const inUnitsOf = (place, metres) => place && {
+  ...place, x: place.x === undefined ? undefined : place.x / metres, y: place.y === undefined ? undefined : place.y / metres,
+};
+
 // Regions written as text (WKT) become points as soon as someone draws on them.
 const editable = (section, facts, units) => {
   const given = section?.region ?? [];
   return given.every((each) => each.outline) ? given : regionsOf(facts, units);
-};
-
-const firstStep = (regions) => {
-  const points = regions.flatMap((each) => each.outline);
-  if (!points.length) return 0.05;
-  const spans = [0, 1].map(
-    (axis) => spanOf(points.map((each) => each[axis]))
-  );
-  return tidy(roundStep(highest(spans), 80));
 };
 
 /** The nearest place that exists after a change. */

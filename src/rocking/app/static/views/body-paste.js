@@ -20,34 +20,41 @@ export const pastePart = (editor) => {
   const use = (make) => () => {
     const read = parsePoints(box.value);
     tell(read);
-    if (!read.fault) editor.change(...make(editor.regions(), read.points, editor.state.place));
-  };
-  const asOutline = () => {
-    const read = parsePoints(box.value);
-    tell(read);
     if (read.fault) return;
-    const lost = lostWords(editor.section(), editor.regions());
-    editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], read.points));
-    const words = `The ${read.points.length} points are the whole body now.`;
-    fill(told, lost ? `${words} ${lost}` : words);
+    const words = make(editor, read.points);
+    if (words) fill(told, words);
   };
-  const asRegion = (regions, points) => [
-    model.withRegion(regions, points, regions.at(-1).density), {
-      region: regions.length, ring: -1, vertex: 0,
-    },
-  ];
-  const asHole = (regions, points, { region }) => [
-    model.withHole(regions, region, points), { region, ring: regions[region].holes?.length ?? 0, vertex: 0 },
-  ];
   return el("details", { class: "paste" },
     el("summary", {}, "Paste points from Excel or a file"),
     el("div", { class: "stack" },
       el("div", { class: "field" },
         el("label", { for: id }, "Points, x and y on each line"), box, told),
       toolbar(
-        button({ text: "Use as outline", kind: "primary", onClick: asOutline }),
+        button({ text: "Use as outline", kind: "primary", onClick: use(asOutline) }),
         button({ text: "Add as region", onClick: use(asRegion) }),
         button({ text: "Add as hole", onClick: use(asHole) }))));
+};
+
+/** Points as the whole body; what was done, in words. */
+export const asOutline = (editor, points) => {
+  const lost = lostWords(editor.section(), editor.regions());
+  editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
+  const words = `The ${points.length} points are the whole body now.`;
+  return lost ? `${words} ${lost}` : words;
+};
+
+/** Points as one more region. */
+export const asRegion = (editor, points) => {
+  const regions = editor.regions();
+  editor.change(model.withRegion(regions, points, regions.at(-1).density), { region: regions.length, ring: -1, vertex: 0 });
+};
+
+/** Points as a hole of the chosen region. */
+export const asHole = (editor, points) => {
+  const [regions, { region }] = [editor.regions(), editor.state.place];
+  editor.change(
+    model.withHole(regions, region, points), { region, ring: regions[region].holes?.length ?? 0, vertex: 0 },
+  );
 };
 
 // What is typed of the material stays; what belonged to the former outline does not.

@@ -56,11 +56,11 @@ export const mount = (section, app) => {
   app.faults.subscribe(look);
   app.body.subscribe((body) => {
     look();
+    drawing.follow();
     if (!body) return;
     picture.redraw();
     fill(warnings, warningsOf(body));
     fill(numbers, factsTable(body, app));
-    drawing.follow();
   });
   return { shown: () => shapeOf(app.inputs.get().body) === "section" && drawing.follow() };
 };
