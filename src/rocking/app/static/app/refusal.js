@@ -24,7 +24,8 @@ export const placeOf = (message) => {
   if (!message.startsWith("body")) return null;
   const found = (pattern) => message.match(pattern)?.slice(1).map(Number);
   const [x, y] = found(/ x = (\S+) m, y = (\S+?) m\b/) ?? [
-    found(/ foot must lie on the base, .*, got (\S+)$/)?.[0], found(/ lowest point is y = (\S+) m/)?.[0],
+    found(/ foot must lie on the base, .*, got (\S+)$/)?.[0],
+    found(/ lowest point is y = (\S+) m/)?.[0] ?? (/ foot must lie on the base/.test(message) ? 0 : undefined),
   ];
   const regions = found(/\bregions (\d+) and (\d+)\b/) ?? found(/section\.region\[(\d+)\]/) ?? [];
   const hole = found(/ hole (\d+)\b/)?.[0];

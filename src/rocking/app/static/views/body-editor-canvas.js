@@ -20,7 +20,8 @@ export const createCanvas = (editor) => {
   const board = svg("svg", {
     class: "picture board", role: "group", tabindex: "0", "data-testid": "board", "aria-label": ABOUT,
   });
-  const element = el("div", { class: "board-box" }, board);
+  const wrong = el("p", { class: "board-refusal", "aria-hidden": "true", hidden: true });
+  const element = el("div", { class: "board-box" }, board, wrong);
   let [view, width, drag] = [null, 0, null];
   let look = null; // {middle, scale} once zoomed or panned; until then the whole body is shown
   let units = editor.units();
@@ -34,10 +35,13 @@ export const createCanvas = (editor) => {
     else if (!drag) view = fitted(regions, width, editor.state.photo);
     const focused = document.activeElement?.dataset?.place;
     editor.state.grid = gridStep(view, editor.state.step);
+    const place = editor.refusal();
+    const rings = ringsNamed(place, regions);
+    putWords(wrong, editor, view, width, refusedPoint(place, rings, view));
     set(board, width);
     fill(
       board, photograph(editor.state.photo, view), gridLines(view, width, editor.step()), regionPaths(regions, view),
-      statics(editor, view), edges(regions, view), picked(editor, regions, view), refused(editor, regions, view, width),
+      statics(editor, view), edges(regions, view), picked(editor, regions, view), refused(place, rings, view, width),
       vertices(editor, regions, view), toolMarks(editor, view),
     );
     board.dataset.tool = editor.state.tool?.kind ?? "";
@@ -250,22 +254,46 @@ const edges = (regions, view) =>
 const picked = (editor, regions, view) => {
   const { from, to, length, angle } = model.edgeAt(regions, editor.state.place);
   const [[x1, y1], [x2, y2]] = [from, to].map(([x, y]) => [view.x(x), view.y(y)]);
+  const flat = Math.abs(x2 - x1) > Math.abs(y2 - y1);
   return svg("g", { class: "edge-picked", "aria-hidden": "true" },
     svg("path", { class: "accent-line", d: `M${x1} ${y1}L${x2} ${y2}` }),
-    words((x1 + x2) / 2 + 6, (y1 + y2) / 2 - 6, `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`));
+    words((x1 + x2) / 2 + (flat ? 0 : 9), (y1 + y2) / 2 - (flat ? 9 : 0), `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`, {
+      "text-anchor": flat ? "middle" : "start",
+    }));
 };
 
 // Where the server says that it cannot be: a ring about the point, a line at its height, or the outlines it names.
-const refused = (editor, regions, view, width) => {
-  const place = editor.refusal();
+const refused = (place, rings, view, width) => {
   if (!place) return null;
-  const named = place.regions.map((index) => regions[index]).filter(Boolean)
-    .map((each) => (place.hole === undefined ? each.outline : each.holes?.[place.hole] ?? each.outline));
-  const marks = place.y === undefined ? named.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
-    : place.x === undefined ? [svg("path", { class: "refused", d: `M0 ${view.y(place.y)}H${width}` })]
-      : [[place.x, place.y]].map(([x, y]) => svg("g", { class: "refused", transform: `translate(${view.x(x)} ${view.y(y)})` },
-        svg("circle", { r: 13 }), svg("path", { d: "M-5 -5L5 5M-5 5L5 -5" })));
-  return svg("g", { "data-testid": "board-refusal", role: "img", "aria-label": editor.refusalWords() }, marks);
+  const marks = place.y === undefined ? rings.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
+    : place.x === undefined ? svg("path", { class: "refused", d: `M0 ${view.y(place.y)}H${width}` })
+      : svg("g", { class: "refused", transform: `translate(${view.x(place.x)} ${view.y(place.y)})` },
+        svg("circle", { r: 13 }), svg("path", { d: "M-5 -5L5 5M-5 5L5 -5" }));
+  return svg("g", { "data-testid": "board-refusal", "aria-hidden": "true" }, marks);
+};
+
+const refusedPoint = (place, rings, view) => {
+  if (!place) return null;
+  if (place.y !== undefined) return [place.x ?? view.back(0, 0)[0], place.y];
+  const box = rings.length && boxOf(rings.at(-1));
+  return box ? [(box.left + box.right) / 2, (box.bottom + box.top) / 2] : null;
+};
+
+const ringsNamed = (place, regions) => (place?.regions ?? []).map((index) => regions[index]).filter(Boolean)
+  .map((each) => each.holes?.[place.hole] ?? each.outline);
+
+// The words of the refusal beside its mark; whoever does not see it hears them from the alert below.
+const putWords = (note, editor, view, width, point) => {
+  note.hidden = !point;
+  if (!point) return;
+  const [x, y] = [Math.min(Math.max(view.x(point[0]), 0), width), Math.min(Math.max(view.y(point[1]), 0), HEIGHT)];
+  const [right, low] = [x > width / 2, y > HEIGHT / 2];
+  Object.assign(note.style, {
+    left: right ? "auto" : `${x + 16}px`, right: right ? `${width - x + 16}px` : "auto",
+    top: low ? "auto" : `${y + 4}px`, bottom: low ? `${HEIGHT - y + 4}px` : "auto",
+    maxWidth: `${Math.min(240, Math.max(x, width - x) - 24)}px`,
+  });
+  if (note.textContent !== editor.refusalWords()) fill(note, editor.refusalWords());
 };
 
 const vertices = (editor, regions, view) => {

@@ -77,7 +77,7 @@ export const edgeAt = (regions, place) => {
 export const withEdge = (regions, place, { length, angle }, exact = (value) => value) => {
   const { from } = edgeAt(regions, place);
   const turn = (angle * Math.PI) / 180;
-  const end = [from[0] + length * Math.cos(turn), from[1] + length * Math.sin(turn)].map(exact);
+  const end = [from[0] + length * Math.cos(turn), from[1] + length * Math.sin(turn)].map((each) => exact(each));
   return moved(regions, { ...place, vertex: (place.vertex + 1) % ringAt(regions, place).length }, end);
 };
 
@@ -93,7 +93,7 @@ export const withArc = (regions, place, rise, most, exact = (value) => value) =>
   const points = Array.from({ length: chords - 1 }, (_, k) => {
     const at = ((k + 1) / chords - 0.5) * whole;
     const [along, up] = [length / 2 + radius * Math.sin(at), out * (radius * Math.cos(at) - radius + Math.abs(rise))];
-    return [from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map(exact);
+    return [from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map((each) => exact(each));
   });
   const next = withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, ...points));
   return { regions: next, chords, error: radius * (1 - Math.cos(whole / (2 * chords))) };
@@ -128,7 +128,7 @@ export const doubled = (regions, place, exact = (value) => value) => {
   const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
   const image = ([x, y]) => {
     const along = (x - from[0]) * ux + (y - from[1]) * uy;
-    return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map(exact);
+    return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map((each) => exact(each));
   };
   return withRing(regions, place, (ring) => {
     const rest = Array.from({ length: ring.length - 2 }, (_, k) => ring[(place.vertex + 2 + k) % ring.length]);
