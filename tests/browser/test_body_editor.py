@@ -289,7 +289,7 @@ def test_dimensions_are_typed(page: Any) -> None:
 
 @pytest.mark.parametrize("most", [0.1, 0.003])
 def test_an_edge_becomes_an_arc(page: Any, most: float) -> None:
-    """A half circle on top of a square: its points lie on it, its chords are no further off than asked, one less would be."""
+    """A half circle on top of a square: its points lie on it, its chords are as near as asked, one less is not."""
     drawn(page, [(0, 0), (2, 0), (2, 2), (0, 2)])
     page.get_by_role("button", name="Vertex 3 of region 1").focus()
     edge = page.get_by_test_id("edge")
@@ -380,15 +380,22 @@ def test_a_photograph_is_traced_and_stays_here(page: Any, record: Any, shot: Cal
     expect(page.get_by_test_id("board-told")).to_contain_text("no picture that the browser can show")
 
 
-def test_the_page_does_no_physics_for_the_board(page: Any, until: Callable[..., None]) -> None:
-    """Centre and mass stay those of the last answer while the server is not asked."""
-    drawn(page)
-    settled(page, "Mass kg", 1200.0)
-    held: list[Any] = []
-    page.route("**/api/body", lambda route: held.append(route))
-    page.get_by_role("button", name="Vertex 3 of region 1").focus()
-    page.keyboard.press("Shift+ArrowRight")
-    until(page, lambda: held)
-    assert number(page, "Mass kg") == pytest.approx(1200.0, rel=1e-12)
-    held[0].continue_()
-    settled(page, "Mass kg", 0.5 * (0.5 + 1.5) * 2.0 * 0.5 * 2400.0)
+DAY = {"color_scheme": "light"}
+NIGHT_PHONE = {"color_scheme": "dark", "viewport": {"width": 320, "height": 800}}
+
+
+@pytest.mark.parametrize("look", [DAY, NIGHT_PHONE], ids=["day", "night"])
+def test_axe_minds_nothing_of_the_tools(open_page: Callable[..., Any], look: dict[str, Any]) -> None:
+    """With a refusal on the board, the pen held, and every part unfolded; nothing is wider than the window."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe
+    page = open_page(**look)
+    drawn(page, [(0, 0), (2, 0), (0, 3), (1, 4)])
+    page.get_by_test_id("board-refusal").wait_for()
+    for part in ("edge", "photo"):
+        page.get_by_test_id(part).locator("summary").click()
+    page.get_by_role("button", name="Pen", exact=True).click()
+    results = (
+        axe().run(page, context="[data-testid=editor]", options={"resultTypes": ["violations"]}).response["violations"]
+    )
+    assert [(one["id"], node["target"]) for one in results for node in one["nodes"]] == []
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")

@@ -7,6 +7,7 @@ import { centreMark, footMark, words } from "/drawing/symbols.js";
 import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/viewport.js";
 
 const HEIGHT = 460;
+const NARROWEST = 80; // pixels: what is narrower is about to be hidden or shown
 const CELL = 12; // pixels that a cell of the grid has at least
 const REACH = 16; // pixels from a vertex within which it is picked
 const ZOOM = 1.25;
@@ -45,6 +46,7 @@ export const createCanvas = (editor) => {
       vertices(editor, regions, view), toolMarks(editor, view),
     );
     board.dataset.tool = editor.state.tool?.kind ?? "";
+    board.toggleAttribute("data-photo", Boolean(editor.state.photo));
     if (
       focused && element.contains(document.activeElement) === false
     ) board.querySelector(`[data-place="${focused}"]`)?.focus({ preventScroll: true });
@@ -165,7 +167,7 @@ export const createCanvas = (editor) => {
   });
   new ResizeObserver(([entry]) => {
     const next = Math.floor(entry.contentRect.width);
-    if (next && next !== width) {
+    if (next > NARROWEST && next !== width) {
       width = next;
       editor.tell();
     }
@@ -257,7 +259,7 @@ const picked = (editor, regions, view) => {
   const flat = Math.abs(x2 - x1) > Math.abs(y2 - y1);
   return svg("g", { class: "edge-picked", "aria-hidden": "true" },
     svg("path", { class: "accent-line", d: `M${x1} ${y1}L${x2} ${y2}` }),
-    words((x1 + x2) / 2 + (flat ? 0 : 9), (y1 + y2) / 2 - (flat ? 9 : 0), `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`, {
+    !editor.refusal() && words((x1 + x2) / 2 + (flat ? 0 : 9), (y1 + y2) / 2 - (flat ? 9 : 0), `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`, {
       "text-anchor": flat ? "middle" : "start",
     }));
 };
@@ -286,12 +288,16 @@ const ringsNamed = (place, regions) => (place?.regions ?? []).map((index) => reg
 const putWords = (note, editor, view, width, point) => {
   note.hidden = !point;
   if (!point) return;
-  const [x, y] = [Math.min(Math.max(view.x(point[0]), 0), width), Math.min(Math.max(view.y(point[1]), 0), HEIGHT)];
-  const [right, low] = [x > width / 2, y > HEIGHT / 2];
+  // beside the body where there is room, so that they hide no vertex
+  const box = boxOf(editor.regions().flatMap((each) => each.outline));
+  const [left, right] = [view.x(box.left), width - view.x(box.right)].map((room) => Math.min(room, width - 20) - 20);
+  const [side, other] = left >= right ? ["right", "left"] : ["left", "right"];
+  const room = Math.max(left, right);
+  const y = Math.min(Math.max(view.y(point[1]), 0), HEIGHT - 20);
+  const low = y > HEIGHT / 2;
   Object.assign(note.style, {
-    left: right ? "auto" : `${x + 16}px`, right: right ? `${width - x + 16}px` : "auto",
-    top: low ? "auto" : `${y + 4}px`, bottom: low ? `${HEIGHT - y + 4}px` : "auto",
-    maxWidth: `${Math.min(240, Math.max(x, width - x) - 24)}px`,
+    [side]: `${room > 130 ? width - room : 8}px`, [other]: "auto", maxWidth: `${room > 130 ? Math.min(240, room) : 160}px`,
+    top: low ? "auto" : `${y}px`, bottom: low ? `${note.parentElement.clientHeight - y}px` : "auto",
   });
   if (note.textContent !== editor.refusalWords()) fill(note, editor.refusalWords());
 };
