@@ -294,10 +294,10 @@ const putWords = (note, editor, view, width, point) => {
   const [side, other] = left >= right ? ["right", "left"] : ["left", "right"];
   const room = Math.max(left, right);
   const y = Math.min(Math.max(view.y(point[1]), 0), HEIGHT - 20);
-  const low = y > HEIGHT / 2;
+  const [low, off] = [y > HEIGHT / 2, room > 110 ? 0 : 18];
   Object.assign(note.style, {
-    [side]: `${room > 130 ? width - room : 8}px`, [other]: "auto", maxWidth: `${room > 130 ? Math.min(240, room) : 160}px`,
-    top: low ? "auto" : `${y}px`, bottom: low ? `${note.parentElement.clientHeight - y}px` : "auto",
+    [side]: `${room > 110 ? width - room : 8}px`, [other]: "auto", maxWidth: `${room > 110 ? Math.min(240, room) : 160}px`,
+    top: low ? "auto" : `${y + off}px`, bottom: low ? `${note.parentElement.clientHeight - y + off}px` : "auto",
   });
   if (note.textContent !== editor.refusalWords()) fill(note, editor.refusalWords());
 };
