@@ -1,6 +1,6 @@
 /** Inventory: a list of objects, as a museum keeps it, and which of them stay standing. */
 
-import { html, render } from "/parts/preact.js";
+import { html, render, useEffect } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
 import { Choice, Field, FileDrop, KeyField, QuestionView, Rows, filled, useForm, useSignal } from "/questions/parts.js";
@@ -22,10 +22,11 @@ const Inventory = ({ app, questions }) => {
   const text = useSignal(null); // the lines of the list, and the question that was asked of them
   const fixed = useSignal({}); // lines that were corrected, by their number
   const corrected = async (list) => {
+    if (text.value?.of !== list || !Object.keys(fixed.value).length) return list;
     const lines = text.value.lines.map((line, k) => fixed.value[k + 1] ?? line);
+    const sent = await questions.send(new File([lines.join("\n")], list.name));
     form.at("encoding").value = "";
-    fixed.value = {};
-    return { ...await questions.send(new File([lines.join("\n")], list.name)), name: list.name };
+    return { ...sent, name: list.name };
   };
   const ask = async (event) => {
     event.preventDefault();
@@ -35,8 +36,10 @@ const Inventory = ({ app, questions }) => {
       : !(strength > 0) ? "How strong is the shaking? A number above 0 is needed."
         : !(Number.isInteger(many) && many > 0) ? "The number of motions is a whole number above 0." : "";
     if (wrong.value) return;
-    if (text.value?.of === files.value[0] && Object.keys(fixed.value).length) files.value = [await corrected(files.value[0])];
-    const [list] = files.value;
+    const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
+    if (!list) return;
+    if (list !== files.value[0]) files.value = [list];
+    fixed.value = {};
     const shaking = { [kind.value]: kind.value === "pga" ? `${strength}g` : `${strength}cm/s` };
     const tables = {
       campaign: { name: list.name, kind: "inventory" },
@@ -44,9 +47,12 @@ const Inventory = ({ app, questions }) => {
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
     await questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
-    const lines = await linesOf(list.file, form.at("encoding").value);
-    text.value = lines && { of: list, lines, id: questions.shown.value?.id };
+    text.value = { of: list, lines: null, id: questions.shown.value?.id };
   };
+  const answer = questions.shown.value?.id === text.value?.id ? questions.shown.value?.answer : null;
+  useEffect(() => {
+    if (answer) linesOf(text.value.of.file, answer.inventory).then((lines) => (text.value = { ...text.value, lines }));
+  }, [text.value?.id, Boolean(answer)]);
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Ranking}
       title="Which objects stay standing?"
@@ -62,26 +68,28 @@ const Inventory = ({ app, questions }) => {
       <${Field} label="How many motions" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
       <details><summary>How the list is read</summary>${["columns", "encoding"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.inventory[name]} value=${form.at(name)} />`)}</details>
-      <${Corrections} question=${questions.shown.value} text=${text.value?.of === files.value[0] ? text.value : null} fixed=${fixed} />
+      <${Corrections} answer=${answer} text=${text.value?.of === files.value[0] ? text.value : null} fixed=${fixed} />
     <//>`;
 };
 
 const MOST = 20; // rows that are corrected at a time
 
-// Lines of a list that is text; null of a workbook, which is corrected where it was made.
-const linesOf = async (file, encoding) => {
+// Lines of a list that is text, in the encoding that the answer tells; null of a workbook, corrected where it was made.
+const linesOf = async (file, source) => {
   if (/\.(xlsx|ods)$/i.test(file.name)) return null;
-  const content = await file.arrayBuffer();
+  const told = / \(([\w-]+)\)$/.exec(source)?.[1] ?? "utf-8";
   try {
-    return new TextDecoder(encoding || "utf-8", { fatal: true }).decode(content).split(/\r\n|\r|\n/);
+    const reader = new TextDecoder(NAMES[told] ?? told, { fatal: true });
+    return reader.decode(await file.arrayBuffer()).split(/\r\n|\r|\n/);
   } catch {
-    return encoding ? null : new TextDecoder("windows-1252").decode(content).split(/\r\n|\r|\n/);
+    return null;
   }
 };
+const NAMES = { mac_roman: "macintosh", "utf-8-sig": "utf-8", "utf-16-be": "utf-16be", "utf-16-le": "utf-16le" };
 
 // Rows of the list that were not assessed, as they stand in it.
-const Corrections = ({ question, text, fixed }) => {
-  const rows = text && question?.id === text.id ? question.answer?.not_assessed ?? [] : [];
+const Corrections = ({ answer, text, fixed }) => {
+  const rows = (text?.lines && answer?.not_assessed) || [];
   const at = ({ row }) => ({
     get value() { return fixed.value[row] ?? text.lines[row - 1]; },
     set value(line) { fixed.value = { ...fixed.value, [row]: line }; },
