@@ -88,7 +88,7 @@ def test_random_hulls_end_as_time_stepping_has_it():
         assert gaps < 0.05
         if name == "noise":
             continue
-        wrong = histories.stepped(4e-3, 0.5)
+        wrong = runs.stepped(4e-3, 0.5)
         assert np.median(np.abs(hull_stepping.apart(ours, wrong))) > 2.0 * gaps
         if CAMPAIGN:
             assert hull_stepping.mcnemar(ours, wrong) < 1e-3

@@ -124,7 +124,7 @@ const sentencesOf = (found, there) => {
 const SHORT = { no_uplift: "is not lifted", rocked: "stands", overturned: "overturns" };
 
 const Models = ({ answers, hidden, opened, toggle, margins }) => html`
-  <div class="table-scroll" tabindex="0" role="region" aria-label="Models">
+  <div class="table-scroll" tabindex="0" role="region" aria-label="Table of the models">
     <table data-testid="compare-models">
       <thead><tr><th scope="col"><span class="visually-hidden">Shown</span></th>
         ${["Model", "It", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
