@@ -263,6 +263,13 @@ def test_an_error_stands_at_its_place(page: Any, shot: Callable[..., Any]) -> No
     page.get_by_role("button", name="Undo").click()
     page.get_by_role("button", name="Undo").click()
     expect(mark).to_have_count(0)
+    page.get_by_text("Paste points from Excel").click()
+    page.get_by_label("Points, x and y on each line").fill("0 2\n0.2 2\n0.5 2")
+    page.get_by_role("button", name="Add as region").click()
+    expect(page.locator(".board-refusal")).to_contain_text("Region 2")  # without any width, it touches itself
+    assert middle(mark.locator("circle")) == pytest.approx(pixel(page, 0.2, 2.0), abs=0.5)
+    page.get_by_role("button", name="Undo").click()
+    expect(mark).to_have_count(0)
     page.get_by_label("Left foot").fill("-3")
     page.get_by_label("Right foot").fill("0.4")
     mark.locator("circle").wait_for(state="attached")
@@ -332,10 +339,8 @@ def test_mirrors(page: Any) -> None:
     assert sorted(outline(page)) == sorted([(0, 0), (2, 0), (1, 3), (0, 3), (-1, 3), (-2, 0)])
 
 
-def test_a_photograph_is_traced_and_stays_here(page: Any, record: Any, shot: Callable[..., Any]) -> None:
-    """Two points 100 of 400 pixels apart that are 0.3 m make a picture 1.2 m wide; nothing of it is sent."""
-    sent: list[str] = []
-    page.on("request", lambda request: sent.append(request.post_data or ""))
+def photographed(page: Any) -> Any:
+    """Lay a picture of 400 by 200 pixels under the drawing; returns the part of the editor about it."""
     drawn(page)
     picture = page.evaluate(
         "async () => { const c = new OffscreenCanvas(400, 200); const g = c.getContext('2d'); g.fillStyle = '#a64';"
@@ -345,11 +350,14 @@ def test_a_photograph_is_traced_and_stays_here(page: Any, record: Any, shot: Cal
     part = page.get_by_test_id("photo")
     part.locator("summary").click()
     files = {"name": "probe-of-a-statue.png", "mimeType": "image/png", "buffer": bytes(picture)}
-    asked = len(record.requests)
     part.get_by_label("Picture", exact=True).set_input_files(files)
-    image = page.locator(f"{BOARD} image")
-    image.wait_for()
-    assert page.evaluate("document.activeElement.tagName") != "IMAGE"
+    page.locator(f"{BOARD} image").wait_for()
+    return part
+
+
+def test_a_photograph_has_a_scale(page: Any, shot: Callable[..., Any]) -> None:
+    """Two points 100 of 400 pixels apart that are 0.3 m make a picture 1.2 m wide, in another unit too."""
+    part, image = photographed(page), page.locator(f"{BOARD} image")
     part.get_by_role("button", name="Set two points").click()
     page.locator(BOARD).scroll_into_view_if_needed()
     box = image.bounding_box()
@@ -361,20 +369,34 @@ def test_a_photograph_is_traced_and_stays_here(page: Any, record: Any, shot: Cal
     part.get_by_label("Opacity").fill("0.3")
     expect(image).to_have_attribute("opacity", "0.3")
     shot(page, "body-photograph")
-    # the body changes, so that there is a request that would have carried it
+    before = image.bounding_box()
+    page.get_by_role("radio", name="cm", exact=True).check()
+    expect(page.locator(f"{BOARD} [data-step]")).to_have_attribute("data-step", "10")
+    after = image.bounding_box()
+    assert [after[key] for key in "xy"] == pytest.approx([before[key] for key in "xy"], abs=0.5)
+    assert after["width"] == pytest.approx(before["width"], rel=1e-3)  # of boxes in single precision
+
+
+def test_a_photograph_stays_in_the_browser(page: Any, record: Any) -> None:
+    """No request after it carries it, though some are made; nothing is kept; what is no picture is refused."""
+    sent: list[str] = []
+    page.on("request", lambda request: sent.append(request.post_data or ""))
+    part = photographed(page)
+    asked = len(record.requests)
     page.get_by_role("button", name="Add region").click()
     settled(page, "Mass kg", 0.5 * 2.5 * 0.5 * 2400.0)
     later = record.requests[asked:]
     assert any("/api/" in each for each in later)
-    assert all(each.startswith("blob:") or "/api/" in each for each in later), later
-    assert sent
-    assert not any("statue" in each or "blob:" in each for each in sent)
+    assert all("/api/" in each for each in later), later
+    assert any('"section"' in each for each in sent)  # the control: what is sent is seen
+    assert not any("statue" in each or "blob:" in each or "data:" in each for each in sent)
     assert max(len(each) for each in sent) < 20_000
     kept = page.evaluate("JSON.stringify({...sessionStorage, ...localStorage})")
+    assert "section" in kept
     assert "blob:" not in kept
     assert "statue" not in kept
     part.get_by_role("button", name="Take the picture away").click()
-    expect(image).to_have_count(0)
+    expect(page.locator(f"{BOARD} image")).to_have_count(0)
     words = {"name": "x.png", "mimeType": "image/png", "buffer": json.dumps("no picture").encode()}
     part.get_by_label("Picture", exact=True).set_input_files(words)
     expect(page.get_by_test_id("board-told")).to_contain_text("no picture that the browser can show")

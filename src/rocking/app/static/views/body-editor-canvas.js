@@ -16,7 +16,7 @@ const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body f
 const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
   + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
 
-/** The board: {element, follow, zoom, pan, fit, focus, show}. */
+/** The board: {element, follow, zoom, pan, fit, focus}. */
 export const createCanvas = (editor) => {
   const board = svg("svg", {
     class: "picture board", role: "group", tabindex: "0", "data-testid": "board", "aria-label": ABOUT,
@@ -172,7 +172,7 @@ export const createCanvas = (editor) => {
       editor.tell();
     }
   }).observe(element);
-  return { element, follow, zoom, pan, fit, focus: () => board.focus(), show: (point) => lookAt(point, view.scale) };
+  return { element, follow, zoom, pan, fit, focus: () => board.focus() };
 };
 
 const set = (board, width) => {
@@ -311,7 +311,7 @@ const vertices = (editor, regions, view) => {
       return svg("g", {
         class: `vertex${key === chosen ? " chosen" : ""}`, tabindex: "0", role: "button", "data-place": key,
         transform: `translate(${view.x(x)} ${view.y(y)})`,
-        "aria-label": `Vertex ${vertex + 1} of ${where}: x ${number(x)}, y ${number(y)} ${editor.units()}`,
+        "aria-label": `Vertex ${vertex + 1} of ${where}: x ${number(x, 7)}, y ${number(y, 7)} ${editor.units()}`,
       }, svg("circle", { class: "reach", r: 16 }), svg("circle", { class: "dot", r: 5.5 }));
     }));
 };

@@ -5,7 +5,6 @@ import { slider } from "/app/fields.js";
 import * as model from "/views/body-editor-model.js";
 import { asHole, asOutline, asRegion } from "/views/body-paste.js";
 import { boxOf } from "/drawing/viewport.js";
-import { METRES } from "/views/body-units.js";
 
 /** The tools: {pen, ends, edge, photo, told, follow}; the board asks `editor.tool` what a point or a key does. */
 export const createTools = (editor, canvas) => {
@@ -30,7 +29,7 @@ const viewPart = (canvas) => el("div", { class: "board-view" },
 const toolOf = (editor, say, done) => {
   const tell = () => {
     const { points, cursor } = editor.state.tool;
-    say(`${points.length} points set${cursor ? `; the cursor stands at x ${number(cursor[0])}, y ${number(cursor[1])} ${editor.units()}` : ""}.`);
+    say(`${points.length} points set${cursor ? `; the cursor stands at x ${number(cursor[0], 7)}, y ${number(cursor[1], 7)} ${editor.units()}` : ""}.`);
     editor.tell();
   };
   const leave = () => {
@@ -45,7 +44,7 @@ const toolOf = (editor, say, done) => {
     if (closes) return done.pen();
     const last = tool.points.at(-1);
     if (last && last[0] === point[0] && last[1] === point[1]) return undefined;
-    tool.points = [...tool.points, point];
+    tool.points = [...(tool.kind === "scale" && tool.points.length === 2 ? [] : tool.points), point];
     tell();
     if (tool.kind === "scale" && tool.points.length === 2) done.scale();
     return undefined;
@@ -182,10 +181,11 @@ const photoPart = (editor, canvas, say) => {
   const places = ["x", "y"].map((axis) => numberField({ label: axis === "x" ? "Picture's left edge" : "Picture's lower edge", onChange: put(axis) }));
   const known = numberField({ label: "Length between the two points", above: 0, optional: true });
   const begin = () => {
+    if (editor.state.tool?.kind === "scale") return editor.tool.leave();
     editor.state.tool = { kind: "scale", points: [], cursor: null };
     say("Set two points on the picture whose distance is known; arrow keys and Space do it too.");
     canvas.focus();
-    editor.tell();
+    return editor.tell();
   };
   const measured = () => {
     if (editor.state.tool.points.length < 2) return say("Two points are needed.");
@@ -205,20 +205,18 @@ const photoPart = (editor, canvas, say) => {
     editor.tool.leave();
     return say(`The picture is ${number(photo.scale * photo.width)} by ${number(photo.scale * photo.height)} ${editor.units()} now.`);
   };
+  const set = button({ text: "Set two points", onClick: begin });
   const needs = el("div", { class: "stack" }, el("div", { class: "fields" }, opacity, ...places, known), toolbar(
-    button({ text: "Set two points", onClick: begin }), button({ text: "Apply the length", kind: "primary", onClick: apply }),
+    set, button({ text: "Apply the length", kind: "primary", onClick: apply }),
     button({ text: "Take the picture away", onClick: () => {
       off();
       if (editor.state.tool?.kind === "scale") editor.tool.leave();
       else editor.tell();
     } })));
-  let units = editor.units();
   const follow = () => {
-    const { photo } = editor.state;
+    const { photo, tool } = editor.state;
     needs.hidden = !photo;
-    const factor = METRES[units] / editor.metres();
-    if (photo && units !== editor.units()) for (const key of ["x", "y", "scale"]) photo[key] *= factor;
-    units = editor.units();
+    set.setAttribute("aria-pressed", String(tool?.kind === "scale"));
     if (photo) places.forEach((field, index) => document.activeElement !== field.input && (field.value = tidy(photo["xy"[index]], 9)));
   };
   return {

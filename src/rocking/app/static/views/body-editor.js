@@ -21,9 +21,12 @@ export const mountEditor = (place, app) => {
     tools.edge, tools.photo, pastePart(editor));
   board.dataset.testid = "editor";
   fill(place, board);
+  let units = editor.units();
   const follow = () => {
     place.hidden = shapeOf(app.inputs.get().body) !== "section";
     if (place.hidden) return;
+    if (units !== editor.units()) changeUnits(editor.state, METRES[units] / editor.metres());
+    units = editor.units();
     const regions = editor.regions();
     if (regions.length) editor.state.place = withinReach(regions, editor.state.place);
     for (const part of parts) part.follow();
@@ -32,6 +35,12 @@ export const mountEditor = (place, app) => {
   app.inputs.subscribe((_, changed) => changed.has("body") && follow());
   follow();
   return { follow };
+};
+
+// The picture stays where it was on the body; points that were set in the former unit are gone.
+const changeUnits = (state, factor) => {
+  state.tool = null;
+  if (state.photo) for (const key of ["x", "y", "scale"]) state.photo[key] *= factor;
 };
 
 const createEditor = (app) => {
