@@ -217,7 +217,7 @@ const photoPart = (editor, canvas, say) => {
     const { photo, tool } = editor.state;
     needs.hidden = !photo;
     set.setAttribute("aria-pressed", String(tool?.kind === "scale"));
-    if (photo) places.forEach((field, index) => document.activeElement !== field.input && (field.value = tidy(photo["xy"[index]], 9)));
+    if (photo) places.forEach((field, index) => document.activeElement !== field.input && (field.value = tidy(photo["xy"[index]], 6)));
   };
   return {
     element: el("details", { class: "paste", "data-testid": "photo" },
