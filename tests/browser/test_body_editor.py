@@ -339,6 +339,24 @@ def test_mirrors(page: Any) -> None:
     assert sorted(outline(page)) == sorted([(0, 0), (2, 0), (1, 3), (0, 3), (-1, 3), (-2, 0)])
 
 
+def test_mass_and_centre_by_hand(page: Any) -> None:
+    """A polygon weighs what was typed, in place of its density, about the centre that was typed; without, as before."""
+    drawn(page)
+    settled(page, "Mass kg", 1200.0)
+    page.get_by_label("Mass kg").fill("300")
+    settled(page, "Mass kg", 300.0)
+    page.get_by_label("Centre of mass x").fill("0.2")
+    page.get_by_label("Centre of mass y").fill("0.7")
+    settled(page, "Centre of mass, y m", 0.7)
+    assert number(page, "Centre of mass, x m") == pytest.approx(0.2, rel=1e-12)
+    page.get_by_role("button", name="Vertex 3 of region 1").focus()
+    page.keyboard.press("Shift+ArrowRight")
+    expect(page.locator(".vertex")).to_have_count(4)
+    settled(page, "Mass kg", 300.0)
+    page.get_by_label("Mass kg").fill("")
+    settled(page, "Mass kg", 0.5 * (0.5 + 1.5) * 2.0 * 0.5 * 2400.0)
+
+
 def photographed(page: Any) -> Any:
     """Lay a picture of 400 by 200 pixels under the drawing; returns the part of the editor about it."""
     drawn(page)

@@ -84,6 +84,10 @@ const fieldsOf = (app) => {
     // mass and density say the same: the one that was typed last is meant
     const other = { mass: "density", density: "mass" }[key];
     if (other && value) app.inputs.set(`${pathOfShape(app.inputs.get().body)}.${other}`, undefined);
+    const { region } = app.inputs.get().body.section ?? {};
+    if (key === "mass" && value && region) {
+      app.inputs.set("body.section.region", region.map(({ density: _, ...each }) => each));
+    }
   };
   const shape = SHAPES[shapeOf(body)] ?? { fields: [] };
   const own = shape.fields.map(
@@ -107,7 +111,7 @@ const fieldsOf = (app) => {
   }), false, "mass"];
   const hasDensity = !isMassPoints && shapeOf(body) !== "section";
   return [
-    ...own, ...common, ...(hasDensity ? [density, mass] : []),
+    ...own, ...common, ...(hasDensity ? [density] : []), ...(isMassPoints ? [] : [mass]),
     ...(isMassPoints ? [] : [...knownFields(units, put), ...feetFields(units, put)])
   ];
 };

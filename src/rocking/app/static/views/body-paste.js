@@ -58,9 +58,10 @@ export const asHole = (editor, points) => {
 };
 
 // What is typed of the material stays; what belonged to the former outline does not.
-const replaced = ({ depth }, { density }, outline) => ({
+const replaced = ({ depth, mass }, { density }, outline) => ({
   region: [density === undefined ? { outline } : { outline, density }],
   ...(depth === undefined ? {} : { depth }),
+  ...(mass === undefined ? {} : { mass }),
 });
 
 /** What of the former body is gone, in words; nothing if it had no more than its outline. */
