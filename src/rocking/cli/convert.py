@@ -11,18 +11,28 @@ from rocking import plausibility
 from rocking.cli import options
 from rocking.cli.exports import PICTURES, Export, Exports, draw
 from rocking.cli.page import Page, deliver
-from rocking.conventions import g
+from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.motions.motion import GroundMotion
+    from rocking.spec.document import ComponentsTable
+    from rocking.spec.reading import InputFiles
 
 
 def _as(form: str) -> Any:
     def write(answer: "Conversion", path: Path) -> None:
-        from rocking.motions.formats import write_motion
+        from rocking.motions.formats import Component, Record, write_motion, write_record
 
-        write_motion(answer.after, path, form, answer.units)
+        if len(answer.pairs) == 1:
+            write_motion(answer.leading[1], path, form, answer.units)
+            return
+        factor, after = ACCELERATION_UNITS[answer.units], {axis: each for axis, (_, each) in answer.pairs.items()}
+        parts = tuple(
+            Component(one.metadata.get("component", axis), one.acceleration / factor, answer.units, one.time_step)
+            for axis, one in after.items()
+        )
+        write_record(Record(form, parts, metadata={"event": answer.name, **answer.leading[0].metadata}), path, form)
 
     return write
 
@@ -45,7 +55,7 @@ def convert(
     record: Annotated[
         list[str],
         typer.Argument(
-            help=r"Record file, file#COMPONENT; vertical part too: x=FILE z=FILE; or a TOML with \[motion]."
+            help=r"Record file, file#COMPONENT; several of them: x=FILE y=FILE z=FILE; or a TOML with \[motion]."
         ),
     ],
     units: options.RecordUnits = None,
@@ -64,8 +74,7 @@ def convert(
     """Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper"."""
     from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
     from rocking.motions.motion import GroundMotion
-    from rocking.spec.construction import motion_of
-    from rocking.spec.document import OneMotionTable, RecordDocument
+    from rocking.spec.document import ComponentsTable, RecordDocument
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
     exports = Exports.of(out, _kinds())
@@ -76,62 +85,90 @@ def convert(
     with hinted(None, record[0].removeprefix("x="), upright):
         if file is None:
             scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
-            if any(word.startswith("y=") for word in record):
-                raise InvalidValueError(
-                    "one horizontal component is written, x= with z=; rocking motions turns two of them, by "
-                    "--set motion.process=rotate:angle=30"
-                )
-            table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
+            level = any(word.startswith("y=") for word in record)
+            own = arguments.components(record) if level else arguments.one_motion(record)
+            table = checked(ComponentsTable, {**own, **scaled})
         else:
             table = checked(RecordDocument, with_sets(tables_in(file) or {}, arguments.sets)).motion
-        exports.spare(*record, *filter(None, [table.record]))
-        before = motion_of(table, files, raw=True)
-        after = motion_of(table, files)
-    if not isinstance(before, GroundMotion) or not isinstance(after, GroundMotion):
+        named = [one.record for one in (table, *table.components.values()) if one.record]
+        exports.spare(*(word.removeprefix(f"{word[:1]}=") for word in record), *named)
+        pairs = _pairs(table, files)
+    if not all(isinstance(each, GroundMotion) for pair in pairs.values() for each in pair):
         raise InvalidValueError(f"a record file is converted, got the pulse {record[0]!r:.80}")
-    after = after if table.scale == 1.0 else after.scaled(table.scale)
     # a format without a unit of its own keeps that of the file
-    unit = before.metadata.get("unit", "m/s2")
+    unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)
-    deliver(Conversion(before, after, unit, written), exports, as_json=as_json)
+    deliver(Conversion(pairs, unit, written), exports, as_json=as_json)
+
+
+def _pairs(table: "ComponentsTable", files: "InputFiles") -> dict[str, Any]:
+    """Return each component before and after its steps, by its axis; one alone has none."""
+    from rocking.spec.construction import components_of, motion_of
+
+    tables = table.components or {"": table}
+    before = {axis: motion_of(one, files, raw=True) for axis, one in tables.items()}
+    if table.components:
+        after = components_of(table, files, table.scale)
+    else:
+        one = motion_of(table, files)
+        after = {"": one if table.scale == 1.0 else one.scaled(table.scale)}
+    return {axis: (before[axis], after[axis]) for axis in tables}
 
 
 @dataclass(frozen=True)
 class Conversion:
     """A record before and after its steps."""
 
-    before: "GroundMotion"
-    after: "GroundMotion"
+    pairs: dict[str, "tuple[GroundMotion, GroundMotion]"]  # each component by its axis; one alone has none
     units: str  # of formats that state none
     files: tuple[str, ...]
+
+    @property
+    def leading(self) -> "tuple[GroundMotion, GroundMotion]":
+        """The component with the largest peak, before and after."""
+        return max(self.pairs.values(), key=lambda pair: pair[1].peak)
+
+    @property
+    def name(self) -> str:
+        return ", ".join(dict.fromkeys(after.name for _, after in self.pairs.values()))
 
     def draw(self) -> Any:
         from rocking.plots import processing_picture
 
-        return processing_picture(self.before, self.after)
+        return processing_picture(*self.leading)
 
     def facts(self) -> dict[str, Any]:
-        told: dict[str, dict[str, Any]] = {
-            name: {**_facts(motion), "warnings": _doubts(motion)}
-            for name, motion in (("before", self.before), ("after", self.after))
-        }
-        told["before"]["warnings"] += filter(None, [self.before.metadata.get("doubts")])
-        said = {"metadata": dict(self.before.metadata), "provenance": list(self.after.provenance)}
-        return {"name": self.after.name, **told, **said, "files": list(self.files)}
+        each = {axis: _told(*pair) for axis, pair in self.pairs.items()}
+        told = each[""] if len(each) == 1 else {"components": each}
+        return {"name": self.name, **told, "files": list(self.files)}
 
     def show(self, page: Page) -> None:
-        page.line(self.after.name, "bold")
-        for line in self.after.provenance:
-            page.line(f"  {line}", "dim")
+        rows = []
+        for axis, pair in self.pairs.items():
+            page.line(f"{axis}  {pair[1].name}".strip(), "bold")
+            for line in pair[1].provenance:
+                page.line(f"  {line}", "dim")
+            rows += [
+                (
+                    f"{axis} {name}".strip(),
+                    *(f"{value:.6g}" for value in _facts(motion).values()),
+                    f"{motion.peak / g:.4g}",
+                )
+                for name, motion in zip(("before", "after"), pair, strict=True)
+            ]
         page.line()
-        rows = [
-            (name, *(f"{value:.6g}" for value in _facts(motion).values()), f"{motion.peak / g:.4g}")
-            for name, motion in (("before", self.before), ("after", self.after))
-        ]
         head = ("", "samples", "step [s]", "PGA [m/s2]", "PGV [m/s]", "PGD [m]", "v at end [m/s]", "PGA [g]")
         page.table(head, rows, ("",))
         if not self.files:
             page.line("Nothing was written: --out FILE.at2 writes it, --out FILE.png draws it before and after.")
+
+
+def _told(before: "GroundMotion", after: "GroundMotion") -> dict[str, Any]:
+    told: dict[str, dict[str, Any]] = {
+        name: {**_facts(motion), "warnings": _doubts(motion)} for name, motion in (("before", before), ("after", after))
+    }
+    told["before"]["warnings"] += filter(None, [before.metadata.get("doubts")])
+    return {**told, "metadata": dict(before.metadata), "provenance": list(after.provenance)}
 
 
 def _doubts(motion: "GroundMotion") -> list[str]:

@@ -120,7 +120,7 @@ def selected(
     >>> from rocking.motions.motion import GroundMotion
     >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
     >>> pair = [Components(wave.scaled(factor), None, None) for factor in (1.0, 2.0)]
-    >>> found = selected(pair, "eurocode8:ag=2", periods=(0.3, 2.0))
+    >>> found = selected(pair, "eurocode8:ag=2m/s2", periods=(0.3, 2.0))
     >>> [round(float(ratio), 9) for ratio in found.factors / found.factors[0]]
     [1.0, 0.5]
     """

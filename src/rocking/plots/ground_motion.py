@@ -204,7 +204,7 @@ def selection_picture(selection: "Selection") -> "Figure":
     >>> from rocking.motions import selected
     >>> from rocking.motions.components import Components
     >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
-    >>> found = selected([Components(wave, None, None)], "eurocode8:ag=2", periods=(0.3, 2.0), most=100.0)
+    >>> found = selected([Components(wave, None, None)], "eurocode8:ag=2m/s2", periods=(0.3, 2.0), most=100.0)
     >>> len(selection_picture(found).axes[0].lines)
     3
     """

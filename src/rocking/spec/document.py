@@ -568,7 +568,7 @@ class AssessmentDocument(PredictionDocument):
 class RecordDocument(JobTable):
     """A file that says how one record is read and corrected."""
 
-    motion: OneMotionTable
+    motion: ComponentsTable
 
 
 class RecordSetDocument(JobTable):

@@ -134,8 +134,6 @@ def test_what_is_no_set_is_refused(refuses, folder):
     refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
     refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
     refuses(["motions", folder, "--set", "motion.target=eurocode8:ag=0.25,ground=C"], "with its unit such as 0.25g")
-    first = folder / "RSN0_A000.AT2"
-    refuses(["convert", f"x={first}", f"y={first}", "--out", folder / "o.csv"], "rocking motions turns two of them")
 
 
 def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
@@ -162,6 +160,25 @@ def test_a_source_without_horizontal_records_is_left_out(run, refuses, folder, t
     code, _, err = run(*words, folder / "RSN0_A000.AT2", upright)
     assert (code, "no horizontal component" in err) == (0, True)
     refuses([*words, upright], "horizontal component")
+
+
+def test_convert_turns_two_components(run, refuses, tmp_path):
+    """Both are written after their turn, by hand; another angle is another record; some formats hold one alone."""
+    a, b = np.sin(0.3 * np.arange(400)), np.cos(0.2 * np.arange(400)) ** 3
+    for name, values in (("a", a), ("b", b)):
+        rows = "\n".join(f"{0.01 * k:.2f},{float(value)!r}" for k, value in enumerate(values))
+        (tmp_path / f"{name}.csv").write_text(f"time [s],{name} [m/s2]\n{rows}\n")
+    words = [f"x={tmp_path / 'a.csv'}", f"y={tmp_path / 'b.csv'}"]
+    for angle in (30, 40):
+        out = ["--out", f"columns={tmp_path / f'{angle}.csv'}", "--out", tmp_path / "turned.png"]
+        assert run("convert", *words, "--set", f"motion.process=rotate:angle={angle}", *out)[0] == 0
+    c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
+    read = [np.loadtxt(tmp_path / f"{angle}.csv")[:, 1:].T for angle in (30, 40)]
+    np.testing.assert_allclose(read[0], [c * a + s * b, c * b - s * a], atol=1e-12)
+    assert not np.allclose(read[1], read[0], atol=0.1)
+    _, told, _ = run("convert", *words, "--json")
+    assert set(json.loads(told)["components"]) == {"x", "y"}
+    refuses(["convert", *words, "--out", tmp_path / "one.at2"], "peer holds 1")
 
 
 @pytest.mark.parametrize("word", ["{}", "x={}", "{}#acceleration"])

@@ -70,7 +70,7 @@ def test_a_target_in_a_file(tmp_path):
 
 @pytest.mark.parametrize(
     "words",
-    ["eurocode9:ag=1", "eurocode8", "eurocode8:ag=1,ground=F", "eurocode8:ag=1,type=3", "eurocode8:ag=1.2.3",
+    ["eurocode9:ag=1", "eurocode8", "eurocode8:ag=1g,ground=F", "eurocode8:ag=1g,type=3", "eurocode8:ag=1.2.3",
      "asce7:sds=1g,sd1=0.6g", "asce7:sds=1g,sd1=9g,tl=1", "eurocode8:ag=-1", "eurocode8:ag=2s", 3],
 )  # fmt: skip
 def test_targets_that_are_none_are_refused(words):
@@ -84,12 +84,12 @@ def test_factors_undo_what_was_multiplied():
     """Copies of one record by 1/3, 1 and 2 get factors in the inverse ratio and one misfit; the mean has it too."""
     one = RECORDS[0]
     copies = [one.each(lambda part, f=f: part.scaled(f)) for f in (1.0 / 3.0, 1.0, 2.0)]
-    found = selected(copies, "eurocode8:ag=2.0", most=100.0)
+    found = selected(copies, "eurocode8:ag=2.0m/s2", most=100.0)
     order = np.argsort(found.factors)
     assert found.factors[order] / found.factors.min() == pytest.approx([1.0, 2.0, 6.0], rel=1e-9)
     assert found.misfits == pytest.approx(np.full(3, found.misfit), rel=1e-9)
     assert np.log(found.mean / found.target(found.periods)).mean() == pytest.approx(0.0, abs=1e-9)
-    another = selected(RECORDS[1:2], "eurocode8:ag=2.0", most=100.0)
+    another = selected(RECORDS[1:2], "eurocode8:ag=2.0m/s2", most=100.0)
     assert found.misfits[0] != pytest.approx(another.misfit, rel=1e-9)
 
 
@@ -111,9 +111,9 @@ def test_the_closest_are_chosen(tmp_path):
 def test_too_few_are_refused():
     """More records than there are, or factors beyond what is allowed, are refused with how many come close."""
     with pytest.raises(InvalidValueError, match="7 of 6 records are wanted"):
-        selected(RECORDS, "eurocode8:ag=2.0", 7, most=100.0)
+        selected(RECORDS, "eurocode8:ag=2.0m/s2", 7, most=100.0)
     with pytest.raises(InvalidValueError, match="0 come to Eurocode 8"):
-        selected(RECORDS, "eurocode8:ag=20000", most=4.0)
+        selected(RECORDS, "eurocode8:ag=20000m/s2", most=4.0)
 
 
 @pytest.mark.verifies("closed form", "a sine of whole periods", within="1e-9", control="within")

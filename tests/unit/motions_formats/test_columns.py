@@ -445,3 +445,31 @@ def test_our_own_tables_read_back_without_options(made_up) -> None:
         0.02,
         [1, 2, 0],
     )
+
+
+def test_a_line_of_a_sampling_without_a_mark() -> None:
+    """What is left of a PEER file without its first lines is a column with its step; the number of samples counts."""
+    text = b"NPTS=  4, DT= .02 SEC\n1.0\n-2.0\n3.0\n0.5\n"
+    (part,) = COLUMNS.read(Source("a", text), units="g").components
+    assert (part.time_step, part.acceleration.tolist()) == (0.02, [1.0, -2.0, 3.0, 0.5])
+    with pytest.raises(RecordError, match="5"):
+        COLUMNS.read(Source("a", text.replace(b"=  4", b"=  5")), units="g")
+
+
+@pytest.mark.parametrize("said", ["# dt = 0,02 s", "# Zeitschritt 0,02 s", "# passo temporale: 0.02 s", "# dt=20 ms"])
+def test_steps_in_other_words(said: str) -> None:
+    """A decimal comma, and other languages."""
+    (part,) = COLUMNS.read(Source("a", f"{said}\n1.0\n-2.0\n3.0\n".encode()), units="g").components
+    assert part.time_step == 0.02
+
+
+@pytest.mark.parametrize(
+    ("said", "why"), [("# period (s)  Sa (g)", "response spectrum"), ("# T [s], PSA [g]", "response spectrum"),
+                      ("# counts, 200 Hz", "counts of a recorder")],
+)  # fmt: skip
+def test_what_is_no_acceleration_is_named(said: str, why: str) -> None:
+    """A spectrum and counts, whatever unit and step the user says; a count of samples is none of a recorder."""
+    rows = b"\n0.01 0.5\n0.02 0.6\n0.03 0.7\n"
+    with pytest.raises(RecordError, match=why):
+        COLUMNS.read(Source("a", said.encode() + rows), units="g")
+    assert COLUMNS.read(Source("a", b"# counts: 3" + rows), units="g").components

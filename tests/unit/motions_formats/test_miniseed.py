@@ -117,17 +117,22 @@ def test_gaps_and_overlaps_are_refused() -> None:
     assert part.acceleration.size == 200
 
 
-def test_real_numbers_need_a_unit_and_come_back() -> None:
-    """Several channels are several components, in double precision."""
+def test_real_numbers_come_back_in_their_unit() -> None:
+    """Several channels are several components, in m/s2, which the file says; real numbers of others need a unit."""
     pytest.importorskip("obspy")
     given = Record("", tuple(Component(name, np.sin(np.arange(90.0) + k), "g", 0.005) for k, name in enumerate("ENZ")))
     source = Source("w", MINISEED.write(given))
-    back = MINISEED.read(source, units="g")
+    back = MINISEED.read(source)
     assert [part.name for part in back.components] == ["E", "N", "Z"]
     for part, other in zip(back.components, given.components, strict=True):
-        np.testing.assert_array_equal(part.acceleration, other.acceleration)
+        assert part.unit == "m/s2"
+        np.testing.assert_allclose(part.acceleration, 9.80665 * other.acceleration, rtol=1e-14)
+    with pytest.raises(RecordError, match="you say g"):
+        MINISEED.read(source, units="g")
+    other = Source("w", source.content.replace(b"SI", b"00"))
+    assert other.content != source.content
     with pytest.raises(RecordError, match="units="):
-        MINISEED.read(source)
+        MINISEED.read(other)
     assert not MINISEED.states_unit
     with pytest.raises(RecordError, match="channel codes"):
         MINISEED.write(Record("", given.components[:1] * 2))

@@ -22,6 +22,9 @@ _NO_NAME = re.compile(r"nan|inf(inity)?|null|none|n/?a|true|false", re.IGNORECAS
 _DAMAGED_NUMBER = re.compile(r"[^\W\d_][+-]?[\d.,]+([eEdD][+-]?\d*)?")
 # what states its own sampling is a header of another format, damaged: not to be passed over as a comment or as names
 _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata", re.IGNORECASE)
+SAMPLING_LINE = re.compile(r"NPTS\s*=\s*\d+\s*,?\s*DT\s*=\s*[\d.eE+-]+\s*(?:s|sec\w*)?\.?", re.IGNORECASE)
+"""The line above the samples of a PEER file, where the lines above it were taken away."""
+
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
 _TAIL = re.compile(r"(.*[^\W_])_((?:mm|cm|m)_s2?)")
 _SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
@@ -209,7 +212,7 @@ def _lines(source: Source, most: int | None) -> list[tuple[int, str]]:
     lines: list[tuple[int, str]] = []
     for line, text in enumerate(source.lines):
         bare = (text if line else text.removeprefix(MARK)).strip(_BLANKS)
-        if bare and bare[0] not in "#%":
+        if bare and bare[0] not in "#%" and (lines or not SAMPLING_LINE.fullmatch(bare)):
             lines.append((line, bare))
             if len(lines) == most:
                 break

@@ -13,6 +13,7 @@ from rocking.motions.formats import headers
 from rocking.motions.formats.column_text import (
     MARK,
     MOST_NAMED,
+    SAMPLING_LINE,
     ColumnName,
     ColumnText,
     NamedColumns,
@@ -174,7 +175,9 @@ def _beyond_numbers(cell: str) -> bool:
 
 def _comments(source: Source, most: int | None = None) -> list[tuple[int, str]]:
     bare = ((line, text.removeprefix(MARK)) for line, text in enumerate(source.lines[:most]))
-    return [(line, text) for line, text in bare if text.lstrip()[:1] in {"#", "%"}]
+    return [
+        (line, text) for line, text in bare if text.lstrip()[:1] in {"#", "%"} or SAMPLING_LINE.fullmatch(text.strip())
+    ]
 
 
 def _by_place(source: Source, text: ColumnText) -> NamedColumns:

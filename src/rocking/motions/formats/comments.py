@@ -12,9 +12,15 @@ _SAYS = r"\b[^\d=:]{0,20}[=:]\s*"
 _BOTH = re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+{_NUMBER}", re.IGNORECASE)
 _COUNT = re.compile(rf"\b(?:npts|nsamples|number of (?:points|samples|data)){_SAYS}(\d+)\b", re.IGNORECASE)
 _STEP = re.compile(
-    rf"\b(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}{_NUMBER}\s*(ms\b)?",
+    rf"\b(?:(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}"
+    rf"|(?:zeitschritt|abtastintervall|passo temporale|paso de tiempo)\b\s*[=:]?\s*)"
+    r"(\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*(ms\b)?",
     re.I,
 )
+_SPECTRUM = re.compile(
+    r"^\W*(?:periods?|t)\s*[\[(]\s*s(?:ec)?\s*[\])][\s,;|]+(?:p?s[adv]|spectral)(?![^\W_])", re.IGNORECASE
+)
+_COUNTS = re.compile(r"^\W*(?:raw\s+)?counts?\b(?!\s*[:=]?\s*\d)", re.IGNORECASE)
 _RATE = re.compile(rf"\b(?:sampling|sample)[_ -](?:rate|freq\w*){_SAYS}{_NUMBER}", re.IGNORECASE)
 _UNIT = re.compile(r"\bunits?\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
 _UNIT_OF = re.compile(r"\b(?:accel|veloc|displ)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
@@ -38,12 +44,16 @@ class Said:
         names, unit, step, count = None, None, None, None
         for line, text in comments:
             bare = readable(text.strip().lstrip("#% \t")[:400])
+            if _SPECTRUM.search(bare):
+                raise source.error(line, f"{bare[:40]!r}: a response spectrum is no record; motion.target= takes one")
+            if _COUNTS.search(bare):
+                raise source.error(line, f"{bare[:40]!r}: counts of a recorder are no accelerations; divide them first")
             if both := _BOTH.search(bare):
                 count, step = int(both[1][:9]), numbers.number(source, line, both[2])
             elif found := _COUNT.search(bare):
                 count = int(found[1][:9])
             if not both and (found := _STEP.search(bare)):
-                step = numbers.number(source, line, found[1]) * (1e-3 if found[2] else 1.0)
+                step = numbers.number(source, line, found[1].replace(",", ".")) * (1e-3 if found[2] else 1.0)
             if (found := _RATE.search(bare)) and (rate := numbers.number(source, line, found[1])) > 0.0:
                 step = 1.0 / rate
             for word in (*_UNIT.findall(bare), *_UNIT_OF.findall(bare)):

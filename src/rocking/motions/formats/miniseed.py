@@ -24,6 +24,8 @@ _ACCELERATION = frozenset({"M/S**2", "M/S/S", "M/(S**2)", "M/S^2"})
 _COUNTS = frozenset({"COUNTS", "COUNT"})
 _ENCODING = 1000
 """Blockette that says how samples are encoded, and how long a record is (SEED Reference Manual, version 2.4)."""
+_SI = "SI"
+"""Location code of real numbers in m/s2: what the format leaves to whoever writes, and no network is known to use."""
 _LEAST_BITS = {0: 8.0, 1: 16.0, 2: 24.0, 3: 32.0, 4: 32.0, 5: 64.0, 10: 8.0, 11: 32.0 / 7.0, 19: 8.0}
 """Least number of bits that a sample takes, by encoding: text, whole numbers, real numbers, Steim 1, 2 and 3."""
 
@@ -37,7 +39,8 @@ class MiniSeed(RecordFormat):
     states_unit: ClassVar[bool] = False
     notes: ClassVar[str] = (
         "Whole numbers are counts: use MiniSeed.with_response(stationxml_path), which also removes the offset. "
-        "Real numbers may be accelerations: say units=. Files with gaps or overlaps are refused. It needs ObsPy."
+        "Real numbers may be accelerations: say units=; those written here are in m/s2, which their location code SI "
+        "says. Files with gaps or overlaps are refused. It needs ObsPy."
     )
 
     def __init__(self) -> None:
@@ -69,14 +72,16 @@ class MiniSeed(RecordFormat):
         return Record(self.name, components, header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
-        """Return a miniSEED file of real numbers, in the unit of the first component, which the file cannot state."""
-        rows = headers.in_unit(record, self.name, None, 100)
+        """Return a miniSEED file of real numbers in m/s2, which their location code says."""
+        rows = headers.in_unit(record, self.name, "m/s2", 100)
         codes = [part.name[:3] for part in record.components]
         if len(set(codes)) != len(codes):
             raise RecordError(f"components need different channel codes of 3 letters, got {', '.join(codes)[:60]}")
         obspy = need_obspy("miniSEED")
         pairs = zip(rows, record.components, strict=True)
         stream = obspy.Stream([trace_of(values, part, record) for values, part in pairs])
+        for trace in stream:
+            trace.stats.location = _SI
         content = BytesIO()
         stream.write(content, format="MSEED", encoding="FLOAT64")
         return content.getvalue()
@@ -113,7 +118,8 @@ def _component(source: Source, trace: Trace, units: str | None, asked: float | N
                 None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
             )
         headers.doubt_channel(source, name)
-        return Component(name, values, headers.acceleration_unit(source, None, units), step)
+        stated = "m/s2" if trace.id.split(".")[2:3] == [_SI] else None
+        return Component(name, values, headers.acceleration_unit(source, stated, units), step)
     unit = headers.acceleration_unit(source, "m/s2", units)
     sensitivity = _sensitivity(source, trace, trace.channels)
     offset = float(values.mean())
