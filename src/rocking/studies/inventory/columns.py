@@ -209,11 +209,16 @@ def _remedy(title: str) -> str:
     return f'rename it, or say what it is: columns "{title:.60}=width_cm"; nothing after "=" leaves it out'
 
 
+_PEDESTALS = ("sockel", "pedestal", "plinth", "piedistallo", "zoccolo", "peana")
+
+
 def _refuse_measure(title: str, source: str, language: str) -> None:
     words = plain(title)
     stem, _, unit = words.rpartition(" ")
     if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size", "pedestal"}:
         return  # it does not decide, or says no more than others
+    if any(word in words for word in _PEDESTALS):
+        return  # of what an object stands on; the report says that it was not read
     close = difflib.get_close_matches(stem if stem and unit in UNITS else words, _MEASURED, n=1, cutoff=0.8)
     tokens = words.split()
     told = _TELLING.intersection(tokens) or any(part in token for part in _WITHIN for token in tokens)

@@ -223,3 +223,11 @@ def test_a_foot_before_a_number_is_no_unit(cell):
     with pytest.raises(InvalidValueError, match="must be one number"):
         measure("Breite cm", cell, 0.01, DecimalMark([]))
     assert measure("Breite cm", "12 Fuß", 0.01, DecimalMark([])).value == pytest.approx(12 * 0.3048)
+
+
+def test_the_height_of_a_pedestal_is_left_aside():
+    """It refuses no list, and the report names it among what was not read; an unknown width still does."""
+    found = parse_inventory("Objekt;Breite cm;Tiefe cm;Höhe cm;Sockelhöhe cm\nA;12;12;60;5\n")
+    assert (found.objects[0].height, found.ignored) == (0.6, ("Sockelhöhe cm",))
+    with pytest.raises(InvalidValueError, match="looks like a measure"):
+        parse_inventory("Objekt;Breite cm;Tiefe cm;Höhe cm;Rahmenbreite cm\nA;12;12;60;5\n")

@@ -87,6 +87,11 @@ const numbersOf = (text) => {
   return Array.isArray(found) && found.includes(null) ? null : found;
 };
 
+/** The endings of record files of every format, and of what they come in. */
+export const recordEndings = ({ info }) => [
+  ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
+].join(",");
+
 /** Files by dropping or choosing; `files` is a signal of what was sent. */
 export const FileDrop = ({ label, help, accept, files, many = false, questions, app }) => {
   const input = useRef(null);

@@ -4,14 +4,12 @@ import { html, render } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, KeyField, QuestionView, Rows, filled, sentence, useForm, useSignal } from "/questions/parts.js";
+import { Choice, Drawing, Field, FileDrop, KeyField, QuestionView, Rows, filled, recordEndings, sentence, useForm, useSignal } from "/questions/parts.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
   ["soft-ground", "20 synthetic motions, soft ground"],
 ];
-const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.zip,.acc,.knt,.ns,.ew,.ud";
-
 /** Build the view inside its section. */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "assess", "predict", "minimum");
@@ -66,7 +64,7 @@ const Decide = ({ app, questions }) => {
         <p class="field-help">Under the motion of this project, scaled; with the first model of the impact.</p>` : html`
       <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
       ${shaken.value === "records" && html`
-        <${FileDrop} label="Drop records here, or" many accept=${RECORDS} files=${files} questions=${questions} app=${app}
+        <${FileDrop} label="Drop records here, or" many accept=${recordEndings(app)} files=${files} questions=${questions} app=${app}
           help="Several records at once; each is computed as it is." />
         <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)

@@ -6,11 +6,10 @@ import { fetchFile } from "/app/api.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
 import {
-  Choice, Drawing, FileDrop, KeyField, QuestionView, Rows, Wrong, filled, sentence, useForm, useSignal,
+  Choice, Drawing, FileDrop, KeyField, QuestionView, Rows, Wrong, filled, recordEndings, sentence, useForm, useSignal,
 } from "/questions/parts.js";
 
 const G = 9.80665;
-const ACCEPTED = ".at2,.txt,.csv,.v1,.v2,.v1a,.v2a,.v0c,.v1c,.v2c,.smc,.mseed,.sac,.dat,.asc,.acc,.ascii,.raw,.ns,.ew,.ud,.xml";
 const FIRST = { files: [], curve: [], steps: [], motion: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
 
 /** Build the view inside its section. */
@@ -45,7 +44,7 @@ const Records = ({ app, questions }) => {
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Answer}
       title="Records"
       lead="A recording as it comes: what its file says, corrected step by step, before and after; or a folder of them, measured and chosen for a spectrum.">
-      <${FileDrop} label="Drop records or a folder here, or" many accept=${ACCEPTED} files=${form.at("files")} questions=${questions}
+      <${FileDrop} label="Drop records or a folder here, or" many accept=${recordEndings(app)} files=${form.at("files")} questions=${questions}
         app=${app} help="With their StationXML file (.xml) where they are counts." />
       ${records.length > 0 && html`<${Choice} label="What is shown" value=${form.at("shown")} chosen=${shown}
         options=${[...records.slice(0, 50).map(({ name }) => [name, `${name}, before and after`]),

@@ -3,13 +3,12 @@
 import { html, render } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, QuestionView, useSignal } from "/questions/parts.js";
+import { Choice, Drawing, Field, FileDrop, QuestionView, recordEndings, useSignal } from "/questions/parts.js";
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
 import { Standing } from "/space/standing.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
-const RECORDS = ".at2,.txt,.csv,.v1,.v2,.v1c,.v2c,.smc,.mseed,.sac,.dat,.acc,.knt,.ns,.ew,.ud";
 const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
 const TITLES = { equilibria: "How it can stand", cor: "Its edges", simulate: "How it moves" };
 const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
@@ -80,7 +79,7 @@ const Space = ({ app, questions }) => {
         <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
         ${shaken.value === "records" && html`
           ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} label=${`A record along ${axis}, or`}
-            accept=${RECORDS} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
+            accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
           <${Field} label="Unit of the accelerations" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
         <${Field} label="Motion" unit="times" value=${times} inputmode="decimal" />
         <${Field} label="Friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
