@@ -1,11 +1,13 @@
 """One chain of steps that a record goes through, in words: the same in Python, job files and on the command line."""
 
 import inspect
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions import processing
 from rocking.motions.components import Components, rotated
@@ -14,6 +16,7 @@ from rocking.motions.intensity import MEASURES, measure
 from rocking.motions.motion import GroundMotion, checked_motion
 
 Steps = list[tuple[str, dict[str, Any]]]
+_WITH_UNIT = re.compile(rf"([0-9]*[.]?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*({'|'.join(map(re.escape, ACCELERATION_UNITS))})")
 
 
 def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
@@ -87,7 +90,7 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
         Steps in their order, ``name:key=value,key=value``, with semicolons between: ``mean; bandpass:low=0.1,high=25;
         taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor,
         scale; keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3``
-        [m/s2], ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5`` [s],
+        [m/s2] or ``scale:pga=0.3g``, ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5`` [s],
         ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
 
     Returns
@@ -173,6 +176,8 @@ def _step(words: str) -> tuple[str, dict[str, Any]]:
 
 def _value(name: str, key: str, text: str, parameter: inspect.Parameter | None) -> Any:
     kind = "float" if parameter is None else str(parameter.annotation)
+    if parameter is None and measure(key).unit == "m/s2" and (found := _WITH_UNIT.fullmatch(text)):
+        return float(found[1]) * ACCELERATION_UNITS[found[2]]
     if "float" not in kind and "int" not in kind:
         return text
     try:

@@ -96,3 +96,13 @@ def test_every_step_has_its_words():
     assert [name for name in STEPS if not STEPS[name].__doc__] == []
     assert processed(X, "") is X
     assert steps_of(["mean; taper", "pad:before=1"]) == [("mean", {}), ("taper", {}), ("pad", {"before": 1.0})]
+
+
+def test_a_level_may_have_its_unit():
+    """Accelerations in g are those in m/s2; a velocity takes none, and half a number is refused."""
+    whole = processed(ALL, "scale:pga=2.941995")
+    assert processed(ALL, "scale:pga=0.3g").x.peak == pytest.approx(whole.x.peak, rel=1e-12)
+    assert processed(ALL, "scale:pga=300gal").x.peak != pytest.approx(whole.x.peak, rel=1e-3)
+    for words in ("scale:pgv=0.3g", "scale:pga=1.2.3g"):
+        with pytest.raises(InvalidValueError, match="must be a number"):
+            processed(ALL, words)
