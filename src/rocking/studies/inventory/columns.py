@@ -209,7 +209,7 @@ def _remedy(title: str) -> str:
     return f'rename it, or say what it is: columns "{title:.60}=width_cm"; nothing after "=" leaves it out'
 
 
-_PEDESTALS = ("sockel", "pedestal", "plinth", "piedistallo", "zoccolo", "peana")
+_PEDESTAL, _HEIGHT = re.compile("sockel|pedestal|plinth|piedistallo|zoccolo|peana"), re.compile("hoe?he|height|alt")
 
 
 def _refuse_measure(title: str, source: str, language: str) -> None:
@@ -217,7 +217,7 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
     stem, _, unit = words.rpartition(" ")
     if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size", "pedestal"}:
         return  # it does not decide, or says no more than others
-    if any(word in words for word in _PEDESTALS):
+    if _PEDESTAL.search(words) and _HEIGHT.search(words):
         return  # of what an object stands on; the report says that it was not read
     close = difflib.get_close_matches(stem if stem and unit in UNITS else words, _MEASURED, n=1, cutoff=0.8)
     tokens = words.split()

@@ -10,6 +10,7 @@ from rocking.language import language
 from rocking.studies.inventory import header_words
 from rocking.studies.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
 from rocking.studies.inventory.columns import (
+    FACTORS,
     LENGTHS,
     SIZES,
     TEXTS,
@@ -241,6 +242,7 @@ class _Reader:
                 f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}"
             )
         self.rows = [(line, row) for line, row in self.sheet.rows[self.at + 1 :] if any(text_of(cell) for cell in row)]
+        self._take_units()
         self._check_units()
         wordless = [title for k, title in enumerate(titles) if not any(map(str.isdigit, "".join(self._column(k))))]
         check_header(self.header, titles, source, [*wordless, *(own for own, ours in self.mapped.items() if not ours)])
@@ -272,6 +274,20 @@ class _Reader:
     def _text(self, row: Sequence[Cell], stem: str) -> str:
         pairs = zip(self.header.columns, row, strict=False)
         return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
+
+    def _take_units(self) -> None:
+        """Take a row below the header that holds nothing but units as those of its columns."""
+        words = [plain(text_of(cell)) for cell in self.rows[0][1]] if self.rows else []
+        units = [UNITS.get(word, "") for word in words]
+        bare = all(unit or not word for word, unit in zip(words, units, strict=True))
+        if not any(units) or not bare or len(words) != len(self.header.columns):
+            return
+        self.header = replace(self.header, columns=tuple(
+            replace(column, factor=FACTORS[unit]) if column and unit and column.factor is None
+            and unit in (WEIGHTS if column.stem == "weight" else LENGTH_UNITS) else column
+            for column, unit in zip(self.header.columns, units, strict=True)
+        ))  # fmt: skip
+        del self.rows[0]
 
     def _check_units(self) -> None:
         """Refuse lengths without a unit; weights without one decide nothing, and are not read, nor is a pedestal."""

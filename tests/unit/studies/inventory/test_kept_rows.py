@@ -231,3 +231,14 @@ def test_the_height_of_a_pedestal_is_left_aside():
     assert (found.objects[0].height, found.ignored) == (0.6, ("Sockelhöhe cm",))
     with pytest.raises(InvalidValueError, match="looks like a measure"):
         parse_inventory("Objekt;Breite cm;Tiefe cm;Höhe cm;Rahmenbreite cm\nA;12;12;60;5\n")
+
+
+def test_a_row_of_units_below_the_header():
+    """It is that of its columns, if it holds units alone; a row with a name is an object, and kilograms no length."""
+    rows = "A;12;12;600;5\n"
+    (one,) = parse_inventory(f"Objekt;Breite;Tiefe;Höhe;Gewicht\n;cm;(cm);[mm];kg\n{rows}").objects
+    assert (one.width, one.depth, one.height, one.mass) == (0.12, 0.12, 0.6, 5.0)
+    with pytest.raises(InvalidValueError, match="must name its unit"):
+        parse_inventory(f"Objekt;Breite;Tiefe;Höhe;Gewicht\n;kg;cm;mm;kg\n{rows}")
+    named = parse_inventory(f"Objekt;Breite cm;Tiefe cm;Höhe cm;Gewicht kg\nUnits;cm;cm;mm;kg\n{rows}")
+    assert (len(named.objects), named.not_assessed[0].name) == (1, "Units")
