@@ -289,7 +289,7 @@ def test_the_skip_link_stays_in_the_view(page: Any, calm: Callable[[Any], None])
 def test_a_field_in_error_stops_downloads_and_dims_results(page: Any, text: str) -> None:
     """Nothing is saved of inputs that are not those on the screen; every view names the field."""
     page.get_by_test_id("facts-table").wait_for()
-    page.get_by_label("Width").fill(text)
+    page.locator("#view-body").get_by_label("Width").fill(text)
     expect(page.locator(".card.stale")).to_have_count(2)
     saved: list[str] = []
     page.on("download", lambda file: saved.append(file.suggested_filename))
@@ -301,7 +301,7 @@ def test_a_field_in_error_stops_downloads_and_dims_results(page: Any, text: str)
     expect(page.get_by_test_id("impact-results")).to_have_class(re.compile("stale"))
     assert saved == []
     page.locator("#tab-body").click()
-    page.get_by_label("Width").fill("0.6")
+    page.locator("#view-body").get_by_label("Width").fill("0.6")
     expect(page.locator(".card.stale")).to_have_count(0)
     with page.expect_download():
         page.get_by_role("button", name="as CSV").first.click()
@@ -309,7 +309,7 @@ def test_a_field_in_error_stops_downloads_and_dims_results(page: Any, text: str)
 
 def test_a_field_that_was_left_behind_stops_nothing(page: Any) -> None:
     """The wrong width of a block is forgotten with the block."""
-    page.get_by_label("Width").fill("abc")
+    page.locator("#view-body").get_by_label("Width").fill("abc")
     expect(page.locator(".card.stale")).to_have_count(2)
     page.get_by_label("Shape").select_option("regular_polygon")
     expect(page.locator(".card.stale")).to_have_count(0)
@@ -339,7 +339,7 @@ def test_a_server_that_comes_back_is_asked_again(browser: Any, served: Any, sign
     page.goto(served.url)
     page.get_by_test_id("facts-table").wait_for()
     page.route("**/api/**", lambda route: route.abort())
-    page.get_by_label("Width").fill("0.75")
+    page.locator("#view-body").get_by_label("Width").fill("0.75")
     expect(page.get_by_test_id("body-refusal")).to_contain_text("does not answer")
     page.unroute("**/api/**")
     expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667", timeout=15_000)
