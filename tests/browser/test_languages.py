@@ -104,3 +104,12 @@ def test_only_whole_sentences_are_replaced(open_page: Callable[..., Any]) -> Non
         row["de"],
         "from here to there and back",
     ]
+
+
+def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
+    """A project is called as it was called, though the catalogue has those words; what stands beside is German."""
+    page = open_page(link(), locale="de")
+    name = page.locator(".project-title")
+    name.wait_for()
+    assert name.inner_text() in {row["en"] for row in ROWS}
+    assert page.locator("#tab-body").inner_text().endswith("Körper")

@@ -33,7 +33,7 @@ const Bar = ({ projects, app }) => {
   return html`
     <button type="button" class="button quiet project-name" aria-haspopup="dialog" data-testid="project"
       aria-label=${`Project: ${facts.name}`} onClick=${() => dialog.current.openIt()}>
-      <span class="project-title">${facts.name}</span>
+      <span class="project-title" translate=${false}>${facts.name}</span>
     </button>
     <span class="project-saved" role="status" data-state=${saving.value} data-testid="project-saved">
       ${SAVED[saving.value]}

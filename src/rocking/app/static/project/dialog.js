@@ -72,7 +72,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         <ul class="project-list" aria-label="Projects">
           ${lists.value.projects.map((one) => html`
             <li key=${one.id} data-here=${one.id === here.id}>
-              <p><strong>${one.name}</strong><span class="quiet">${when(one.changed)}</span></p>
+              <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.changed)}</span></p>
               <div class="toolbar">
                 ${one.id === here.id
                   ? html`<span class="project-open">open</span>`
@@ -109,7 +109,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <ul class="project-list" aria-label="Deleted">
             ${lists.value.deleted.map((one) => html`
               <li key=${one.id}>
-                <p><strong>${one.name}</strong><span class="quiet">${when(one.deleted)}</span></p>
+                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.deleted)}</span></p>
                 <${Act} text="Bring back" one=${one}
                   go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
               </li>`)}

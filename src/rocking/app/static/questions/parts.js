@@ -219,7 +219,7 @@ const Files = ({ questions, question }) => html`
 export const Drawing = ({ question, alt }) => question.files.includes("picture.svg")
   && html`<img class="drawing" src=${`/api/questions/${question.id}/picture.svg`} alt=${alt} />`;
 
-/** A table; cells are text, or `[text, kind]` with the colour of a light. */
+/** A table; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words. */
 export const Rows = ({ caption, head, rows }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
     <table><caption class="visually-hidden">${caption}</caption>
@@ -227,7 +227,8 @@ export const Rows = ({ caption, head, rows }) => html`
       <tbody>${rows.map((row, k) => html`<tr key=${k}>
         ${row.map((cell, j) => {
           const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
-          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>` : html`<th scope="row">${text}</th>`;
+          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>`
+            : html`<th scope="row" translate=${kind !== "own"}>${text}</th>`;
         })}</tr>`)}
       </tbody>
     </table>

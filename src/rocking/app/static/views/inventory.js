@@ -105,7 +105,7 @@ const Ranking = ({ answer }) => {
   const counts = ["red", "amber", "green"].map((light) => `${answer.counts[light]} ${light}`).join(", ");
   const missing = answer.not_assessed.length;
   const rows = answer.objects.map((each) => [
-    `${each.name}${each.count > 1 ? ` (${each.count})` : ""}`, [each.light.toUpperCase(), LIGHTS[each.light]],
+    [`${each.name}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
     each.overturned_interval.map((end) => number(100 * end, 2)).join(" to "), each.in_words, each.what_to_do,
   ]);
   return html`
@@ -113,7 +113,7 @@ const Ranking = ({ answer }) => {
     ${rows.length > 0 && html`<${Rows} caption="Objects, the worst first"
       head=${["object", "light", "overturns [%]", "what it does", "what to do"]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
-      rows=${answer.not_assessed.map((each) => [each.name || "no name", String(each.row), each.reason])} />`}
+      rows=${answer.not_assessed.map((each) => [each.name ? [each.name, "own"] : "no name", String(each.row), each.reason])} />`}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:${" "}
       ${answer.columns_not_read.join(", ")}</p>
       <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;

@@ -89,7 +89,7 @@ export function studyList(app, { onShow, onGone }) {
       el(
         "div",
         { class: "study-head" },
-        el("strong", {}, study.name),
+        el("strong", { translate: "no" }, study.name),
         el("span", { class: "quiet" }, KINDS[study.kind] || study.kind),
       ),
       bar,
