@@ -19,6 +19,7 @@ namespace rocking::motions {
 #define ROCKING_WIDER
 #endif
 
+constexpr double kPi = 3.14159265358979323846;
 using Complex = std::complex<double>;
 
 static inline Complex times(Complex a, Complex b) {
@@ -167,7 +168,7 @@ static void peaks_of(const double* a, std::size_t n, double step, const Complex*
         for (std::size_t i = 0; i < some; ++i) {
             const Complex s = rates[first + i];
             Complex z{re[(n - 1) * kTogether + i], im[(n - 1) * kTogether + i]};
-            const Complex turn = std::exp(s * (3.14159265358979323846 / s.imag() / static_cast<double>(points - 1)));
+            const Complex turn = std::exp(s * (kPi / s.imag() / static_cast<double>(points - 1)));
             for (std::int64_t k = 0; k < points; ++k, z = times(z, turn)) {
                 const Feels free(z, 0.0, s);
                 for (int j = 0; j < 3; ++j) with.top[j][i] = std::max(with.top[j][i], std::abs(free.value[j]));
@@ -261,7 +262,7 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
             outline.settle();
             for (std::size_t k = 0; k < n; ++k) outline.raise(one(k).imag() * inverse, other(k).imag() * inverse);
             Complex x = one(n - 1), y = other(n - 1);
-            const Complex turn = std::exp(s * (3.14159265358979323846 / s.imag() / static_cast<double>(points - 1)));
+            const Complex turn = std::exp(s * (kPi / s.imag() / static_cast<double>(points - 1)));
             for (std::int64_t k = 0; k < points; ++k, x = times(x, turn), y = times(y, turn))
                 outline.raise(x.imag() * inverse, y.imag() * inverse);
             outline.settle();
