@@ -25,8 +25,11 @@ export const createTime = (onInstant, onZoom) => {
   };
 };
 
+const UNMARKED = {};
+const ALONE = { add: () => () => {} };
+
 /** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `part` is in sight. */
-export const Figure = ({ shape, data, part, marks, time, testid }) => {
+export const Figure = ({ shape, data, part, marks = UNMARKED, time = ALONE, testid }) => {
   const place = useRef(null);
   const chart = useRef(null);
   const look = JSON.stringify(shape);

@@ -1,32 +1,29 @@
 /** Studies without a picture of their own: how many histories ended in which way, and tables. */
-import { el } from "/app/dom.js";
+import { html, useMemo } from "/parts/preact.js";
+import { Made } from "/parts/made.js";
 import { tableOf } from "/app/fields.js";
 import { percent } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 
-/** Show counts of outcomes inside a place. */
-export const showCounts = (place, app, study, found) => {
-  (found.shares ?? []).forEach((shares, k) => {
-    const rows = shares.map(({ meaning, count, share }) => [meaning, count, percent(share)]);
-    const several = found.restitutions.length > 1;
-    const caption = several ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes";
-    place.append(tableOf(["Outcome", "histories", "share"], rows, { caption, testid: "study-counts" }));
-  });
-  for (const [name, columns] of Object.entries(found.tables ?? {})) place.append(sheet(name, columns));
-};
-
 const MOST = 500;
 
-const sheet = (name, columns) => {
-  const count = columns[0]?.values.length ?? 0;
-  const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) =>
-    columns.map(({ values }) => values[k] ?? "\u2013"),
-  );
-  const heads = columns.map((each) => ({
-    label: each.name.replaceAll("_", " "),
-    unit: each.unit === "1" ? "" : each.unit,
-  }));
-  const rest =
-    count > MOST ? el("p", { class: "quiet" }, `${count - MOST} more rows are in the files.`) : null;
-  return el("div", {}, tableOf(heads, rows, { caption: name, testid: `sheet-${name}` }), rest);
+/** Counts of outcomes, and the tables of a study. */
+export const Counts = ({ found }) => {
+  const several = found.restitutions?.length > 1;
+  return html`
+    ${(found.shares ?? []).map((shares, k) => html`<${Sheet} key=${k} heads=${["Outcome", "histories", "share"]} testid="study-counts"
+      rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
+      caption=${several ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes"} />`)}
+    ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
 };
+
+const Columns = ({ name, columns }) => {
+  const count = columns[0]?.values.length ?? 0;
+  const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));
+  const heads = columns.map((each) => ({ label: each.name.replaceAll("_", " "), unit: each.unit === "1" ? "" : each.unit }));
+  return html`<div><${Sheet} heads=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
+    ${count > MOST && html`<p class="quiet">${`${count - MOST} more rows are in the files.`}</p>`}</div>`;
+};
+
+/** A table of a result, which does not change. */
+export const Sheet = ({ heads, rows, ...more }) => html`<${Made} node=${useMemo(() => tableOf(heads, rows, more), [])} />`;

@@ -1,72 +1,56 @@
 /** Files of a finished study. */
-import { el, fill } from "/app/dom.js";
-import { button, note } from "/app/fields.js";
+import { html } from "/parts/preact.js";
+import { useSignal } from "/questions/parts.js";
 
 const FILES = [
-  ["png", "PNG"],
-  ["svg", "SVG"],
-  ["csv", "CSV"],
-  ["xlsx", "Excel"],
-  ["mat", "MATLAB"],
-  ["nc", "netCDF"],
-  ["parquet", "Parquet"],
-  ["toml", "TOML job"],
-  ["xml", "NRML"],
+  ["png", "PNG"], ["svg", "SVG"], ["csv", "CSV"], ["xlsx", "Excel"], ["mat", "MATLAB"], ["nc", "netCDF"],
+  ["parquet", "Parquet"], ["toml", "TOML job"], ["xml", "NRML"],
 ];
-const ONLY = { xml: new Set(["stripes", "incremental", "cloud"]) };
-const NO_PICTURE = new Set(["histories"]);
-
-const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
+const FRAGILITIES = new Set(["stripes", "incremental", "cloud"]);
 
 /** What is drawn or written of one restitution alone. */
 const OF_ONE = new Set(["png", "svg", "xml"]);
 
-const CROSS =
-  "These curves cross, which the file cannot hold. With one dispersion for all states they do not.";
+const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
+const CROSS = "These curves cross, which the file cannot hold. With one dispersion for all states they do not.";
 
 const hasFit = (found, k) => Object.keys(found.analyses?.[k]?.curves ?? {}).length > 0;
 
-/** Buttons that save the result of a study, pictures and curves of the restitution that is shown. */
-export const exportsOf = (app, study, found, chosen) => {
-  const offered = FILES.filter(([suffix]) => !ONLY[suffix] || ONLY[suffix].has(study.kind)).filter(
-    ([suffix]) => !(["png", "svg"].includes(suffix) && NO_PICTURE.has(study.kind)),
-  );
-  const said = el("div", { "aria-live": "polite" });
+/** Buttons that save the result of a study, pictures and curves of the restitution that is `chosen`. */
+export const Exports = ({ app, study, found, chosen }) => {
+  const said = useSignal("");
+  const fragility = FRAGILITIES.has(study.kind);
+  const curveless = fragility && found.analyses.every((_, k) => !hasFit(found, k));
+  const offered = FILES.filter(([suffix]) => (suffix === "xml" ? fragility
+    : study.kind !== "histories" || !OF_ONE.has(suffix)));
   const fetched = (suffix, more = "") => {
     const place = OF_ONE.has(suffix) ? `?restitution=${chosen.restitution}` : "";
-    const path = `/api/studies/${study.id}/export.${suffix}${place}${more}`;
-    return app.download(path, undefined, `study.${suffix}`);
+    return app.download(`/api/studies/${study.id}/export.${suffix}${place}${more}`, undefined, `study.${suffix}`);
   };
-  const nest = () => fetched("xml", "&crossing=common-dispersion").then(() => fill(said));
-  const save = (suffix) => async () => {
-    fill(said);
-    if (suffix === "xml" && !hasFit(found, chosen.restitution)) return fill(said, note(NO_FIT, "info"));
+  const nest = async () => {
+    await fetched("xml", "&crossing=common-dispersion");
+    said.value = "";
+  };
+  const save = async (suffix) => {
+    said.value = suffix === "xml" && !hasFit(found, chosen.restitution) ? NO_FIT : "";
+    if (said.value) return;
     const refused = await fetched(suffix);
-    if (!/must not cross/.test(refused?.message)) return undefined;
-    const text = "Save with one dispersion";
-    return fill(said, note(CROSS, "info"), button({ text, onClick: nest, testid: "export-nested" }));
+    if (/must not cross/.test(refused?.message)) said.value = CROSS;
   };
-  const none = (suffix) => suffix === "xml" && found.analyses.every((_, k) => !hasFit(found, k));
-  return el(
-    "div",
-    { class: "study-exports" },
-    el("h3", {}, "Take away"),
-    el(
-      "div",
-      { class: "toolbar" },
-      offered.map(([suffix, text]) =>
-        button({
-          text,
-          label: `${study.name} as ${text}`,
-          onClick: save(suffix),
-          testid: `export-${suffix}`,
-          disabled: none(suffix),
-        }),
-      ),
-    ),
-    said,
-    ONLY.xml.has(study.kind) && none("xml")
-      ? el("p", { class: "quiet", "data-testid": "no-nrml" }, NO_FIT)
-      : null,
-  );
+  return html`
+    <div class="study-exports">
+      <h3>Take away</h3>
+      <div class="toolbar">${offered.map(([suffix, text]) => html`
+        <button type="button" class="button" key=${suffix} aria-label=${`${study.name} as ${text}`} data-testid=${`export-${suffix}`}
+          disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}</button>`)}</div>
+      <div aria-live="polite">
+        ${said.value && html`<${Info} words=${said.value} />`}
+        ${said.value === CROSS && html`<button type="button" class="button" data-testid="export-nested" onClick=${nest}>Save with one dispersion</button>`}
+      </div>
+      ${curveless && html`<p class="quiet" data-testid="no-nrml">${NO_FIT}</p>`}
+    </div>`;
 };
+
+/** A sentence that is good to know. */
+export const Info = ({ words }) => html`
+  <p class="note info"><span class="sign" aria-hidden="true">i</span><span>${words}</span></p>`;

@@ -1,8 +1,10 @@
 /** The question of a fragility: which motions, which measure, which levels and states. */
-import { el } from "/app/dom.js";
-import { numberField, segmented, selectField } from "/app/fields.js";
+import { html, useEffect, useMemo } from "/parts/preact.js";
+import { Kept, Made, told } from "/parts/made.js";
+import { numberField, segmented } from "/app/fields.js";
 import { pretty } from "/app/format.js";
-import { rangeFields } from "/views/studies-form-parts.js";
+import { Choice, useSignal } from "/questions/parts.js";
+import { Range, rangeOf, unitOf } from "/views/studies-form-parts.js";
 import { recordChoice } from "/views/studies-form-records.js";
 
 const ANALYSES = [
@@ -15,110 +17,52 @@ const SOURCES = [
   { value: "records", text: "Uploaded records" },
 ];
 
-/** Form of a fragility; `tables` gives the tables of its job. */
-export const fragilityQuestion = (app) => {
-  const chosen = { kind: "stripes", source: "synthetic", count: 40, seed: 1, measure: "pga", state: 0.5 };
-  const take = (key) => (value) => (chosen[key] = value);
-  const families = app.info.families.map((each) => ({ value: each.name, text: each.title ?? each.name }));
-  chosen.family = families[0].value;
-  const records = recordChoice(app);
-  records.node.hidden = true;
-  const levels = levelFields(app, () => chosen.measure);
-  const motions = el(
-    "div",
-    { class: "fields" },
-    selectField({ label: "Family", options: families, value: chosen.family, onChange: take("family") }),
-    numberField({
-      label: "Motions",
-      value: chosen.count,
-      min: 2,
-      max: 2000,
-      step: 1,
-      onChange: take("count"),
-    }),
-    numberField({ label: "Seed", value: chosen.seed, min: 0, step: 1, onChange: take("seed") }),
-  );
-  const node = el(
-    "div",
-    { class: "question" },
-    segmented({
-      label: "Analysis",
-      options: ANALYSES,
-      value: chosen.kind,
-      onChange: (value) => {
-        chosen.kind = value;
-        levels.node.hidden = value === "cloud";
-      },
-    }),
-    segmented({
-      label: "Motions",
-      options: SOURCES,
-      value: chosen.source,
-      onChange: (value) => {
-        chosen.source = value;
-        motions.hidden = value !== "synthetic";
-        records.node.hidden = value !== "records";
-        if (value === "records") records.refresh();
-      },
-    }),
-    motions,
-    records.node,
-    selectField({
-      label: "Intensity measure",
-      options: measuresOf(app),
-      value: chosen.measure,
-      onChange: (value) => {
-        chosen.measure = value;
-        levels.build();
-      },
-    }),
-    levels.node,
-    numberField({
-      label: "Rocking counts from",
-      unit: "\u03b1",
-      help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
-      value: chosen.state,
-      min: 0.01,
-      max: 1,
-      step: 0.05,
-      onChange: take("state"),
-    }),
-  );
-  return {
-    node,
-    refresh: () => chosen.source === "records" && records.refresh(),
-    name: () => `fragility, ${chosen.kind}`,
-    tables: (inputs) => tablesOf(inputs, chosen, levels, records),
-  };
-};
-
-const measuresOf = (app) =>
-  app.info.measures.map(({ name, words, unit }) => ({
-    value: name,
-    text: unit === "1" ? words : `${words} [${pretty(unit)}]`,
-  }));
-
 /** Where the levels of a measure usually lie. */
 const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
 
-const levelFields = (app, measure) => {
-  const node = el("div", {});
-  let fields = null;
-  const build = () => {
-    const { unit, name } = app.info.measures.find((each) => each.name === measure());
-    const [from, to] = USUAL[name] ?? [1, 12];
-    const shown = unit === "1" ? "" : unit;
-    fields = rangeFields({ name: "Levels of the measure", unit: shown, from, to, count: 12 });
-    node.replaceChildren(fields.node);
-  };
-  build();
-  return { node, build, range: () => fields.range() };
+/** Form of a fragility; the records are looked at again at every visit. */
+export const FragilityQuestion = ({ app, question, visits }) => {
+  const { families, measures } = app.info;
+  const chosen = useSignal({
+    kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: "pga", state: 0.5,
+  });
+  const { kind, source, measure } = chosen.value;
+  const records = useMemo(() => recordChoice(app), []);
+  const measured = measures.find(({ name }) => name === measure);
+  const levels = useMemo(() => {
+    const [from, to] = USUAL[measure] ?? [1, 12];
+    return { from, to, count: 12 };
+  }, [measure]);
+  useEffect(() => void (source === "records" && records.refresh()), [source, visits]);
+  const take = (key) => (value) => (chosen.value = { ...chosen.value, [key]: value });
+  const choice = (key, label, options) => html`
+    <${Choice} label=${label} options=${options} value=${told(chosen.value[key], take(key))} />`;
+  const field = (make, key, label, more) => html`
+    <${Kept} make=${make} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
+  question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records) };
+  return html`<div class="question">
+    ${field(segmented, "kind", "Analysis", { options: ANALYSES })}
+    ${field(segmented, "source", "Motions", { options: SOURCES })}
+    <div class="fields" hidden=${source !== "synthetic"}>
+      ${choice("family", "Family", families.map(({ name, title }) => [name, title ?? name]))}
+      ${field(numberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
+      ${field(numberField, "seed", "Seed", { min: 0, step: 1 })}
+    </div>
+    <${Made} node=${records.node} hidden=${source !== "records"} />
+    ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
+      [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
+    <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
+    ${field(numberField, "state", "Rocking counts from", {
+      unit: "\u03b1", min: 0.01, max: 1, step: 0.05,
+      help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
+    })}
+  </div>`;
 };
 
 const tablesOf = (inputs, { kind, source, family, count, seed, measure, state }, levels, records) => {
   if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
   const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
   const motions = source === "synthetic" ? [set] : records.tables();
-  const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: levels.range() }) };
+  const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: rangeOf(levels) }) };
   return { kind, job: { body: inputs.body, motions, fragility } };
 };

@@ -1,8 +1,9 @@
 /** The question of an overturning map: two axes. */
-import { el } from "/app/dom.js";
-import { selectField } from "/app/fields.js";
+import { html, useMemo } from "/parts/preact.js";
+import { told } from "/parts/made.js";
+import { Choice, useSignal } from "/questions/parts.js";
 import { greek } from "/views/studies-words.js";
-import { motionsOf, rangeFields } from "/views/studies-form-parts.js";
+import { Range, motionsOf, rangeOf, unitOf } from "/views/studies-form-parts.js";
 
 const USUAL = {
   frequency_ratio: [0.5, 8],
@@ -22,70 +23,35 @@ const USUAL = {
 /** Axes that only a pulse has. */
 const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
-const isPulse = (app) => Boolean(app.inputs.get().motion?.pulse);
-const firstAxes = (pulse) =>
-  pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
+const SIDES = { x: "Across", y: "Up" };
 
-/** Form of a map; `tables` gives the tables of its job, `refresh` follows the motion of the inputs. */
-export function mapQuestion(app) {
-  let pulse = isPulse(app);
-  let touched = false;
-  let chosen = firstAxes(pulse);
-  const ranges = {};
-  const node = el("div", { class: "map-question" });
-  const offered = () => app.info.axes.filter(({ name }) => pulse || !OF_PULSES.has(name));
-
-  const side = (which, words) => {
-    const place = el("div", {});
-    const change = (name) => {
-      chosen[which] = name;
-      const axis = app.info.axes.find((each) => each.name === name);
-      const [from, to] = USUAL[name] || [1, 2];
-      ranges[which] = rangeFields({
-        name: `${words}, values`,
-        unit: axis.unit === "1" ? "" : axis.unit,
-        from,
-        to,
-        count: 50,
-      });
-      place.replaceChildren(ranges[which].node);
-    };
-    const select = selectField({
-      label: words,
-      options: offered().map((axis) => ({ value: axis.name, text: greek(axis.words) })),
-      value: chosen[which],
-      onChange: (name) => {
-        touched = true;
-        change(name);
-      },
-    });
-    change(chosen[which]);
-    return [select, place];
-  };
-  const build = () => node.replaceChildren(...side("x", "Across"), ...side("y", "Up"));
-  const refresh = () => {
-    if (isPulse(app) === pulse) return;
-    pulse = isPulse(app);
-    const there = new Set(offered().map(({ name }) => name));
-    if (!touched || !there.has(chosen.x) || !there.has(chosen.y)) {
-      touched = false;
-      chosen = firstAxes(pulse);
-    }
-    build();
-  };
-  build();
-
-  return {
-    node,
-    refresh,
-    name: () => "overturning map",
+/** Form of a map: its axes are those of the motion of the inputs until others are chosen that this motion has. */
+export const MapQuestion = ({ app, question }) => {
+  const own = useSignal({});
+  const pulse = Boolean(app.inputs.get().motion?.pulse);
+  const offered = app.info.axes.filter(({ name }) => pulse || !OF_PULSES.has(name));
+  const first = pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
+  const wanted = { ...first, ...own.value };
+  const chosen = Object.values(wanted).every((axis) => offered.some(({ name }) => name === axis)) ? wanted : first;
+  const [x, y] = [useAxis(chosen.x), useAxis(chosen.y)];
+  question.current = {
+    name: "overturning map",
     tables: (inputs) => {
       if (!inputs.body) throw new Error("A map needs a body: choose one in the step Body.");
-      const map = {
-        x: { axis: chosen.x, ...ranges.x.range() },
-        y: { axis: chosen.y, ...ranges.y.range() },
-      };
+      const map = { x: { axis: chosen.x, ...rangeOf(x) }, y: { axis: chosen.y, ...rangeOf(y) } };
       return { kind: "overturning-map", job: { body: inputs.body, motions: motionsOf(inputs), map } };
     },
   };
-}
+  const side = (which, range) => html`
+    <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words }) => [name, greek(words)])}
+      value=${told(chosen[which], (name) => (own.value = { ...own.value, [which]: name }))} />
+    <${Range} key=${which + chosen[which]} name=${`${SIDES[which]}, values`} range=${range}
+      unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;
+  return html`<div class="map-question">${side("x", x)}${side("y", y)}</div>`;
+};
+
+/** The usual range of an axis, to be changed by its fields. */
+const useAxis = (axis) => useMemo(() => {
+  const [from, to] = USUAL[axis] ?? [1, 2];
+  return { from, to, count: 50 };
+}, [axis]);

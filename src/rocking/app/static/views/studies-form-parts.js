@@ -1,26 +1,22 @@
 /** Parts of the forms of studies: a range of numbers, and the motions of the inputs as tables of a job. */
-import { el } from "/app/dom.js";
+import { html } from "/parts/preact.js";
+import { Kept } from "/parts/made.js";
 import { numberField } from "/app/fields.js";
 
-/** Three fields: from, to, number; `range()` gives them as a job file writes them. */
-export const rangeFields = ({ name, unit, from, to, count, log = false }) => {
-  const value = { from, to, count };
-  const field = (key, label, more) =>
-    numberField({ label, value: value[key], onChange: (given) => (value[key] = given), ...more });
-  const node = el(
-    "fieldset",
-    { class: "range-fields" },
-    el("legend", {}, name),
-    field("from", "from", { unit }),
-    field("to", "to", { unit }),
-    field("count", "number", { min: 1, max: 400, step: 1 }),
-  );
-  const range = () => {
-    const ends = { from: value.from, to: value.to, count: Math.round(value.count) };
-    return log ? { ...ends, spacing: "log" } : ends;
-  };
-  return { node, range };
+/** Three fields: from, to, number, which write into `range`; another range needs another key. */
+export const Range = ({ name, unit = "", range }) => {
+  const field = (key, label, more) => html`<${Kept} make=${numberField} label=${label} value=${range[key]}
+    on=${(given) => (range[key] = given)} ...${more} />`;
+  return html`<fieldset class="range-fields"><legend>${name}</legend>
+    ${field("from", "from", { unit })}${field("to", "to", { unit })}${field("count", "number", { min: 1, max: 400, step: 1 })}
+  </fieldset>`;
 };
+
+/** A range as a job file writes it. */
+export const rangeOf = ({ from, to, count, ...more }) => ({ from, to, count: Math.round(count), ...more });
+
+/** The unit that a label has, of none nothing. */
+export const unitOf = ({ unit }) => (unit === "1" ? "" : unit);
 
 /** Motions of a job from the motion of the inputs. */
 export const motionsOf = (inputs) => {

@@ -1,18 +1,18 @@
 /** What a new study computes: chosen here, about the body and the motion of the other steps. */
-import { el } from "/app/dom.js";
-import { button, segmented } from "/app/fields.js";
-import { mapQuestion } from "/views/studies-form-map.js";
-import { fragilityQuestion } from "/views/studies-form-fragility.js";
-import { spectrumQuestion } from "/views/studies-form-spectrum.js";
+import { html, useRef } from "/parts/preact.js";
+import { Kept } from "/parts/made.js";
+import { segmented } from "/app/fields.js";
+import { useSignal } from "/questions/parts.js";
+import { MapQuestion } from "/views/studies-form-map.js";
+import { FragilityQuestion } from "/views/studies-form-fragility.js";
+import { SpectrumQuestion } from "/views/studies-form-spectrum.js";
 
-const QUESTIONS = {
-  "overturning-map": mapQuestion,
-  fragility: fragilityQuestion,
-  "rocking-spectrum": spectrumQuestion,
-};
-
-/** The restitution table of a job, from the one of the inputs. */
-const restitutionOf = (inputs) => inputs.restitution || { model: "ked" };
+const QUESTIONS = { "overturning-map": MapQuestion, fragility: FragilityQuestion, "rocking-spectrum": SpectrumQuestion };
+const KINDS = [
+  { value: "overturning-map", text: "Overturning map" },
+  { value: "fragility", text: "Fragility" },
+  { value: "rocking-spectrum", text: "Rocking spectra" },
+];
 
 const onScreen = (node) => node.offsetParent !== null;
 
@@ -24,79 +24,48 @@ const fresh = (name, taken) => {
 };
 
 /** Form with one question at a time; calls onLaunched(id); `taken` says which names there are. */
-export function studyForm(app, { onLaunched, taken }) {
-  const name = el("input", { type: "text", id: "study-name", maxlength: 100, autocomplete: "off" });
-  const place = el("div", { class: "study-question" });
-  const problem = el("p", { class: "error-text", role: "alert", id: "study-problem" });
-  let kind = "overturning-map";
-  let question = null;
-
-  const choose = (chosen) => {
-    kind = chosen;
-    question = QUESTIONS[kind](app);
-    question.refresh?.();
-    place.replaceChildren(question.node);
-    problem.textContent = "";
-  };
+export const StudyForm = ({ app, visits, onLaunched, taken }) => {
+  const [kind, name, problem, busy] = [useSignal("overturning-map"), useSignal(""), useSignal(""), useSignal(false)];
+  const [form, question] = [useRef(null), useRef(null)];
+  const Question = QUESTIONS[kind.value];
 
   /** A field in error holds its last good number, which is not the one on the screen. */
   const faultOf = () => {
-    const wrong = [...node.querySelectorAll("[aria-invalid=true]")].find(onScreen);
-    if (wrong) {
-      wrong.focus();
-      return "A number of this form is marked as wrong: correct it first.";
-    }
-    return app.faults?.any({ inputs: true }) ? app.faults.sentence({ inputs: true }) : "";
+    const wrong = [...form.current.querySelectorAll("[aria-invalid=true]")].find(onScreen);
+    wrong?.focus();
+    return wrong ? "A number of this form is marked as wrong: correct it first." : app.faults.sentence({ inputs: true });
   };
-
-  const launch = async () => {
-    problem.textContent = faultOf();
-    if (problem.textContent) return;
+  const launch = async (event) => {
+    event.preventDefault();
+    problem.value = faultOf();
+    if (problem.value || busy.value) return;
     const inputs = app.inputs.get();
-    go.disabled = true;
+    busy.value = true;
     try {
-      const tables = await question.tables(inputs);
-      const called = fresh(name.value.trim() || question.name(inputs), taken());
-      const job = {
-        campaign: { name: called, kind: tables.kind },
-        restitution: restitutionOf(inputs),
-        ...tables.job,
-      };
-      if (inputs.settings && Object.keys(inputs.settings).length) job.settings = inputs.settings;
-      const answer = await app.call("/api/studies", {
-        json: { name: job.campaign.name, job, project: app.project.here.value.id },
-      });
+      const { kind: asked, job } = question.current.tables(inputs);
+      const called = fresh(name.value.trim() || question.current.name, taken());
+      const tables = { campaign: { name: called, kind: asked }, restitution: inputs.restitution || { model: "ked" }, ...job };
+      if (inputs.settings && Object.keys(inputs.settings).length) tables.settings = inputs.settings;
+      const { id } = await app.call("studies", { json: { name: called, job: tables, project: app.project.here.value.id } });
       name.value = "";
-      onLaunched(answer.id);
+      onLaunched(id);
     } catch (error) {
-      problem.textContent = error.message;
-    } finally {
-      go.disabled = false;
+      problem.value = error.message;
     }
+    busy.value = false;
   };
-
-  const go = button({ text: "Launch", kind: "primary", onClick: launch });
-  go.dataset.testid = "study-launch";
-  const kinds = segmented({
-    label: "Kind",
-    options: [
-      { value: "overturning-map", text: "Overturning map" },
-      { value: "fragility", text: "Fragility" },
-      { value: "rocking-spectrum", text: "Rocking spectra" },
-    ],
-    value: kind,
-    onChange: choose,
-  });
-  choose(kind);
-  const label = el("label", { for: "study-name", class: "field-label" }, "Name");
-  const node = el(
-    "form",
-    { class: "study-form", onsubmit: (event) => (event.preventDefault(), launch()) },
-    kinds,
-    place,
-    el("div", { class: "field" }, label, name),
-    problem,
-    el("div", { class: "toolbar" }, go),
-  );
-  return { node, refresh: () => question.refresh && question.refresh() };
-}
+  const choose = (chosen) => {
+    kind.value = chosen;
+    problem.value = "";
+  };
+  return html`
+    <form ref=${form} class="study-form" onSubmit=${launch}>
+      <${Kept} make=${segmented} label="Kind" options=${KINDS} value=${kind.value} on=${choose} />
+      <div class="study-question"><${Question} app=${app} question=${question} visits=${visits} /></div>
+      <div class="field"><label for="study-name" class="field-label">Name</label>
+        <input type="text" id="study-name" maxlength="100" autocomplete="off" value=${name.value}
+          onInput=${(event) => (name.value = event.target.value)} /></div>
+      <p class="error-text" role="alert" id="study-problem">${problem.value}</p>
+      <div class="toolbar"><button type="submit" class="button primary" data-testid="study-launch" disabled=${busy.value}>Launch</button></div>
+    </form>`;
+};

@@ -1,59 +1,46 @@
 /** A fragility: probability curves with their bands, the points they come from, and what the fit says. */
-import { el, fill } from "/app/dom.js";
-import { note, selectField, tableOf } from "/app/fields.js";
+import { html, useMemo } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
-import { lineChart } from "/charts/line.js";
+import { Figure } from "/charts/figure.js";
 import { pretty, quantity } from "/app/format.js";
+import { Choice, useSignal } from "/questions/parts.js";
+import { Sheet } from "/views/studies-counts.js";
+import { Info } from "/views/studies-exports.js";
 import { greek, plainWords } from "/views/studies-words.js";
 
-/** Show fragility curves inside a place; returns how to clear up. */
-export const showFragility = (place, app, study, found, chosen) => {
-  const box = el("div", { class: "study-result" });
-  let charts = [];
-  const draw = (k) => {
-    chosen.restitution = k;
-    charts.forEach((chart) => chart.destroy());
-    fill(box);
-    charts = drawAnalysis(box, found, found.analyses[k]);
-  };
-  if (found.analyses.length > 1) {
-    const options = found.analyses.map(({ restitution }, value) => ({
-      value,
-      text: modelWords(restitution),
-    }));
-    place.append(selectField({ label: "Restitution", options, value: 0, onChange: draw }));
-  }
-  place.append(box);
-  draw(0);
-  return () => charts.forEach((chart) => chart.destroy());
+/** Fragility curves, of one restitution at a time. */
+export const Fragility = ({ found, chosen }) => {
+  const k = useSignal("0");
+  chosen.restitution = Number(k.value);
+  const options = found.analyses.map(({ restitution }, value) => [String(value), modelWords(restitution)]);
+  return html`
+    ${options.length > 1 && html`<${Choice} label="Restitution" options=${options} value=${k} />`}
+    <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />`;
 };
 
-const drawAnalysis = (box, found, analysis) => {
+const Analysis = ({ found, analysis }) => {
   const unit = found.measure.unit === "1" ? "" : found.measure.unit;
   const x = { label: found.measure.words, unit };
-  // without a curve the points still show what was found
-  const left = new Set(analysis.sentences);
-  const charts = Object.entries(analysis.points).map(([state, points], index) => {
-    const curve = analysis.curves[state];
-    const chart = drawCurve(box, { state, curve: curve ?? NO_CURVE, points }, index, x);
-    if (!curve) box.append(whyNone(left, state, found.uplift_threshold, unit));
-    return chart;
-  });
-  if (analysis.resurrection) box.append(note(analysis.resurrection, "info"));
-  for (const sentence of left) box.append(note(withUnit(sentence, unit), "info"));
-  if (found.definition) box.append(el("p", { class: "quiet" }, plainWords(found.definition)));
-  const rows = Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit));
-  box.append(tableOf(columnsOf(unit), rows, { caption: "Lognormal fits", testid: "fragility-fits" }));
-  return charts;
+  // without a curve the points still show what was found; the reason stands under them, and not once more below
+  const reasons = new Map(Object.keys(analysis.points).filter((state) => !analysis.curves[state])
+    .map((state) => [state, analysis.sentences.find((each) => each.startsWith(`${state}: `))]));
+  const told = new Set(reasons.values());
+  return html`<div class="study-result">
+    ${Object.entries(analysis.points).map(([state, points], index) => html`
+      <${Curve} key=${state} state=${state} curve=${analysis.curves[state] ?? NO_CURVE} points=${points} index=${index} x=${x} />
+      ${reasons.has(state) && html`<div data-testid="no-curve">
+        <${Info} words=${whyNone(reasons.get(state), state, found.uplift_threshold, unit)} /></div>`}`)}
+    ${analysis.resurrection && html`<${Info} words=${analysis.resurrection} />`}
+    ${analysis.sentences.filter((each) => !told.has(each)).map((each) => html`<${Info} key=${each} words=${withUnit(each, unit)} />`)}
+    ${found.definition && html`<p class="quiet">${plainWords(found.definition)}</p>`}
+    <${Sheet} heads=${columnsOf(unit)} rows=${Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit))}
+      caption="Lognormal fits" testid="fragility-fits" />
+  </div>`;
 };
 
-// The reason stands under the points that have no curve, and not once more below.
-const whyNone = (left, state, threshold, unit) => {
-  const sentence = [...left].find((each) => each.startsWith(`${state}: `));
-  left.delete(sentence);
+const whyNone = (sentence, state, threshold, unit) => {
   const why = sentence ? withUnit(sentence.slice(state.length + 2), unit) : stepWords(threshold, unit);
-  const words = `No curve is drawn: ${why}.`.replace(/\.\.$/, ".");
-  return el("div", { "data-testid": "no-curve" }, note(words, "info"));
+  return `No curve is drawn: ${why}.`.replace(/\.\.$/, ".");
 };
 
 /** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance. */
@@ -70,10 +57,8 @@ const withUnit = (sentence, unit) =>
     .replace(LEVEL, `$1 $2${unit && `\u00a0${pretty(unit)}`}`)
     .replace(/\b(between \S+ and \S*[0-9])/g, `$1${unit && `\u00a0${pretty(unit)}`}`);
 
-const drawCurve = (box, { state, curve, points }, index, x) => {
+const Curve = ({ state, curve, points, index, x }) => {
   const { colour } = seriesStyle(index);
-  const stage = el("div", { "data-testid": "fragility-chart" });
-  box.append(stage);
   const band = Boolean(curve.low && curve.high);
   // the legend names what is drawn, and nothing else
   const drawn = [curve.x.length > 0, band, band, true];
@@ -83,16 +68,16 @@ const drawCurve = (box, { state, curve, points }, index, x) => {
     { label: "95 % band, high", colour, dash: [3, 3], width: 1 },
     { label: "share of the motions", colour: "--ink-soft", width: 0, points: true },
   ].filter((_, k) => drawn[k]);
-  const chart = lineChart(stage, {
+  const shape = {
     title: `Probability: ${greek(state)}`,
     x,
     height: 260,
     y: { label: series.length > 1 ? "probability" : series[0].label, unit: "", range: [0, 1] },
     series,
     bands: band ? [{ series: [3, 2], fill: `${colour}22` }] : undefined,
-  });
-  chart.setData(joined(curve, points).filter((_, column) => column === 0 || drawn[column - 1]));
-  return chart;
+  };
+  const data = useMemo(() => joined(curve, points).filter((_, column) => column === 0 || drawn[column - 1]), []);
+  return html`<${Figure} shape=${shape} data=${data} testid="fragility-chart" />`;
 };
 
 /** One abscissa for the curve and its points: null where one of them has no value. */

@@ -1,9 +1,11 @@
 /** Rocking spectra: peak rotation against the period of the block. */
-import { el } from "/app/dom.js";
+import { html, useMemo } from "/parts/preact.js";
+import { Kept } from "/parts/made.js";
 import { segmented } from "/app/fields.js";
 import { number } from "/app/format.js";
 import { angleStyle, modelWords } from "/app/palette.js";
-import { lineChart } from "/charts/line.js";
+import { Figure } from "/charts/figure.js";
+import { useSignal } from "/questions/parts.js";
 
 const SHOWN = [
   { value: "median", text: "Median peak" },
@@ -11,34 +13,25 @@ const SHOWN = [
   { value: "overturned", text: "Share that overturns" },
 ];
 
-/** Show spectra inside a place; returns how to clear up. */
-export const showSpectrum = (place, app, study, found) => {
-  const box = el("div", { "data-testid": "spectrum-chart" });
+/** Spectra, of the peaks or of how often the block overturns. */
+export const Spectrum = ({ found }) => {
+  const what = useSignal("median");
   const periods = found.x.values;
-  const one = found.motions.values.length === 1;
-  const log = periods.length > 2 && periods.at(-1) / periods[0] > 8;
-  let chart = null;
-  const draw = (what) => {
-    chart?.destroy();
-    const share = what === "overturned";
-    chart = lineChart(box, {
-      title: share
-        ? "Share of the motions that overturn the block"
-        : "Peak rotation over the slenderness angle",
-      height: 340,
-      x: { label: "period 2\u03c0/p", unit: "s", log },
-      y: { label: share ? "share" : "peak / \u03b1", unit: "" },
-      series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
-    });
-    chart.setData([periods, ...found.curves.map((curve) => curve[what])]);
+  const count = found.motions.values.length;
+  const share = what.value === "overturned";
+  const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[what.value])], [what.value]);
+  const shape = {
+    title: share ? "Share of the motions that overturn the block" : "Peak rotation over the slenderness angle",
+    height: 340,
+    x: { label: "period 2\u03c0/p", unit: "s", log: periods.length > 2 && periods.at(-1) / periods[0] > 8 },
+    y: { label: share ? "share" : "peak / \u03b1", unit: "" },
+    series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
   };
-  if (!one) place.append(segmented({ label: "Show", options: SHOWN, value: "median", onChange: draw }));
-  const words = one
-    ? "A gap is a block that overturns."
-    : `Over ${found.motions.values.length} motions; a gap is where they overturn the block.`;
-  place.append(box, el("p", { class: "quiet" }, words));
-  draw("median");
-  return () => chart?.destroy();
+  return html`
+    ${count > 1 && html`<${Kept} make=${segmented} label="Show" options=${SHOWN} value=${what.value} on=${(next) => (what.value = next)} />`}
+    <${Figure} shape=${shape} data=${data} testid="spectrum-chart" />
+    <p class="quiet">${count === 1 ? "A gap is a block that overturns."
+      : `Over ${count} motions; a gap is where they overturn the block.`}</p>`;
 };
 
 const lookOf = ({ curves, restitutions }, { angle, restitution }) => {

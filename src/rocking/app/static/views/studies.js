@@ -1,87 +1,102 @@
 /** Studies: many histories at once, launched as campaigns; their progress, and their results. */
-import { el } from "/app/dom.js";
-import { card, switchField } from "/app/fields.js";
-import { studyForm } from "/views/studies-form.js";
-import { studyList } from "/views/studies-list.js";
+import { computed, html, render, signal, useLayoutEffect, useRef } from "/parts/preact.js";
+import { Switch } from "/parts/made.js";
+import { StudyForm } from "/views/studies-form.js";
+import { StudyList, actsOf, stateWords } from "/views/studies-list.js";
 import { liveStudies } from "/views/studies-live.js";
 import { showMap } from "/views/studies-map.js";
-import { showFragility } from "/views/studies-fragility.js";
-import { showSpectrum } from "/views/studies-spectrum.js";
-import { showCounts } from "/views/studies-counts.js";
-import { exportsOf } from "/views/studies-exports.js";
-
-const SHOW = {
-  "overturning-map": showMap,
-  "rocking-spectrum": showSpectrum,
-  stripes: showFragility,
-  incremental: showFragility,
-  cloud: showFragility,
-};
+import { Fragility } from "/views/studies-fragility.js";
+import { Spectrum } from "/views/studies-spectrum.js";
+import { Counts } from "/views/studies-counts.js";
+import { Exports } from "/views/studies-exports.js";
 
 /** Build the view inside its section. */
-export function mount(section, app) {
-  const result = el("div", { class: "study-result", "data-testid": "study-result" });
-  const heading = el("h2", { class: "study-result-title", tabindex: "-1" });
-  const outcome = el("section", { class: "card study-outcome", hidden: true }, heading, result);
-  let open = null;
-  let undo = () => {};
-
-  const close = () => {
-    undo();
-    undo = () => {};
-    open = null;
-    outcome.hidden = true;
-    result.replaceChildren();
-  };
+export const mount = (section, app) => {
+  const [every, open, visits] = [signal(false), signal(null), signal(0)];
+  const live = liveStudies(app);
+  // What was launched elsewhere than in a project is everybody's.
+  const mine = ({ project }) => every.value || !project || project === app.project.here.value.id;
+  const studies = computed(() => live.all.value.filter(mine));
+  const states = new Map();
+  let expected = null;
 
   const show = async (study) => {
-    close();
-    open = study.id;
-    outcome.hidden = false;
-    heading.textContent = study.name;
-    result.replaceChildren(el("p", { class: "quiet" }, "Reading the result \u2026"));
-    try {
-      const found = await app.call(`/api/studies/${study.id}/result`, { method: "GET" });
-      if (open !== study.id) return;
-      result.replaceChildren();
-      const chosen = { restitution: 0 };
-      undo = (SHOW[study.kind] || showCounts)(result, app, study, found, chosen) || undo;
-      if (found.contact) result.prepend(el("p", { class: "note", "data-testid": "study-contact" }, found.contact));
-      result.append(exportsOf(app, study, found, chosen));
-      heading.focus();
-    } catch (error) {
-      result.replaceChildren(el("p", { class: "error-text" }, error.message));
-    }
+    const told = (more) => open.value?.shown === study && (open.value = { shown: study, ...more });
+    open.value = { shown: study };
+    await app.call(`studies/${study.id}/result`).then(
+      (found) => told({ found, chosen: { restitution: 0 } }), (error) => told({ refused: error.message }),
+    );
   };
-
-  const list = studyList(app, {
-    onShow: show,
-    onGone: (id) => id === open && close(),
-    isOpen: (id) => id === open,
+  studies.subscribe((now) => {
+    for (const study of now) {
+      const before = states.get(study.id);
+      if (before && before !== study.state) app.say(`${study.name}: ${stateWords(study)}`);
+      states.set(study.id, study.state);
+    }
+    const done = now.find(({ id, state }) => id === expected && state === "done");
+    if (done) {
+      expected = null;
+      show(done);
+    }
+    if (open.value && !now.some(({ id }) => id === open.value.shown.id)) open.value = null;
   });
-  let known = [];
-  // What was launched elsewhere than in a project is everybody's.
-  const mine = ({ project }) => all.value || !project || project === app.project.here.value.id;
-  const look = (studies) => list.update((known = studies).filter(mine));
-  const all = switchField({ label: "Studies of all projects", onChange: () => look(known) });
-  const live = liveStudies(app, look);
-  const form = studyForm(app, {
-    taken: () => list.names(),
-    onLaunched: (id) => {
-      app.say("The study has been launched.");
-      list.expect(id);
-      live.refresh();
+  const launched = (id) => {
+    app.say("The study has been launched.");
+    expected = id;
+    live.refresh();
+  };
+  render(html`<${Studies} app=${app} studies=${studies} every=${every} open=${open} visits=${visits}
+    show=${show} acts=${actsOf(app, live.refresh)} launched=${launched} />`, section);
+  return {
+    shown: () => {
+      live.start();
+      visits.value += 1;
     },
-  });
-  const lead = "Many histories at once: maps, spectra and fragility. They go on while you do something else.";
-  section.append(
-    el("header", { class: "view-head" }, el("h1", {}, "Studies"), el("p", { class: "lead" }, lead)),
-    el(
-      "div",
-      { class: "studies" },
-      el("div", { class: "studies-left" }, card("New study", form.node), card("Studies", all, list.node)),
-      outcome,
-    ),
-  );
-  return { shown: () => (live.start(), form.refresh()), hidden: () => live.stop() };
-}
+    hidden: live.stop,
+  };
+};
+
+const Studies = ({ app, studies, every, open, visits, show, acts, launched }) => html`
+  <header class="view-head"><h1>Studies</h1>
+    <p class="lead">Many histories at once: maps, spectra and fragility. They go on while you do something else.</p></header>
+  <div class="studies">
+    <div class="studies-left">
+      <section class="card" aria-labelledby="studies-new"><h2 id="studies-new">New study</h2>
+        <${StudyForm} app=${app} visits=${visits.value} onLaunched=${launched}
+          taken=${() => new Set(studies.value.map(({ name }) => name))} /></section>
+      <section class="card" aria-labelledby="studies-there"><h2 id="studies-there">Studies</h2>
+        <${Switch} label="Studies of all projects" value=${every.value} on=${(next) => (every.value = next)} />
+        <${StudyList} studies=${studies.value} onShow=${show} acts=${acts} /></section>
+    </div>
+    ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}
+  </div>`;
+
+const Outcome = ({ app, shown, found, refused, chosen }) => {
+  const heading = useRef(null);
+  useLayoutEffect(() => void (found && heading.current.focus()), [found]);
+  const Found = SHOW[shown.kind] ?? Counts;
+  return html`
+    <section class="card study-outcome">
+      <h2 ref=${heading} class="study-result-title" tabindex="-1" translate="no">${shown.name}</h2>
+      <div class="study-result" data-testid="study-result">
+        ${refused ? html`<p class="error-text">${refused}</p>` : !found ? html`<p class="quiet">Reading the result \u2026</p>` : html`
+          ${found.contact && html`<p class="note" data-testid="study-contact">${found.contact}</p>`}
+          <${Found} key=${shown.id} app=${app} study=${shown} found=${found} chosen=${chosen} />
+          <${Exports} app=${app} study=${shown} found=${found} chosen=${chosen} />`}
+      </div>
+    </section>`;
+};
+
+const OverturningMap = ({ app, study, found, chosen }) => {
+  const place = useRef(null);
+  useLayoutEffect(() => showMap(place.current, app, study, found, chosen), []);
+  return html`<div ref=${place} class="study-result"></div>`;
+};
+
+const SHOW = {
+  "overturning-map": OverturningMap,
+  "rocking-spectrum": Spectrum,
+  stripes: Fragility,
+  incremental: Fragility,
+  cloud: Fragility,
+};
