@@ -1,11 +1,11 @@
 /** The question of a fragility: which motions, which measure, which levels and states. */
-import { html, useEffect, useMemo } from "/parts/preact.js";
-import { Kept, Made, told } from "/parts/made.js";
+import { html, useMemo, useRef } from "/parts/preact.js";
+import { Kept, told } from "/parts/made.js";
 import { numberField, segmented } from "/app/fields.js";
 import { pretty } from "/app/format.js";
 import { Choice, useSignal } from "/questions/parts.js";
 import { Range, rangeOf, unitOf } from "/views/studies-form-parts.js";
-import { recordChoice } from "/views/studies-form-records.js";
+import { RecordChoice } from "/views/studies-form-records.js";
 
 const ANALYSES = [
   { value: "stripes", text: "Stripes" },
@@ -20,26 +20,25 @@ const SOURCES = [
 /** Where the levels of a measure usually lie. */
 const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
 
-/** Form of a fragility; the records are looked at again at every visit. */
+/** Form of a fragility. */
 export const FragilityQuestion = ({ app, question, visits }) => {
   const { families, measures } = app.info;
   const chosen = useSignal({
     kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: "pga", state: 0.5,
   });
   const { kind, source, measure } = chosen.value;
-  const records = useMemo(() => recordChoice(app), []);
+  const records = useRef(null);
   const measured = measures.find(({ name }) => name === measure);
   const levels = useMemo(() => {
     const [from, to] = USUAL[measure] ?? [1, 12];
     return { from, to, count: 12 };
   }, [measure]);
-  useEffect(() => void (source === "records" && records.refresh()), [source, visits]);
   const take = (key) => (value) => (chosen.value = { ...chosen.value, [key]: value });
   const choice = (key, label, options) => html`
     <${Choice} label=${label} options=${options} value=${told(chosen.value[key], take(key))} />`;
   const field = (make, key, label, more) => html`
     <${Kept} make=${make} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
-  question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records) };
+  question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records.current) };
   return html`<div class="question">
     ${field(segmented, "kind", "Analysis", { options: ANALYSES })}
     ${field(segmented, "source", "Motions", { options: SOURCES })}
@@ -48,7 +47,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
       ${field(numberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
       ${field(numberField, "seed", "Seed", { min: 0, step: 1 })}
     </div>
-    <${Made} node=${records.node} hidden=${source !== "records"} />
+    <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
     ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
       [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
@@ -62,7 +61,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
 const tablesOf = (inputs, { kind, source, family, count, seed, measure, state }, levels, records) => {
   if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
   const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
-  const motions = source === "synthetic" ? [set] : records.tables();
+  const motions = source === "synthetic" ? [set] : records();
   const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: rangeOf(levels) }) };
   return { kind, job: { body: inputs.body, motions, fragility } };
 };

@@ -1,51 +1,61 @@
 /** The uploaded records, to be ticked for a study, told what they do not say, and deleted. */
-import { el, fill } from "/app/dom.js";
-import { button } from "/app/fields.js";
+import { html, useEffect, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
+import { Made } from "/parts/made.js";
 import { quantity } from "/app/format.js";
+import { useSignal } from "/questions/parts.js";
 import { allAnswered, answersOf, questionsOf } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
 
-/** List of the records; `tables` gives those that are ticked as motions of a job. */
-export const recordChoice = (app) => {
-  const list = el("ul", { class: "record-list", "aria-label": "Uploaded records" });
-  const words = el("p", { class: "quiet", "aria-live": "polite" });
-  const node = el("div", { class: "question", "data-testid": "record-choice" }, words, list);
-  const rows = new Map();
-
-  const count = () => {
-    const ticked = [...rows.values()].filter((row) => row.ticked()).length;
-    fill(words, rows.size ? `${ticked} of ${rows.size} records are taken.` : EMPTY);
+/** List of the records, read at every visit; `taken.current()` gives those that are ticked as motions of a job. */
+export const RecordChoice = ({ app, taken, visits, hidden }) => {
+  const [stored, looked, left, refused] = [useSignal([]), useSignal({}), useSignal(new Set()), useSignal("")];
+  const look = async (record) => {
+    const told = toldOf(record);
+    const { format, units, time_step } = told;
+    const seen = await app.call(`records/${record}`, { query: { format, units, time_step } }).then(
+      (found) => ({ found, told, missing: (found.needs ?? []).filter((one) => told[one.name || one] === undefined) }),
+      (error) => ({ refused: error.message }),
+    );
+    looked.value = { ...looked.value, [record]: seen };
   };
   const refresh = async () => {
     try {
       const answer = await app.call("records");
-      const stored = answer.records ?? answer;
-      const there = new Set(stored.map(({ record }) => record));
-      for (const record of [...rows.keys()]) if (!there.has(record)) rows.delete(record);
-      const fresh = stored.filter(({ record }) => !rows.has(record));
-      for (const one of fresh) rows.set(one.record, rowOf(app, one, count, gone));
-      fill(list, ...stored.map(({ record }) => rows.get(record).node));
-      count();
-      for (const { record } of stored) await rows.get(record)?.look();
+      stored.value = answer.records ?? answer;
+      refused.value = "";
+      for (const { record } of stored.value) await look(record);
     } catch (error) {
-      fill(words, error.message);
+      refused.value = error.message;
     }
   };
+  useEffect(() => void (hidden || refresh()), [hidden, visits]);
+  const isTicked = ({ record }) => looked.value[record]?.missing?.length === 0 && !left.value.has(record);
+  const ticked = stored.value.filter(isTicked);
+  taken.current = () => {
+    if (!stored.value.length) throw new Error(EMPTY);
+    if (!ticked.length) throw new Error("No record is ticked: tick at least one.");
+    return together(ticked.map(({ record }) => ({ records: [record], ...toldOf(record) })));
+  };
+  const tick = (record, on) => {
+    const next = new Set(left.value);
+    if (on) next.delete(record);
+    else next.add(record);
+    left.value = next;
+  };
   const gone = (record) => {
-    rows.delete(record);
     forgetTold(record);
-    refresh();
-    list.querySelector("input, button")?.focus();
+    stored.value = stored.value.filter((one) => one.record !== record);
   };
-  const tables = () => {
-    const taken = [...rows.values()].filter((row) => row.ticked());
-    if (!rows.size) throw new Error(EMPTY);
-    if (!taken.length) throw new Error("No record is ticked: tick at least one.");
-    return together(taken.map((row) => row.table()));
-  };
-  return { node, refresh, tables };
+  return html`
+    <div class="question" data-testid="record-choice" hidden=${hidden}>
+      <p class="quiet" aria-live="polite">${refused.value
+        || (stored.value.length ? `${ticked.length} of ${stored.value.length} records are taken.` : EMPTY)}</p>
+      <ul class="record-list" aria-label="Uploaded records">${stored.value.map((one) => html`
+        <${Row} key=${one.record} app=${app} record=${one.record} name=${one.file_name} seen=${looked.value[one.record]}
+          ticked=${isTicked(one)} tick=${tick} look=${look} gone=${gone} />`)}</ul>
+    </div>`;
 };
 
 /** Records that were told the same stand in one table. */
@@ -58,72 +68,45 @@ const together = (tables) => {
   return [...found.values()];
 };
 
-const nameOf = (one) => one.name || one;
+const NOT_SEEN = {};
 
-const rowOf = (app, { record, file_name: name }, onChange, onGone) => {
-  const box = el("input", { type: "checkbox", checked: true, onchange: onChange });
-  const about = el("span", { class: "quiet" });
-  const asked = el("div", { class: "record-asked" });
-  let open = true;
-  let wanted = true;
-
-  const show = (found, told) => {
-    const missing = (found.needs ?? []).filter((one) => told[nameOf(one)] === undefined);
-    open = missing.length > 0;
-    box.disabled = open;
-    box.checked = !open && wanted;
-    fill(about, open ? "something must still be told:" : factsOf(found, told));
-    fill(asked, open ? form(found, missing, told) : null);
-    onChange();
-  };
-  const look = async () => {
-    const told = toldOf(record);
-    const { format, units, time_step } = told;
-    try {
-      show(await app.call(`records/${record}`, { query: { format, units, time_step } }), told);
-    } catch (error) {
-      box.checked = false;
-      box.disabled = true;
-      fill(about, error.message);
-      onChange();
-    }
-  };
-  const form = (found, missing, told) => {
-    const questions = questionsOf({ ...found, needs: missing }, app.info, told);
-    const take = async () => {
-      if (!allAnswered(questions)) return;
-      rememberTold({ record, ...told, ...answersOf(questions) });
-      await look();
-      (box.disabled ? asked.querySelector("input, select") : box)?.focus();
-    };
-    const go = button({ text: "Read it so", label: `Read ${name} so`, onClick: take });
-    return [...questions.map(({ field }) => field), go];
+const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) => {
+  const row = useRef(null);
+  const answered = useRef(false);
+  const { found, told, missing = [], refused } = seen;
+  const open = missing.length > 0;
+  const questions = useMemo(() => (open ? questionsOf({ ...found, needs: missing }, app.info, told) : []), [seen]);
+  useLayoutEffect(() => {
+    if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
+    answered.current = false;
+  }, [seen]);
+  const take = () => {
+    if (!allAnswered(questions)) return;
+    rememberTold({ record, ...told, ...answersOf(questions) });
+    answered.current = true;
+    look(record);
   };
   const remove = async () => {
     if (!window.confirm(`Delete \u201c${name}\u201d from this server?`)) return;
     try {
       await app.call(`records/${record}`, { method: "DELETE" });
       app.say(`${name} is deleted.`);
-      onGone(record);
+      (row.current.nextElementSibling ?? row.current.previousElementSibling)?.querySelector("button").focus();
+      gone(record);
     } catch (error) {
       app.say(error.message, "error");
     }
   };
-  box.addEventListener("change", () => (wanted = box.checked));
-  const node = el(
-    "li",
-    { class: "record-row" },
-    el("label", { class: "record-tick" }, box, el("span", {}, name)),
-    button({ text: "Delete", kind: "quiet", label: `Delete ${name}`, onClick: remove }),
-    about,
-    asked,
-  );
-  return {
-    node,
-    look,
-    ticked: () => box.checked && !box.disabled && !open,
-    table: () => ({ records: [record], ...toldOf(record) }),
-  };
+  return html`
+    <li ref=${row} class="record-row">
+      <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
+        onChange=${(event) => tick(record, event.target.checked)} /><span translate="no">${name}</span></label>
+      <button type="button" class="button quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete</button>
+      <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
+      ${open && html`<div class="record-asked">
+        ${questions.map(({ name: asked, field }) => html`<${Made} key=${asked} node=${field} />`)}
+        <button type="button" class="button" aria-label=${`Read ${name} so`} onClick=${take}>Read it so</button></div>`}
+    </li>`;
 };
 
 const factsOf = ({ components = [] }, { units, component, vertical }) => {
