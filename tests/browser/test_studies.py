@@ -251,6 +251,46 @@ def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any, until: Call
     expect(row).to_have_attribute("data-state", "done", timeout=120_000)
 
 
+FOCUS = """async () => {
+  const [{ html, render, signal }, { StudyList }] = await Promise.all(
+    ["/parts/preact.js", "/views/studies-list.js"].map((each) => import(each)));
+  const place = document.createElement("div");
+  document.querySelector("#view-studies").append(place);
+  const study = { id: "x", name: "running", kind: "stripes", state: "running", histories: 100, histories_done: 1 };
+  const all = signal([study]);
+  render(html`<${() => html`<${StudyList} studies=${all.value} acts=${{}} />`} />`, place);
+  const heard = [];
+  const told = async (more, first = []) => {
+    all.value = [...first, { ...study, ...more }];
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    heard.push([document.activeElement.textContent, place.querySelector("[data-testid=study-x] progress").value]);
+  };
+  place.querySelector("button:not([hidden])").focus();
+  await told({ histories_done: 50 });
+  await told({ histories_done: 60 }, [{ ...study, id: "y", name: "newer" }]);
+  await told({ histories_done: 70, state: "cancelled" });
+  await told({ histories_done: 70, state: "running" });
+  await told({ histories_done: 100, state: "done" });
+  render(null, place);
+  place.remove();
+  return heard;
+}"""
+
+
+def test_the_focus_stays_with_a_study(studies: Any) -> None:
+    """Neither progress nor a newer study takes the focus; where a button vanishes, the one in its place has it."""
+    assert studies.evaluate(FOCUS) == [
+        ["Cancel", 0.5], ["Cancel", 0.6], ["Resume", 0.7], ["Cancel", 0.7], ["Show result", 1.0],
+    ]  # fmt: skip
+
+
+def test_names_are_not_translated(studies: Any) -> None:
+    """A study's name stands in its row and over its result as it was given."""
+    launched_map(studies, "running", 4)
+    names = studies.locator("#view-studies [translate=no]").filter(has_text="running")
+    expect(names).to_have_count(2)
+
+
 def test_exports(studies: Any, tmp_path: Path) -> None:
     """Every file of a finished map is saved, is not empty, and begins as its kind does."""
     launched_map(studies, "exports")

@@ -100,7 +100,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
   return html`
     <li ref=${row} class="record-row">
       <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
-        onChange=${(event) => tick(record, event.target.checked)} /><span translate="no">${name}</span></label>
+        onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
       <button type="button" class="button quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete</button>
       <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
       ${open && html`<div class="record-asked">

@@ -77,13 +77,13 @@ const Study = ({ study, onShow, acts }) => {
     ["Delete", acts.remove, !BUSY.includes(state)],
   ];
   // a button that was pressed may vanish: the one that took its place has the focus then
+  const focused = document.activeElement;
   useLayoutEffect(() => {
-    const focused = document.activeElement;
-    if (focused.hidden && row.current.contains(focused)) row.current.querySelector("button:not([hidden])")?.focus();
+    if (focused?.hidden && row.current.contains(focused)) row.current.querySelector("button:not([hidden])")?.focus();
   }, [state]);
   return html`
     <li ref=${row} class="study" data-testid=${`study-${study.id}`} data-state=${state}>
-      <div class="study-head"><strong translate="no">${name}</strong><span class="quiet">${KINDS[study.kind] || study.kind}</span></div>
+      <div class="study-head"><strong translate=${false}>${name}</strong><span class="quiet">${KINDS[study.kind] || study.kind}</span></div>
       <progress max="1" value=${study.histories ? (study.histories_done || 0) / study.histories : 0} hidden=${state === "done"}
         aria-label=${`Progress of ${name}`}></progress>
       <div class="study-line">

@@ -77,7 +77,7 @@ const Outcome = ({ app, shown, found, refused, chosen }) => {
   const Found = SHOW[shown.kind] ?? Counts;
   return html`
     <section class="card study-outcome">
-      <h2 ref=${heading} class="study-result-title" tabindex="-1" translate="no">${shown.name}</h2>
+      <h2 ref=${heading} class="study-result-title" tabindex="-1" translate=${false}>${shown.name}</h2>
       <div class="study-result" data-testid="study-result">
         ${refused ? html`<p class="error-text">${refused}</p>` : !found ? html`<p class="quiet">Reading the result \u2026</p>` : html`
           ${found.contact && html`<p class="note" data-testid="study-contact">${found.contact}</p>`}
