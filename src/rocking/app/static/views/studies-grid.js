@@ -32,8 +32,7 @@ export const axisOf = ({ values }) => {
     log,
     share: (value) => (place(value) - edges[0]) / span,
     edges: edges.map((edge) => (edge - edges[0]) / span),
-    low: log ? Math.exp(edges[0]) : edges[0],
-    high: log ? Math.exp(edges.at(-1)) : edges.at(-1),
+    value: (share) => (log ? Math.exp : Number)(edges[0] + share * span),
   };
 };
 
@@ -54,13 +53,23 @@ export const ticksOf = ({ low, high, log }) => {
   );
 };
 
-/** The cell under the middle of each of some dots along an axis. */
-const cellsOf = (edges, dots) => {
+/** The cell under the middle of each of some dots along the part of an axis that is seen. */
+const cellsOf = (edges, dots, [from, to]) => {
   let k = 0;
   return Array.from({ length: dots }, (_, dot) => {
-    while (k < edges.length - 2 && edges[k + 1] <= (dot + 0.5) / dots) k += 1;
+    const share = from + ((dot + 0.5) / dots) * (to - from);
+    while (k < edges.length - 2 && edges[k + 1] <= share) k += 1;
     return k;
   });
+};
+
+const WHOLE = [0, 1];
+const LEAST = 4; // cells across, however close one looks
+
+/** Some length of an axis around a place, within it. */
+const around = (place, length) => {
+  const from = Math.min(Math.max(place - length / 2, 0), 1 - length);
+  return [from, from + length];
 };
 
 /** A colour "#rrggbb" as a dot of an image has it, the least byte first. */
@@ -69,27 +78,39 @@ const wordOf = (paint) => {
   return (0xff000000 | ((rgb & 0xff) << 16) | (rgb & 0xff00) | (rgb >> 16)) >>> 0;
 };
 
-/** Painter of a map: draw(paintOf, [kept, aim], lines) and cellAt(event). */
+/** Painter of a map: draw(paintOf, [kept, aim], lines, drag), cellAt(event), and what part of it is seen. */
 export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
   const up = axisOf(y);
   let size = { width: 300, height: 300 };
   let dense = 1;
   let painted = {};
+  let seen = [WHOLE, WHOLE]; // shares of the axes
+  const still = document.createElement("canvas"); // all but what follows the pointer: drawn once, not at every move
 
   const fit = () => {
     const width = Math.max(240, canvas.parentElement.clientWidth);
     size = { width, height: Math.round(Math.min(0.78 * width, 520)) };
     dense = window.devicePixelRatio || 1;
     painted = {};
-    canvas.width = Math.round(size.width * dense);
-    canvas.height = Math.round(size.height * dense);
+    for (const each of [canvas, still]) {
+      each.width = Math.round(size.width * dense);
+      each.height = Math.round(size.height * dense);
+      each.getContext("2d").setTransform(dense, 0, 0, dense, 0, 0);
+    }
     canvas.style.height = `${size.height}px`;
-    canvas.getContext("2d").setTransform(dense, 0, 0, dense, 0, 0);
   };
   const inner = () => ({ w: size.width - LEFT - RIGHT, h: size.height - TOP - BOTTOM });
-  const xAt = (share) => LEFT + share * inner().w;
-  const yAt = (share) => TOP + (1 - share) * inner().h;
+  const part = (share, [from, to]) => (share - from) / (to - from);
+  const xAt = (share) => LEFT + part(share, seen[0]) * inner().w;
+  const yAt = (share) => TOP + (1 - part(share, seen[1])) * inner().h;
+  const look = (...parts) => {
+    const least = [across, up].map(({ edges }) => Math.min(1, LEAST / (edges.length - 1)));
+    seen = parts.map(([from, to], k) => around((from + to) / 2, Math.min(1, Math.max(least[k], to - from))));
+    painted = {};
+  };
+  const middle = (axis, k) => (axis.edges[k] + axis.edges[k + 1]) / 2;
+  const placeOf = ({ ix, iy }) => [middle(across, ix), middle(up, iy)];
 
   const cell = (pen, ix, iy, grow = 0) => {
     const left = xAt(across.edges[ix]);
@@ -109,7 +130,7 @@ export const createGrid = (canvas, x, y) => {
     if (!(wide > 0 && high > 0)) return null;
     const image = pen.createImageData(wide, high);
     const dotsOf = new Uint32Array(image.data.buffer);
-    const [columns, rows] = [cellsOf(across.edges, wide), cellsOf(up.edges, high).reverse()];
+    const [columns, rows] = [cellsOf(across.edges, wide, seen[0]), cellsOf(up.edges, high, seen[1]).reverse()];
     rows.forEach((iy, row) => columns.forEach((ix, column) => {
       dotsOf[row * wide + column] = wordOf(paintOf(ix, iy));
     }));
@@ -120,18 +141,19 @@ export const createGrid = (canvas, x, y) => {
     pen.fillStyle = colour("--ink-soft");
     pen.strokeStyle = colour("--line-strong");
     pen.lineWidth = 1;
+    const ticks = ({ value, log }, [from, to]) => ticksOf({ log, low: value(from), high: value(to) });
     pen.font = "12px system-ui, sans-serif";
     pen.strokeRect(LEFT, TOP, inner().w, inner().h);
     pen.textAlign = "center";
     pen.textBaseline = "top";
-    for (const value of ticksOf(across)) {
+    for (const value of ticks(across, seen[0])) {
       pen.fillRect(xAt(across.share(value)), TOP + inner().h, 1, 4);
       pen.fillText(number(value), xAt(across.share(value)), TOP + inner().h + 7);
     }
     pen.fillText(words(x, size.width), LEFT + inner().w / 2, size.height - 20);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    for (const value of ticksOf(up)) {
+    for (const value of ticks(up, seen[1])) {
       pen.fillRect(LEFT - 4, yAt(up.share(value)), 4, 1);
       pen.fillText(number(value), LEFT - 8, yAt(up.share(value)));
     }
@@ -143,15 +165,41 @@ export const createGrid = (canvas, x, y) => {
     pen.restore();
   };
 
-  const draw = (paintOf, [kept, aim], lines = []) => {
-    const pen = canvas.getContext("2d");
+  const within = (pen, drawing) => {
+    pen.save();
+    pen.beginPath();
+    pen.rect(LEFT - 2, TOP - 2, inner().w + 4, inner().h + 4);
+    pen.clip();
+    drawing();
+    pen.restore();
+  };
+
+  const drawStill = (paintOf, lines) => {
+    const pen = still.getContext("2d");
     pen.clearRect(0, 0, size.width, size.height);
-    if (painted.by !== paintOf) painted = { by: paintOf, image: imageOf(pen, paintOf) };
-    if (painted.image) pen.putImageData(painted.image, Math.ceil(LEFT * dense), Math.ceil(TOP * dense));
-    drawLines(pen, lines);
+    const image = imageOf(pen, paintOf);
+    if (image) pen.putImageData(image, Math.ceil(LEFT * dense), Math.ceil(TOP * dense));
+    within(pen, () => drawLines(pen, lines));
     drawAxes(pen);
-    if (aim && aim !== kept) frame(pen, aim, 1.25);
-    if (kept) frame(pen, kept, 3);
+    painted = { by: paintOf, lines };
+  };
+
+  const draw = (paintOf, [kept, aim], lines = [], drag = null) => {
+    const pen = canvas.getContext("2d");
+    if (painted.by !== paintOf || painted.lines !== lines) drawStill(paintOf, lines);
+    pen.clearRect(0, 0, size.width, size.height);
+    pen.drawImage(still, 0, 0, size.width, size.height);
+    within(pen, () => {
+      if (aim && aim !== kept) frame(pen, aim, 1.25);
+      if (kept) frame(pen, kept, 3);
+      if (drag) outline(pen, drag);
+    });
+  };
+
+  const outline = (pen, [from, to]) => {
+    pen.lineWidth = 1.5;
+    pen.strokeStyle = colour("--focus");
+    pen.strokeRect(xAt(from[0]), yAt(from[1]), xAt(to[0]) - xAt(from[0]), yAt(to[1]) - yAt(from[1]));
   };
 
   const frame = (pen, { ix, iy }, thick) => {
@@ -172,15 +220,32 @@ export const createGrid = (canvas, x, y) => {
     }
   };
 
-  const indexOf = (edges, share) => edges.findIndex((edge, k) => k > 0 && share <= edge) - 1;
-  const cellAt = (event) => {
+  /** Shares of the axes under the pointer, on the map or beside it. */
+  const sharesAt = (event) => {
     const box = canvas.getBoundingClientRect();
     const right = (event.clientX - box.left - LEFT) / inner().w;
     const high = 1 - (event.clientY - box.top - TOP) / inner().h;
-    if (right < 0 || right > 1 || high < 0 || high > 1) return null;
+    return [right, high].map((share, k) => seen[k][0] + share * (seen[k][1] - seen[k][0]));
+  };
+  const indexOf = (edges, share) => edges.findIndex((edge, k) => k > 0 && share <= edge) - 1;
+  const cellAt = (event) => {
+    const [right, high] = sharesAt(event);
+    if ([right, high].some((share, k) => share < seen[k][0] || share > seen[k][1])) return null;
     return { ix: Math.max(0, indexOf(across.edges, right)), iy: Math.max(0, indexOf(up.edges, high)) };
   };
-  return { fit, draw, cellAt };
+  /** Look closer at a cell by a factor, or from further away below 1. */
+  const closer = (aim, factor) => {
+    const places = aim ? placeOf(aim) : seen.map(([from, to]) => (from + to) / 2);
+    look(...places.map((place, k) => around(place, Math.min(1, (seen[k][1] - seen[k][0]) / factor))));
+  };
+  /** Move what is seen so far that a cell is in it. */
+  const reveal = (aim) => {
+    const places = placeOf(aim);
+    if (places.every((place, k) => place >= seen[k][0] && place <= seen[k][1])) return;
+    look(...places.map((place, k) => around(place, seen[k][1] - seen[k][0])));
+  };
+  const isWhole = () => seen.every(([from, to]) => to - from > 1 - 1e-9);
+  return { fit, draw, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
 };
 
 const words = (axis, room) => {
