@@ -3,7 +3,11 @@
 import base64
 import json
 import math
+import socket
+import subprocess
+import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -83,3 +87,71 @@ def settled(page: Any, name: str, expected: float, column: int = 0, rel: float =
             return
         page.wait_for_timeout(20)
     raise AssertionError(f"{name}: {seen}, expected {expected}")
+
+
+SPACE_WAIT = 120_000
+
+
+def scan(folder: Path, *, hole: bool = True, faces: int = 768) -> Path:
+    """Write a leaning block without symmetry, in mm, with a hole if wanted; finer with more faces."""
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.creation.box((400.0, 250.0, 1200.0))
+    while len(mesh.faces) < faces:
+        mesh = mesh.subdivide()
+    points = mesh.vertices.copy()
+    points[:, 2] += 600.0
+    points[:, 0] = points[:, 0] * (1.0 - points[:, 2] / 3000.0) + 0.04 * points[:, 2]
+    points[:, 1] += 0.02 * points[:, 2]
+    path = folder / "leaning block.stl"
+    trimesh.Trimesh(points, mesh.faces[1:] if hole else mesh.faces, process=False).export(path)
+    return path
+
+
+def scan_sent(section: Any, name: str) -> None:
+    """Wait until a file has arrived."""
+    expect = pytest.importorskip("playwright.sync_api").expect
+    expect(section.get_by_role("list", name="Files")).to_contain_text(name)
+
+
+def asked_in_space(page: Any, what: str, path: Path | None = None) -> Any:
+    """Send a scan, ask, and wait for the picture of the answer."""
+    expect = pytest.importorskip("playwright.sync_api").expect
+    section = page.locator("#view-space")
+    if path:
+        section.get_by_label("Drop a scan here, or").set_input_files(path)
+        scan_sent(section, "leaning-block.stl")
+        section.get_by_label("Unit of the file").select_option("mm")
+    section.get_by_label("Asked is").select_option(what)
+    section.get_by_role("button", name="Ask", exact=True).click()
+    outcome = section.get_by_test_id("outcome")
+    expect(outcome.get_by_role("heading", level=2)).to_contain_text(
+        {"equilibria": "How it can stand", "cor": "Its edges", "simulate": "How it moves"}[what]
+    )
+    expect(outcome).to_have_attribute("data-state", "done", timeout=SPACE_WAIT)
+    expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true", timeout=SPACE_WAIT)
+    return outcome
+
+
+class OwnServer:
+    """A server on a port of its own that can be killed and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self._command = [
+            sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", str(port), "--data",
+            str(folder),
+        ]  # fmt: skip
+        self.start()
+
+    def start(self) -> None:
+        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+        assert self._process.stdout is not None
+        self.told = json.loads(self._process.stdout.readline())
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        assert self._process.stdout is not None
+        self._process.stdout.close()

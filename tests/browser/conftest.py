@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import link
+from browser_pages import OwnServer, link
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -210,3 +210,11 @@ def answered(open_page: Callable[..., Any]) -> Callable[..., Any]:
         return page
 
     return opened
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[OwnServer]:
+    """Serve, and kill in the end."""
+    server = OwnServer(tmp_path / "data")
+    yield server
+    server.kill()

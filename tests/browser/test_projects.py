@@ -1,11 +1,7 @@
 """Projects in the page: saved by themselves, with a way back, in agreement with other tabs and after a restart."""
 
-import json
 import os
-import socket
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -251,40 +247,7 @@ def test_no_bar_at_any_width(open_page: Callable[..., Any], shot: Callable[..., 
     assert dialog.evaluate("node => node.scrollWidth - node.clientWidth") <= 0
 
 
-class OwnServer:
-    """A server on a port of its own that can be killed and started again."""
-
-    def __init__(self, folder: Path) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        self._command = [
-            sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", str(port), "--data",
-            str(folder),
-        ]  # fmt: skip
-        self.start()
-
-    def start(self) -> None:
-        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
-        assert self._process.stdout is not None
-        self.told = json.loads(self._process.stdout.readline())
-
-    def kill(self) -> None:
-        self._process.kill()
-        self._process.wait()
-        assert self._process.stdout is not None
-        self._process.stdout.close()
-
-
-@pytest.fixture
-def own(tmp_path: Path) -> Iterator[OwnServer]:
-    """Serve, and kill in the end."""
-    server = OwnServer(tmp_path / "data")
-    yield server
-    server.kill()
-
-
-def test_a_server_that_is_killed_loses_nothing(browser: Any, own: OwnServer) -> None:
+def test_a_server_that_is_killed_loses_nothing(browser: Any, own: Any) -> None:
     """Killed again and again, with changes before and while it is gone: signed in still, and all of it is there."""
     context = browser.new_context()
     page = context.new_page()

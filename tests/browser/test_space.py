@@ -7,49 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import link
+from browser_pages import SPACE_WAIT as LONG
+from browser_pages import asked_in_space as asked
+from browser_pages import link, scan
+from browser_pages import scan_sent as sent
 
 trimesh = pytest.importorskip("trimesh")
 expect = pytest.importorskip("playwright.sync_api").expect
-LONG = 120_000
 LIBRARY = "/vendor/three/"
-
-
-def scan(folder: Path, *, hole: bool = True, faces: int = 768) -> Path:
-    """Write a leaning block without symmetry, in mm, with a hole if wanted; finer with more faces."""
-    mesh = trimesh.creation.box((400.0, 250.0, 1200.0))
-    while len(mesh.faces) < faces:
-        mesh = mesh.subdivide()
-    points = mesh.vertices.copy()
-    points[:, 2] += 600.0
-    points[:, 0] = points[:, 0] * (1.0 - points[:, 2] / 3000.0) + 0.04 * points[:, 2]
-    points[:, 1] += 0.02 * points[:, 2]
-    path = folder / "leaning block.stl"
-    trimesh.Trimesh(points, mesh.faces[1:] if hole else mesh.faces, process=False).export(path)
-    return path
-
-
-def sent(section: Any, name: str) -> None:
-    """Wait until a file has arrived."""
-    expect(section.get_by_role("list", name="Files")).to_contain_text(name)
-
-
-def asked(page: Any, what: str, path: Path | None = None) -> Any:
-    """Send a scan, ask, and wait for the picture of the answer."""
-    section = page.locator("#view-space")
-    if path:
-        section.get_by_label("Drop a scan here, or").set_input_files(path)
-        sent(section, "leaning-block.stl")
-        section.get_by_label("Unit of the file").select_option("mm")
-    section.get_by_label("Asked is").select_option(what)
-    section.get_by_role("button", name="Ask", exact=True).click()
-    outcome = section.get_by_test_id("outcome")
-    expect(outcome.get_by_role("heading", level=2)).to_contain_text(
-        {"equilibria": "How it can stand", "cor": "Its edges", "simulate": "How it moves"}[what]
-    )
-    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
-    expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true", timeout=LONG)
-    return outcome
 
 
 def seen(page: Any) -> Any:
