@@ -27,12 +27,15 @@ def held(page: Any) -> dict[str, float]:
     """Return what a page holds once all that can be forgotten is: used heap [byte], nodes and listeners."""
     page.wait_for_load_state("networkidle")
     session = page.context.new_cdp_session(page)
-    for _ in range(3):
+    looks = []
+    for _ in range(3):  # the least of three: what is just being drawn is not held
+        page.wait_for_timeout(100)
         session.send("HeapProfiler.collectGarbage")
-    heap = session.send("Runtime.getHeapUsage")["usedSize"]
-    counted = session.send("Memory.getDOMCounters")
+        counted = session.send("Memory.getDOMCounters")
+        heap = session.send("Runtime.getHeapUsage")["usedSize"]
+        looks.append({"heap": heap, "nodes": counted["nodes"], "listeners": counted["jsEventListeners"]})
     session.detach()
-    return {"heap": heap, "nodes": counted["nodes"], "listeners": counted["jsEventListeners"]}
+    return {name: min(look[name] for look in looks) for name in looks[0]}
 
 
 def opened(page: Any, step: str) -> None:
@@ -84,7 +87,8 @@ def grown(page: Any, turns: Iterator[None], many: int = MANY) -> dict[str, float
 def test_it_does_not_grow(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """Steps, sliders, answers, Compare, In space and undo, again and again: neither nodes nor listeners, nor the heap.
 
-    In the first hundred interactions a browser still compiles what is used often: there the heap may grow by a tenth.
+    The heap has the code in it that a browser still compiles of what is used often: it may grow by a tenth, which over
+    800 interactions is 1.4 kB each, where one answer that is kept has some 100 kB.
     """
     page = open_page(link())
     opened(page, "space")
@@ -92,7 +96,7 @@ def test_it_does_not_grow(open_page: Callable[..., Any], tmp_path: Path) -> None
     found = grown(page, interactions(page, scanned=True))
     assert found["nodes"] < 0.02, found
     assert found["listeners"] < 0.02, found
-    assert found["heap"] < (0.05 if MANY >= 1000 else 0.1), found
+    assert found["heap"] < 0.1, found
 
 
 @pytest.mark.timed

@@ -1,4 +1,4 @@
-"""A map of a million cells: shown, pointed at and looked into without a wait."""
+"""A map of a million cells (a quarter of them without ROCKING_CAMPAIGN): shown, pointed at and looked into."""
 
 import os
 import statistics
@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-CELLS = 1000
-MODELS = ["ked", "housner"] if os.environ.get("ROCKING_CAMPAIGN") else ["ked"]  # a server takes two million histories
+CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
+CELLS = 1000 if CAMPAIGN else 500  # along each axis
+MODELS = ["ked", "housner"] if CAMPAIGN else ["ked"]  # a server takes two million histories
 JOB = {
     "campaign": {"name": "a million cells", "kind": "overturning-map"},
     "body": [{"units": "m", "trapezoid": {"base": 0.5, "top": 0.3, "height": 1.8, "lean": 0.1}}],
