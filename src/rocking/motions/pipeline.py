@@ -16,6 +16,7 @@ from rocking.motions.intensity import MEASURES, measure
 from rocking.motions.motion import GroundMotion, checked_motion
 
 Steps = list[tuple[str, dict[str, Any]]]
+LONGEST_PADDING = 3600.0  # [s] twelve times a record of 300 s, which is long: more is a wrong unit, and hours of work
 _WITH_UNIT = re.compile(rf"([0-9]*[.]?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*({'|'.join(map(re.escape, ACCELERATION_UNITS))})")
 
 
@@ -91,7 +92,7 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
         taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor,
         scale; keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3``
         [m/s2] or ``scale:pga=0.3g``, ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5`` [s],
-        ``response:stations=FILE.xml,low=0.02,high=40`` [Hz].
+        ``response:stations=FILE.xml,low=0.02,high=40`` [Hz]. ``pad`` adds at most 3600 s at each end.
 
     Returns
     -------
@@ -171,6 +172,8 @@ def _step(words: str) -> tuple[str, dict[str, Any]]:
         raise InvalidValueError(f"step {name} needs {', '.join(missing)}")
     for key in keys.keys() - known.keys():
         measure(key).check_grows()
+    for key, value in keys.items() if name == "pad" else ():
+        checks.within(f"{key} of step pad", value, 0.0, LONGEST_PADDING, unit="s", hint="milliseconds, or samples?")
     return name, keys
 
 

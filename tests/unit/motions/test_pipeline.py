@@ -91,6 +91,16 @@ def test_chains_that_make_no_sense_are_refused(words, message):
         processed(X, words)
 
 
+@pytest.mark.parametrize(
+    "words", ["pad:before=1e5", "mean; pad:before=0,after=3600.1", "pad:before=-1", "pad:before=nan"]
+)
+def test_a_padding_that_is_a_slip_is_refused_when_it_is_read(words):
+    """Before any step is taken, with the range; an hour at both ends is still taken."""
+    with pytest.raises(InvalidValueError, match=r"(before|after) of step pad must be (in \[0, 3600\]|finite)"):
+        steps_of(words)
+    assert len(processed(X, "pad:before=3600")) == len(X) + 2 * 360_000
+
+
 def test_every_step_has_its_words():
     """Every step can be written, with its needed keys, and an empty chain changes nothing."""
     assert [name for name in STEPS if not STEPS[name].__doc__] == []
