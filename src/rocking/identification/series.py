@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import state_space
@@ -13,8 +14,8 @@ from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
 from rocking.identification.state_space import SHARED, Path
 
-_STEP = 1e-5
-_MOST = 3000
+_STEP = 1e-7  # of ln of the speed
+_MOST, _LOOKED_AT = 3000, 20_000
 _FEWEST, _ROUNDS = 3, 3
 _NOISES = 6.0  # below so many standard deviations of the noise nothing turns any more
 
@@ -50,26 +51,33 @@ class SampledSeries:
         inner = path.times[:, 1:-1]
         k = (row.time[None, :, None] >= inner[:, None, :]).sum(axis=2)
         g = np.arange(len(k))[:, None]
-        p, y, alpha = path.p[g, k], path.y[g, k], path.alpha[g, k]
+        p, alpha = path.p[g, k], path.alpha[g, k]
         since = p * (row.time - path.times[g, k])
         sign = 1.0 - 2.0 * self.sides[k]
 
-        def value_at(y: FloatArray, alpha: FloatArray) -> FloatArray:
-            rotation, speed = state_space.rotation(since, y, alpha)
-            return rotation if row.kind == "rotation" else p * speed
+        def seen(y: FloatArray) -> tuple[FloatArray, FloatArray]:
+            return state_space.rotation(since, y[g, k], alpha, state_space.duration(y, path.alpha)[g, k])
 
-        rotation, speed = state_space.rotation(since, y, alpha)
-        of_rotation = row.kind == "rotation"
-        value = rotation if of_rotation else p * speed
-        by_since = speed if of_rotation else -p * np.sin(alpha - rotation)
-        by_y = (value_at(y * (1.0 + _STEP), alpha) - value_at(y * (1.0 - _STEP), alpha)) / (2.0 * _STEP)
-        by_alpha = (value_at(y, alpha + _STEP) - value_at(y, alpha - _STEP)) / (2.0 * _STEP)
+        angle, speed = seen(path.y)
+        fall = np.sin(alpha - angle)
+        angle_by_y, speed_by_y = (
+            (b - a) / _STEP for a, b in zip((angle, speed), seen(path.y * (1.0 + _STEP)), strict=True)
+        )
+        # another slenderness angle is a shift in time and another speed: all disturbances obey one linear equation
+        begun = (2.0 * np.sin(0.5 * path.alpha) * path.y)[g, k]
+        mixed = (np.cos(0.5 * path.alpha) * (1.0 / path.y - path.y))[g, k]
+        if row.kind == "rotation":
+            value, by_since, by_y = angle, speed, angle_by_y
+            by_alpha = 1.0 - (speed + mixed * angle_by_y) / begun
+        else:
+            value, by_since, by_y = p * speed, -p * fall, p * speed_by_y
+            by_alpha = p * (fall - mixed * speed_by_y) / begun
         slopes = (
             by_since[..., None] * (since[..., None] * path.p_slopes - p[..., None] * path.time_slopes[g, k])
             + by_y[..., None] * path.y_slopes[g, k]
             + by_alpha[..., None] * path.alpha_slopes[g, k]
         )
-        if not of_rotation:
+        if row.kind != "rotation":
             slopes = slopes + value[..., None] * path.p_slopes
         line = np.linalg.qr(np.column_stack([np.ones(row.time.size), row.time - row.time.mean()]))[0]
         residual = row.values - sign * value
@@ -135,16 +143,15 @@ def _away(row: Row, impacts: FloatArray, scale: float) -> Row:
 
 def impacts_of(series: RotationSeries) -> tuple[FloatArray, Foot]:
     """Return about when the body hits the ground, and the foot on which it stands after the first impact."""
-    time = series.time
-    if series.rotation is not None:
-        values = series.rotation - _middle(series.rotation)
-    else:
+    time, values, degree = series.time, series.rotation, 1
+    if values is None:  # its integral, in which an offset and a drift are a line and a parabola
         turning = np.asarray(series.angular_velocity)
-        speed = turning - np.median(turning)
-        values = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
-        values = values - _middle(values)
+        steps = 0.5 * (turning[1:] + turning[:-1]) * np.diff(time)
+        values, degree = np.concatenate([[0.0], np.cumsum(steps)]), 2
+        values = values - np.median(turning) * (time - time[0])
     noise = float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6.0))
     least = max(_NOISES * noise, 0.01 * float(np.ptp(values)))
+    values = _about_middle(time, values, degree, least)
     ends = _changes(values, least)
     if ends.size == 0:
         return np.zeros(0), "right"
@@ -164,15 +171,29 @@ def _changes(values: FloatArray, least: float) -> IntArray:
     return np.column_stack([beyond[turns], beyond[turns + 1]])
 
 
-def _middle(values: FloatArray) -> float:
-    """About the rotation at which the body stands on both feet: neighbouring peaks are on either side of it."""
-    centred = values - np.median(values)
-    ends = _changes(centred, 0.1 * float(np.abs(centred).max()))
-    if len(ends) < 4:
-        return float(np.median(values))
-    pieces = [centred[a:b] for (_, a), (b, _) in zip(ends[:-1], ends[1:] + 1, strict=True)]
-    tops = np.array([piece[np.argmax(np.abs(piece))] for piece in pieces])
-    return float(np.median(values) + np.median(0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1]))
+def _about_middle(time: FloatArray, values: FloatArray, degree: int, least: float) -> FloatArray:
+    """Take away a polynomial through where the body stands on both feet: halfway between neighbouring peaks."""
+    peaks = _peaks(values, least)
+    if peaks.size < 4:
+        return np.asarray(values - np.median(values))
+    tops = values[peaks]
+    halfway, at = 0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1], time[peaks[1:-1]]
+    weights = 1.0 / (np.abs(tops[2:] - tops[1:-1]) + np.abs(tops[1:-1] - tops[:-2]))  # large peaks lie far off
+    return np.asarray(values - Polynomial.fit(at, halfway, min(degree, at.size - 1), w=weights)(time))
+
+
+def _peaks(values: FloatArray, least: float) -> IntArray:
+    """Where it turns, alternately up and down, each time by more than `least`."""
+    found, way, low, high = [], 0, 0, 0
+    for k in range(0, values.size, int(np.ceil(values.size / _LOOKED_AT))):
+        low, high = (k if values[k] < values[low] else low), (k if values[k] > values[high] else high)
+        if way <= 0 and values[k] - values[low] > least:
+            found.append(low)
+            way, high = 1, k
+        elif way >= 0 and values[high] - values[k] > least:
+            found.append(high)
+            way, low = -1, k
+    return np.array(found[1:], dtype=np.int64)  # the first is where it began
 
 
 def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowledge, rows: tuple[Row, ...]) -> float:

@@ -62,11 +62,13 @@ def peak(y: FloatArray, alpha: FloatArray) -> FloatArray:
     return np.asarray(alpha - 2.0 * np.arcsin(s * np.sqrt(1.0 - y * y)))  # Eq. 266
 
 
-def rotation(since: FloatArray, y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return rotation [rad] and angular velocity over p [-]; since: p times the time since the impact."""
+def rotation(
+    since: FloatArray, y: FloatArray, alpha: FloatArray, until: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Return rotation [rad] and angular velocity over p [-]; p times the time since the impact, and until the next."""
     low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # of half the angle at the highest point
     m = 1.0 - low * low
-    sn, _, dn, _ = ellipj(since - 0.5 * duration(y, alpha), m)
+    sn, _, dn, _ = ellipj(since - 0.5 * (duration(y, alpha) if until is None else until), m)
     return alpha - 2.0 * np.arcsin(np.minimum(low / dn, 1.0)), -2.0 * low * np.sqrt(m) * sn / dn  # Eq. 267
 
 
@@ -96,6 +98,7 @@ clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
 _BELOW_OVERTURNING = 1.0 - 1e-9
 _ROUNDING = 1e-14
 _STEEPEST = 1.5  # slenderness angle [rad]
+_PART = 128  # rows of a product small enough that a library of linear algebra starts no threads, which wait and burn
 _CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
 
 
@@ -266,7 +269,8 @@ def laplace(
     for _ in range(steps):
         value, residual, slopes, times, time_slopes = (each[active] for each in best)
         turned = slopes.transpose(0, 2, 1)
-        hessian = eye + turned @ slopes  # Eq. 271
+        parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
+        hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
         gradient = turned @ residual[..., None] - u[active, :, None]
         scale = damping[active, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
         step = np.linalg.solve(hessian + scale, gradient)
