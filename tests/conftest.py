@@ -1,5 +1,6 @@
 """What all tests share: property tests that draw the same examples on every run, the folder of real records."""
 
+import gc
 import os
 import signal
 from collections.abc import Callable
@@ -14,8 +15,16 @@ collect_ignore_glob = ["verification/durability/*", "regression/[cdg]*.py"]
 # Shells start what runs in their background with Ctrl-C ignored; tests press it, in processes of their own too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+gc.set_threshold(20_000, 20, 20)  # cycles are looked for seldom: a fifteenth of the time of all tests
+
 settings.register_profile("rocking", derandomize=True, deadline=None, max_examples=40, database=None)
 settings.load_profile("rocking")
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was imported out of every search for cycles."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

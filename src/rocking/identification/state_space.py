@@ -99,6 +99,7 @@ _BELOW_OVERTURNING = 1.0 - 1e-9
 _ROUNDING = 1e-14
 _STEEPEST = 1.5  # slenderness angle [rad]
 _PART = 128  # rows of a product small enough that a library of linear algebra starts no threads, which wait and burn
+_PATIENCE, _FAR_BEHIND = 12, 100.0  # steps, ln of the probability density
 _CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
 
 
@@ -264,9 +265,12 @@ def laplace(
     """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
     u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
-    damping, active = np.zeros(len(u)), np.arange(len(u))
+    damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
     eye = np.eye(model.size)
-    for _ in range(steps):
+    for taken in range(steps):
+        if taken == _PATIENCE:  # what is far behind by then weighs nothing
+            ln = -0.5 * best[0] - observer.count * np.log(noise)
+            active = active[ln[active] > ln.max() - _FAR_BEHIND]
         value, residual, slopes, times, time_slopes = (each[active] for each in best)
         turned = slopes.transpose(0, 2, 1)
         parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
@@ -291,6 +295,7 @@ def laplace(
         done = (np.abs(value - found[0][pick]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
         eased = np.where(damping[active] > 0.1, 0.1 * damping[active], 0.0)
         damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 0.1))
+        converged[active[done]] = True
         active = active[~done]
         if not active.size:
             break
@@ -300,7 +305,6 @@ def laplace(
     half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
     evidence = -0.5 * value - half - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
     inverse = np.linalg.inv(root)
-    converged = ~np.isin(np.arange(len(u)), active)
     return Laplace(u, inverse @ inverse.transpose(0, 2, 1), evidence, residual * noise[:, None], converged)
 
 
