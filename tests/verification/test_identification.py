@@ -3,9 +3,9 @@
 Here 200 bodies; `make identification` has 10,000, and goes on where it stopped.
 """
 
-from dataclasses import os
+import os
+from dataclasses import dataclass
 
-import dataclass
 import numpy as np
 import pytest
 from benchmarks import identification
