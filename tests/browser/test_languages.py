@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import GENTLE, facts, link
+from browser_pages import DECISIVE, GENTLE, facts, link, response
 
 import rocking.language
+from rocking import checks
+from rocking.errors import InvalidValueError
+from rocking.plausibility import of_body
 
 ROWS = list(
     csv.DictReader((Path(rocking.language.__file__).parent / "page.csv").read_text("utf-8").splitlines(keepends=True))
@@ -29,6 +32,7 @@ SHOWN = """() => {
         found.add(node.getAttribute(name).trim());
   return [...found];
 }"""
+SAID = "async (texts) => { const { words } = await import('/app/words.js'); return texts.map(words); }"
 
 
 def texts(page: Any) -> set[str]:
@@ -113,3 +117,45 @@ def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
     name.wait_for()
     assert name.inner_text() in {row["en"] for row in ROWS}
     assert page.locator("#tab-body").inner_text().endswith("Körper")
+
+
+def refusal(check: Callable[..., Any], *given: Any, **more: Any) -> str:
+    """Return what is said of a value that is refused."""
+    with pytest.raises(InvalidValueError) as told:
+        check(*given, **more)
+    return str(told.value)
+
+
+def sentences_of_the_server() -> list[str]:
+    """Return sentences that no script of the page writes, as the server makes them now."""
+    decides = "The model decides: the body overturns with KED, stays standing with Housner, r = 0.8."
+    return [
+        refusal(checks.within, "coefficient", 5.0, 0.0, 1.0, unit="m", hint="wrong unit?"),
+        refusal(checks.length, "width", 2e10),
+        refusal(checks.positive, "scale", -1.0),
+        refusal(checks.one_of, "engine", "fats", ["auto", "fast"]),
+        refusal(checks.whole, "count", 1.5, 0, 9),
+        *of_body(900.0, 9000.0, [1.0]),
+        *(response(motion, "ked").summary for motion in (GENTLE, DECISIVE)),
+        f"{decides} Still rocking when the computation ends: with Housner.",
+        "Difference to Housner",
+    ]
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_sentences_of_the_server_are_said_whole(open_page: Callable[..., Any], code: str) -> None:
+    """Verdicts, doubts and refusals leave no English behind; a sentence of others, whole or in part, stays as it is."""
+    page = open_page(link(), locale=code)
+    made = sentences_of_the_server()
+    said = page.evaluate(SAID, made)
+    english = r"\b(the|must|be|got|after|with|is|of|and|rocked|overturned|difference)\b"
+    assert len(made) >= 12
+    for text, other in zip(made, said, strict=True):
+        assert re.search(english, text, re.IGNORECASE), text
+        assert not re.search(english, other, re.IGNORECASE), other
+        assert sorted(re.findall(r"\d+", text)) == sorted(re.findall(r"\d+", other)), other
+    foreign = [
+        "from here to there and back", "a stone of ours. It fell; nobody was there.",
+        "overturned by the cat; it was a stone of ours.",
+    ]  # fmt: skip
+    assert page.evaluate(SAID, foreign) == foreign

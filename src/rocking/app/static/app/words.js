@@ -6,8 +6,15 @@ const KEY = "rocking.language";
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
 const MOST = 5000; // texts whose words are remembered
 
+const WORD = /[A-Za-z]{3}/;
+const NAME = /^[\p{Lu}\d“"]|^\S+$/u; // "Delete Left wing": what somebody named
+const SENTENCES = /[.;?] |[.;:?]$/;
+const JOINTS = [/(?<=[.?]) /, /(?<=;) /, /(?<=^[^:]*:) /];
+const isProse = (part) => part.match(/[A-Za-z]{3,}/g)?.length > 1 && part.includes(" ");
+const WIDE = { ".": "。", ";": "；", ":": "：", "?": "？" };
+
 const exact = new Map();
-const forms = [];
+const byWord = new Map(); // sentences with places by the rarest of their words; "" for those without
 const found = new Map();
 const written = new WeakMap();
 
@@ -28,29 +35,81 @@ export const language = chosen();
 export const words = (text) => {
   const bare = text.trim();
   if (!bare || exact.size === 0) return text;
-  const inside = found.get(bare) ?? remember(bare, looked(bare.replace(/[ \n\t]+/g, " ")) ?? bare);
+  const inside = known(bare.replace(/[ \n\t]+/g, " ")) ?? bare;
   return text.slice(0, text.indexOf(bare)) + inside + text.slice(text.indexOf(bare) + bare.length);
 };
 
-const remember = (text, inside) => {
-  if (found.size > MOST) found.clear();
-  found.set(text, inside);
-  return inside;
+/** What a text is; undefined where the catalogue does not have it, nor all of its sentences. */
+const known = (text) => {
+  if (!found.has(text)) {
+    if (found.size > MOST) found.clear();
+    found.set(text, sentence(text));
+  }
+  return found.get(text);
 };
 
-const looked = (text) => {
-  if (exact.has(text)) return exact.get(text);
-  for (const { pattern, places, other, weak } of forms) {
-    const match = pattern.exec(text);
-    // "{0} to {1}" with words in its places is a sentence that somebody else has made
-    if (!match || (weak && match.slice(1).some((part) => /[A-Za-z]{3}/.test(part)))) continue;
-    const inside = new Map(places.map((place, k) => [place, words(match[k + 1])]));
-    return other.replace(/\{\d+\}/g, (place) => inside.get(place));
+const sentence = (text) => {
+  if (exact.has(text) || !/[A-Za-z]{2}/.test(text)) return exact.get(text);
+  const near = formsOf(text);
+  return said(text, near, true) ?? joined(text) ?? said(text, near, false);
+};
+
+// Overturned; 3 impacts: said by "overturned" and "{0} impacts", all of it or nothing.
+const joined = (text) => {
+  for (const joint of JOINTS) {
+    const parts = text.split(joint);
+    if (parts.length === 1) continue;
+    const others = parts.map((part) => sentence(part) ?? (WORD.test(part) && !/^\S+:$/.test(part) ? undefined : part));
+    if (!others.includes(undefined)) return others.join(" ").replace(/(?<=[。；：？]) /g, "");
   }
   return undefined;
 };
 
+// A sentence as it is, or with another mark at its end and, where all of it is known, another capital.
+const said = (text, near, whole) => {
+  const [, stem, end] = text.match(/^(.+?)([.;:?]?)$/s);
+  const low = whole && /[ .]/.test(text) ? stem[0].toLowerCase() + stem.slice(1) : stem;
+  for (const [form, mark] of [[text, ""], [low + end, ""], [stem, end], [low, end]]) {
+    const other = exact.get(form) ?? filled(form, near, whole);
+    if (other === undefined) continue;
+    const marked = other + (language === "zh" ? WIDE[mark] ?? "" : mark);
+    return form.startsWith(stem) ? marked : marked[0].toUpperCase() + marked.slice(1);
+  }
+  return undefined;
+};
+
+// With `whole`, what stands in the places must be known too, or a name, and no sentence of its own.
+const filled = (text, near, whole) => {
+  for (const form of near) {
+    const match = form.pattern.exec(text)?.slice(1);
+    if (!match || (whole && match.some((part) => SENTENCES.test(part)))) continue;
+    const inside = match.map((part) => (WORD.test(part) ? known(part) : part));
+    if (!fits(form, match, inside, whole)) continue;
+    const places = new Map(form.places.map((place, k) => [place, inside[k] ?? match[k]]));
+    return form.other.replace(/\{\d+\}/g, (place) => places.get(place));
+  }
+  return undefined;
+};
+
+// "{0} to {1}" with words in its places is a sentence that somebody else has made; "Delete {0}" takes any name.
+const fits = ({ weak, names }, match, inside, whole) => {
+  const strange = match.filter((part, k) => inside[k] === undefined);
+  if (weak) return names ? strange.every((part) => NAME.test(part)) : !match.some((part) => WORD.test(part));
+  return !whole || !strange.some(isProse);
+};
+
+/** The sentences with places that share their rarest word with a text, the longest first. */
+const formsOf = (text) => {
+  const near = new Set(byWord.get(""));
+  for (const word of wordsOf(text)) for (const form of byWord.get(word) ?? []) near.add(form);
+  return [...near].sort((one, two) => one.order - two.order);
+};
+
+const wordsOf = (text) => new Set(text.toLowerCase().match(/[a-z]+/g));
+
 const learn = (catalogue) => {
+  const forms = [];
+  const times = new Map();
   for (const [english, other] of Object.entries(catalogue)) {
     const places = english.match(/\{\d+\}/g);
     if (!places) {
@@ -58,10 +117,19 @@ const learn = (catalogue) => {
       continue;
     }
     const said = english.split(/\{\d+\}/).map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
-    const weak = (english.match(/[A-Za-z]{3,}/g) ?? []).length < 2;
-    forms.push({ pattern: new RegExp(`^${said.join("(.+?)")}$`, "s"), places, other, weak, length: english.length });
+    const pattern = new RegExp(`^${said.join("(.+?)")}$`, "s");
+    const [short, long] = [/[A-Za-z]{2,}/g, /[A-Za-z]{3,}/g].map((word) => english.match(word)?.length ?? 0);
+    // A word that touches a place may be but a part of one.
+    const own = [...wordsOf(english.replace(/[A-Za-z]*\{\d+\}[A-Za-z]*/g, " "))];
+    for (const word of own) times.set(word, (times.get(word) ?? 0) + 1);
+    const weak = long < 2 && short < 3;
+    forms.push({ pattern, places, other, weak, names: /^[A-Z]/.test(english), own, length: english.length });
   }
   forms.sort((one, two) => two.length - one.length);
+  for (const [order, form] of forms.entries()) {
+    const [rarest = ""] = form.own.sort((one, two) => times.get(one) - times.get(two));
+    byWord.set(rarest, [...(byWord.get(rarest) ?? []), { ...form, order }]);
+  }
 };
 
 const stays = (element) => element?.closest("pre, code, textarea, [translate=no]") !== null;
