@@ -138,6 +138,13 @@ def sentences_of_the_server() -> list[str]:
         *of_body(900.0, 9000.0, [1.0]),
         *(response(motion, "ked").summary for motion in (GENTLE, DECISIVE)),
         f"{decides} Still rocking when the computation ends: with Housner.",
+        "It may overturn: under 2 of 3 motions with some of 4 restitutions, under 1 with all of them: what an impact "
+        "costs decides.",
+        "Margin to overturning: 0.83 times this record (KED, mirrored), a PGA of 0.3 g; it stands under the motion as "
+        "it is, which is no margin. The 2 that is asked for is not reached.",
+        "It may overturn or not: it overturns with a probability of 30 % (20 % to 40 %).",
+        "Stays still up to 0.14 g; at PGA 0.3 g it rocks, and fell over in 16 of 20 simulated earthquakes.",
+        "No coefficient of restitution: impacts take no energy: r is 1.01 (0.99 to 1.02).",
         "Difference to Housner",
     ]
 

@@ -83,7 +83,7 @@ const filled = (text, near, whole) => {
   for (const form of near) {
     const match = form.pattern.exec(text)?.slice(1);
     if (!match || (whole && match.some((part) => SENTENCES.test(part)))) continue;
-    const inside = match.map((part) => (WORD.test(part) ? known(part) : part));
+    const inside = match.map((part) => known(part) ?? (WORD.test(part) ? undefined : part));
     if (!fits(form, match, inside, whole)) continue;
     const places = new Map(form.places.map((place, k) => [place, inside[k] ?? match[k]]));
     return form.other.replace(/\{\d+\}/g, (place) => places.get(place));
@@ -93,7 +93,7 @@ const filled = (text, near, whole) => {
 
 // "{0} to {1}" with words in its places is a sentence that somebody else has made; "Delete {0}" takes any name.
 const fits = ({ weak, names }, match, inside, whole) => {
-  const strange = match.filter((part, k) => inside[k] === undefined);
+  const strange = match.filter((_, k) => inside[k] === undefined);
   if (weak) return names ? strange.every((part) => NAME.test(part)) : !match.some((part) => WORD.test(part));
   return !whole || !strange.some(isProse);
 };
