@@ -5,6 +5,7 @@ const NAMES = { en: "English", de: "Deutsch", it: "Italiano", zh: "中文" };
 const KEY = "rocking.language";
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
 const MOST = 5000; // texts whose words are remembered
+const LONGEST = 4000; // of a text that is taken apart [characters]
 
 const WORD = /[A-Za-z]{3}/;
 const NAME = /^[\p{Lu}\d“"]|^\S+$/u; // "Delete Left wing": what somebody named
@@ -49,7 +50,7 @@ const known = (text) => {
 };
 
 const sentence = (text) => {
-  if (exact.has(text) || !/[A-Za-z]{2}/.test(text)) return exact.get(text);
+  if (exact.has(text) || text.length > LONGEST || !/[A-Za-z]{2}/.test(text)) return exact.get(text);
   const near = formsOf(text);
   return said(text, near, true) ?? joined(text) ?? said(text, near, false);
 };
@@ -59,7 +60,7 @@ const joined = (text) => {
   for (const joint of JOINTS) {
     const parts = text.split(joint);
     if (parts.length === 1) continue;
-    const others = parts.map((part) => sentence(part) ?? (WORD.test(part) && !/^\S+:$/.test(part) ? undefined : part));
+    const others = parts.map((part) => known(part) ?? (WORD.test(part) && !/^\S+:$/.test(part) ? undefined : part));
     if (!others.includes(undefined)) return others.join(" ").replace(/(?<=[。；：？]) /g, "");
   }
   return undefined;
