@@ -149,7 +149,9 @@ const sayAttribute = (element, name) => {
   if (other !== value) element.setAttribute(name, other);
 };
 
-const sayAll = (node) => {
+/** Say a part of the page, or a picture that is not in it, in the language of the page. */
+export const sayAll = (node) => {
+  if (exact.size === 0) return undefined;
   if (node.nodeType === Node.TEXT_NODE) return sayText(node);
   if (node.nodeType !== Node.ELEMENT_NODE) return undefined;
   for (const name of ATTRIBUTES) sayAttribute(node, name);

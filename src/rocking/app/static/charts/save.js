@@ -2,6 +2,7 @@
 
 import { saveBlob } from "/app/api.js";
 import { el } from "/app/dom.js";
+import { sayAll } from "/app/words.js";
 
 const LARGER = 2;
 
@@ -46,6 +47,7 @@ export const chartFiles = (title, vector, what = "chart", csv = null) => {
 };
 
 const blobOf = (picture) => {
+  sayAll(picture);
   const text = new XMLSerializer().serializeToString(picture);
   return new Blob(['<?xml version="1.0" encoding="utf-8"?>\n', text], { type: "image/svg+xml" });
 };

@@ -1,6 +1,7 @@
 /** The page's colours for canvases, and the look of the axes. */
 
 import { number, pretty } from "/app/format.js";
+import { words } from "/app/words.js";
 
 const resolved = new Map();
 
@@ -33,7 +34,7 @@ export const axes = (x, y) => [
 ];
 
 const look = ({ label, unit, log }) => ({
-  label: unit && unit !== "-" ? `${label} [${pretty(unit)}]` : label,
+  label: unit && unit !== "-" ? `${words(label)} [${pretty(unit)}]` : words(label),
   labelSize: 18,
   labelFont: "12px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",

@@ -1,6 +1,7 @@
 /** A line chart as an SVG of its own: what is on the screen, in lines and letters. */
 
 import { freshId, svg } from "/app/dom.js";
+import { words as inLanguage } from "/app/words.js";
 import { colour } from "/charts/style.js";
 
 /** Height of a row of ticks on the axis [px]. */
@@ -107,7 +108,8 @@ const bandOf = (frame, { series: [high, low], fill }, data) => {
 export const legendOf = (series, width) => {
   let [x, row] = [MARGIN, 1];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
-    const wide = 46 + LETTER * label.length;
+    const said = inLanguage(label);
+    const wide = 46 + LETTER * said.length;
     if (x > MARGIN && x + wide > width) [x, row] = [MARGIN, row + 1];
     const [at, y] = [x, TITLE + row * ROW - 10];
     x += wide + 10;
@@ -118,7 +120,7 @@ export const legendOf = (series, width) => {
         x1: at, x2: at + 30, y1: y, y2: y, stroke, "stroke-width": 2,
         "stroke-dasharray": dash?.length ? dash.join(" ") : null,
       });
-    return [key, text(at + 36, y + 4, label)];
+    return [key, text(at + 36, y + 4, said)];
   });
   return { rows: row, node: svg("g", {}, entries) };
 };

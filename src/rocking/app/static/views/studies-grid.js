@@ -1,6 +1,7 @@
 /** A map on a canvas: cells, axes, and which cell is under a point. */
 import { colour } from "/charts/style.js";
 import { number, pretty } from "/app/format.js";
+import { words as inLanguage } from "/app/words.js";
 import { greek } from "/views/studies-words.js";
 
 const LEFT = 64;
@@ -250,6 +251,6 @@ export const createGrid = (canvas, x, y) => {
 
 const words = (axis, room) => {
   const unit = axis.unit && axis.unit !== "1" ? ` [${pretty(axis.unit)}]` : "";
-  const all = greek(axis.words);
-  return (7 * all.length > room ? all.split(/[,;]/)[0] : all) + unit;
+  const all = inLanguage(greek(axis.words));
+  return (7 * all.length > room ? all.split(/[,;，；]/)[0] : all) + unit;
 };
