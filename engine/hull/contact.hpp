@@ -8,12 +8,20 @@ constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 60, kNewton = 20, kTries = 6;
 constexpr double kNearly = 1e-2;  // change of directions from which Newton goes on
 constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
+constexpr int kBegin = 6;  // turns after which a facet of many corners goes on by Newton
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
 
 struct Contact {
     Points members, stuck;
     bool operator==(const Contact& o) const { return members == o.members && stuck == o.stuck; }
 };
+
+// Where a member stands among the members: the first of them.
+inline std::size_t slot_of(const Points& members, int i, std::size_t from) {  // from: where it may stand, as lists go on alike
+    for (std::size_t k = from; k < members.size(); ++k)
+        if (members[k] == i) return k;
+    return static_cast<std::size_t>(std::find(members.begin(), members.end(), i) - members.begin());
+}
 
 inline bool has(const Points& all, int i) { return std::find(all.begin(), all.end(), i) != all.end(); }
 
@@ -49,6 +57,7 @@ struct Solution {
     Contact contact;
     Vec linear, angular;
     Numbers normals;
+    double shape[3];  // of the normal forces of more than three
     Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
     bool exists = false, doomed = false;  // doomed: it breaks a law, and the rest of it was not asked for
 };
@@ -95,7 +104,11 @@ inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
     const int n = static_cast<int>(stuck.size());
     s.pulls.assign(s.contact.members.size(), Vec{});
     if (!n) return;
-    const auto slot = [&](int i) { return std::find(s.contact.members.begin(), s.contact.members.end(), i) - s.contact.members.begin(); };
+    std::size_t from = 0;
+    const auto slot = [&](int i) {
+        const std::size_t found = slot_of(s.contact.members, i, from);
+        return from = found + 1, found;
+    };
     const Vec total = p.ground(parts[0], parts[1]), up = p.axes.c;
     if (n == 1) {
         s.pulls[slot(stuck[0])] = total;
@@ -179,6 +192,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     s.linear = p.linear + 1.0 / body.mass * force;
     s.angular = p.angular + body.inverse * moment;
     s.normals.assign(members.size(), 0.0);
+    for (int j = 0; j < most; ++j) s.shape[j] = answer[j];
     for (int k = 0; k < n; ++k) {
         weights(k, p.place(members[carrying[k]]), w);
         for (int j = n > 3 ? 0 : k, end = n > 3 ? most : std::min(k + 1, most); j < end; ++j) s.normals[carrying[k]] += answer[j] * w[j];
@@ -209,14 +223,32 @@ inline bool solve(const Problem& p, Solution& s) {
     }
     Points carrying(s.contact.members.size());
     for (std::size_t k = 0; k < carrying.size(); ++k) carrying[k] = static_cast<int>(k);
+    const Points all = carrying;
+    Points next;
+    for (int turn = 0; all.size() > kCorners && turn < kNewton; ++turn) {  // those that a linear pressure pushes, until it is theirs
+        if (!(s.exists = linear(p, carrying, s))) break;
+        next.clear();
+        for (int k : all) {
+            const Vec at = p.place(s.contact.members[k]);
+            if (s.shape[0] + s.shape[1] * dot(p.axes.a, at) + s.shape[2] * dot(p.axes.b, at) >= 0.0) next.push_back(k);
+        }
+        if (next == carrying) return true;
+        if (next.size() <= 3) break;
+        carrying = next;
+    }
+    carrying = all;
     for (;;) {
         s.exists = linear(p, carrying, s);
         if (!s.exists || s.contact.members.size() <= 3) return s.exists;
-        auto least = carrying.begin();
-        for (auto k = carrying.begin(); k != carrying.end(); ++k)
-            if (s.normals[*k] < s.normals[*least]) least = k;
-        if (s.normals[*least] >= 0.0 || carrying.size() == 3) return s.exists;
-        carrying.erase(least);
+        const std::size_t before = carrying.size();
+        for (std::size_t out = std::max<std::size_t>(before / 16, 1); out && carrying.size() > 3; --out) {
+            auto least = carrying.begin();
+            for (auto k = carrying.begin(); k != carrying.end(); ++k)
+                if (s.normals[*k] < s.normals[*least]) least = k;
+            if (s.normals[*least] >= 0.0) break;
+            carrying.erase(least);
+        }
+        if (carrying.size() == before) return true;
     }
 }
 
@@ -486,6 +518,54 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
     return false;
 }
 
+// The same for a facet of many corners, which starts to slide as a rigid body does: Newton for two accelerations and a turning.
+inline bool turned_whole(const Problem& p, const Points& free, double still, Solution& s) {
+    const Points& members = s.contact.members;
+    const Vecs begun = s.directions;
+    const auto follow = [&](const double* u) {  // directions, and what the body does with them; lengths in sizes of the body
+        for (int k : free) {
+            const Vec r = p.body->points[members[k]], turn = u[2] / p.body->size * cross(p.axes.c, r);
+            Vec rate = p.ground(u[0], u[1]) + turn;
+            if (p.forces) rate = rate + p.bias(members[k]);
+            rate = rate - dot(rate, p.axes.c) * p.axes.c;
+            s.directions[k] = unit(rate + greater(still - norm(rate), 0.0) * begun[k]);
+        }
+        return solve(p, s);
+    };
+    const auto read = [&](double* u) { u[0] = dot(p.axes.a, s.linear), u[1] = dot(p.axes.b, s.linear), u[2] = p.body->size * dot(p.axes.c, s.angular); };
+    double u[3], to[3], r[3], other[3], table[kCorners][kCorners + 1];
+    const auto size_of = [](const double* a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); };
+    const auto beside = [&](const double* at, double* off) {
+        if (!follow(at)) return false;
+        read(off);
+        for (int j = 0; j < 3; ++j) off[j] -= at[j];
+        return true;
+    };
+    read(u);
+    if (!beside(u, r)) return false;
+    for (int k = 0; k < 2 * kNewton; ++k) {
+        const double size = size_of(r), large = size_of(u);
+        if (size <= kStraight * large) return true;
+        for (int j = 0; j < 3; ++j) {
+            const double by = kSwing * large, kept = u[j];
+            u[j] += by;
+            if (!beside(u, other)) return false;
+            u[j] = kept;
+            for (int i = 0; i < 3; ++i) table[i][j] = (other[i] - r[i]) / by;
+            table[j][3] = -r[j];
+        }
+        if (!solved(3, table)) return false;
+        double share = 1.0;
+        for (int tries = 0; tries < 2 * kTries; ++tries, share *= 0.5) {
+            for (int j = 0; j < 3; ++j) to[j] = u[j] + share * table[j][3];
+            if (!beside(to, r)) return false;
+            if (size_of(r) < size) break;
+        }
+        std::copy(to, to + 3, u);
+    }
+    return size_of(r) <= greater(still, 1e-9 * size_of(u));  // accelerations below `still` have no direction of their own
+}
+
 // The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
 // already; still: rate below which friction alone has the direction.
 inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s) {
@@ -511,6 +591,7 @@ inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s)
     double nearly = kNearly;
     for (int turn = 0; turn < kTurns; ++turn) {
         if (!rub.act()) return false;
+        if (n > kCorners && turn == kBegin) return turned_whole(p, free, still, s);
         double change = 0.0, along = 0.0, square = 0.0;
         for (std::size_t j = 0; j < n; ++j) {
             const Vec slip = rub.rate(free[j]);
@@ -586,8 +667,10 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching) {
 
 // Whether no gap closes.
 inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {
+    const Points& members = s.contact.members;
+    if (members.size() > 2 && members.size() == touching.size()) return true;  // all of them stay
     for (int i : touching)
-        if (!has(s.contact.members, i) && dot(p.axes.c, p.rate(i, s.linear, s.angular)) < -slack) return false;
+        if (dot(p.axes.c, p.rate(i, s.linear, s.angular)) < -slack && !has(members, i)) return false;
     return true;
 }
 
@@ -596,7 +679,7 @@ inline bool valid(const Problem& p, const Solution& s, const Points& touching, d
     const double mass = p.body->mass, mu = p.friction;
     for (std::size_t k = 0; k < s.normals.size(); ++k) {
         if (s.normals[k] < -slack * mass) return false;
-        if (mu < kInfinite && has(s.contact.stuck, s.contact.members[k]) && norm(s.pulls[k]) > mu * s.normals[k] + slack * mass * (1.0 + mu)) return false;
+        if (mu < kInfinite && norm(s.pulls[k]) > mu * s.normals[k] + slack * mass * (1.0 + mu) && has(s.contact.stuck, s.contact.members[k])) return false;
     }
     return clear(p, s, touching, slack);  // Eq. 251
 }

@@ -507,3 +507,36 @@ def test_random_hulls_have_a_result_in_the_compiled_engine():
     assert max(held[1:]) <= 0.06  # 0.59 and 0.24 were held before what accumulates was ended
     few = hull_histories(bodies[0], records[-1], settings=HullSettings(most_events=2), engine="fast")
     assert few["status"].item() == Status.TOO_MANY_EVENTS.code
+
+
+def _drum(count, height):
+    angle = 0.4 + 2.0 * math.pi * np.arange(count) / count
+    points = [(0.4 * math.cos(a), 0.4 * math.sin(a), z) for a in angle for z in (0.0, height)]
+    across = (3.0 * 0.4**2 + height**2) / 12.0
+    return HullBody(points, 1.0, (0.0, 0.0, 0.5 * height), np.diag([across, across, 0.5 * 0.4**2]))
+
+
+@needs_engine
+@pytest.mark.verifies("invariant", "corners of a drum that slides", within="1e-6", control="within")
+def test_a_drum_of_many_corners_slides_as_one_of_few():
+    """Ten seconds of shaking: 360 corners slide as 12 do, in as many steps; another friction loses something else.
+
+    A drum that is about to tip starts to slide on a part of its base: no impact, and hardly a contact that is held.
+    """
+    rng = np.random.default_rng(3)
+    envelope = np.exp(-((np.linspace(0.0, 4.0, 500) - 4.0 / 3.0) ** 2))
+    rows = [np.convolve(rng.normal(size=500), np.exp(-np.arange(10) / 3.0))[:500] for _ in range(3)]
+    x, y, z = (GroundMotion(c * envelope * f, 0.02) for c, f in zip(rows, (3.5, 2.8, 1.4), strict=True))
+    ground = HullGround(x, y, z)
+    choices = {"friction": [0.3, 0.5], "settings": HullSettings(tolerance=1e-8), "engine": "fast"}
+    few, many = (hull_histories(_drum(count, 1.2), ground, **choices) for count in (12, 360))
+    for made in (few, many):
+        assert (made["outcome"] == Outcome.SLID.code).all()
+        assert made["held"].max() == 0
+        assert made["steps"].max() < 2500
+    np.testing.assert_allclose(many["lost"].ravel(), few["lost"].ravel(), rtol=1e-6)
+    assert abs(few["lost"].ravel()[0] / few["lost"].ravel()[1] - 1.0) > 0.1
+    tall = hull_histories(_drum(24, 2.4), ground, friction=[0.3], settings=choices["settings"], engine="fast")
+    assert tall["outcome"].item() == Outcome.SLID.code  # with impacts where no start of sliding is found
+    assert tall["impacts"].item() == 0
+    assert tall["held"].item() < 30

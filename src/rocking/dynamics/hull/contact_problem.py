@@ -28,6 +28,7 @@ from rocking.dynamics.hull.ground import (
 
 SINGULAR = 1e-12
 CORNERS = 8  # of a facet with more no single one sticks
+_TURNS = 20  # in which the corners that a pressure pushes are found
 
 Wrench = tuple[Vector, Vector]
 
@@ -75,6 +76,7 @@ class Solution:
     normals: dict[int, float]
     directions: dict[int, Vector]  # of those that slide
     pulls: dict[int, Vector]  # forces along the ground of those that stick
+    shape: tuple[float, ...] = ()  # of the normal forces of more than three
 
 
 def solve(problem: Problem, contact: HullContact, directions: dict[int, Vector]) -> Solution | None:
@@ -82,14 +84,33 @@ def solve(problem: Problem, contact: HullContact, directions: dict[int, Vector])
     if not contact.members:
         return Solution(contact, problem.linear, problem.angular, {}, {}, {})
     carrying = list(contact.members)
+    for _ in range(_TURNS if len(contact.members) > CORNERS else 0):
+        # those that a linear pressure pushes, until it is theirs
+        found = linear(problem, contact, carrying, directions)
+        if found is None:
+            break
+        a, b, c = found.shape
+        x, y, _ = problem.axes
+        places = [(i, problem.place(i)) for i in contact.members]
+        pushed = [i for i, at in places if a + b * dot(x, at) + c * dot(y, at) >= 0.0]
+        if pushed == carrying:
+            return found
+        if len(pushed) <= 3:
+            break
+        carrying = pushed
+    carrying = list(contact.members)
     while True:
         found = linear(problem, contact, carrying, directions)
         if found is None or len(contact.members) <= 3:
             return found
-        least = min(carrying, key=lambda i: found.normals[i])
-        if found.normals[least] >= 0.0 or len(carrying) == 3:
+        before, normals = len(carrying), found.normals
+        for _ in range(max(before // 16, 1)):
+            least = min(carrying, key=lambda i: normals[i])
+            if normals[least] >= 0.0 or len(carrying) == 3:
+                break
+            carrying.remove(least)
+        if len(carrying) == before:
             return found
-        carrying.remove(least)
 
 
 def linear(
@@ -115,7 +136,7 @@ def linear(
         for i, w in share_of.items():
             normals[i] += c * w
     pulls = {} if problem.friction == math.inf else _pulls(problem, stuck, normals, answer[len(weights) :])
-    return Solution(contact, centre_rate, angular, normals, directions, pulls)
+    return Solution(contact, centre_rate, angular, normals, directions, pulls, tuple(answer[:3]))
 
 
 def _weights(problem: Problem, carrying: list[int]) -> list[dict[int, float]]:

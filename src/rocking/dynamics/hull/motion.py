@@ -249,6 +249,7 @@ def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azi
 _TURNS, _STRAIGHT = 300, 1e-12
 _NEWTON, _TRIES, _SWING = 20, 6, 1e-7  # steps, halvings, and the angle by which a direction is turned for the slope
 _NOTHING = 1e-300
+_BEGIN = 6  # turns after which a facet of many corners goes on by Newton
 
 
 def sliding(problem: Problem, contact: HullContact, known: dict[int, Vector], still: float) -> Solution | None:
@@ -268,10 +269,12 @@ def sliding(problem: Problem, contact: HullContact, known: dict[int, Vector], st
     begun = directions
     if len(free) < 3 and (turned := _turned(problem, contact, begun, soft)) is not None:
         return turned
-    for _ in range(_TURNS):
+    for k in range(_TURNS):
         found = solve(problem, contact, directions)
         if found is None:
             return None
+        if len(free) > CORNERS and k == _BEGIN:
+            return _turned_whole(problem, found, free, still)
         change, before = 0.0, directions
         for i in free:
             rate = problem.rate(i, found.linear, found.angular)
@@ -284,6 +287,52 @@ def sliding(problem: Problem, contact: HullContact, known: dict[int, Vector], st
         if change <= _STRAIGHT:
             return found
     return _turned(problem, contact, begun, soft) if 2 < len(free) <= CORNERS else None
+
+
+def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: float) -> Solution | None:
+    """Return how a facet of many corners starts to slide, as a rigid body: Newton for its three accelerations."""
+    (x, y, up), size = problem.axes, problem.body.size
+
+    def beside(u: FloatArray) -> tuple[Solution, FloatArray] | None:
+        turned = dict(begun.directions)
+        for i in free:
+            rate = plus(scaled(u[0], x), scaled(u[1], y))
+            rate = added(rate, u[2] / size, cross(up, problem.body.points[i]))
+            rate = plus(rate, problem.bias[i]) if problem.bias else rate
+            rate = added(rate, -dot(rate, up), up)
+            turned[i] = unit(added(rate, max(still - length(rate), 0.0), begun.directions[i]))
+        found = solve(problem, begun.contact, turned)
+        return None if found is None else (found, read(found) - u)
+
+    def read(found: Solution) -> FloatArray:
+        return np.array([dot(x, found.linear), dot(y, found.linear), size * dot(up, found.angular)])
+
+    u = read(begun)
+    reached = beside(u)
+    for _ in range(2 * _NEWTON):
+        if reached is None:
+            return None
+        found, off = reached
+        large, most = length(tuple(u)), length(tuple(off))
+        if most <= _STRAIGHT * large:
+            return found
+        by = _SWING * large
+        swung = [beside(u + by * axis) for axis in np.eye(3)]
+        if any(s is None for s in swung):
+            return None
+        step = _solved(np.array([(s[1] - off) / by for s in swung if s]).T, -off)
+        if step is None:
+            return None
+        for k in range(2 * _TRIES):
+            to = u + 0.5**k * step
+            if (reached := beside(to)) is None:
+                return None
+            if length(tuple(reached[1])) < most:
+                break
+        u = to
+    # accelerations below `still` have no direction of their own
+    near = reached is not None and length(tuple(reached[1])) <= max(still, 1e-9 * length(tuple(u)))
+    return reached[0] if reached is not None and near else None
 
 
 def _turned(
