@@ -705,7 +705,9 @@ class Run {
         return pushed ? pushed : best;
     }
 
-    static bool same(Points a, Points b) {
+    static bool same(const Points& one, const Points& other) {
+        if (one.size() != other.size()) return false;
+        Points a = one, b = other;
         std::sort(a.begin(), a.end()), std::sort(b.begin(), b.end());
         return a == b;
     }
