@@ -1,5 +1,6 @@
 """The command line: what `rocking --help` lists."""
 
+import os
 import re
 import sys
 import warnings
@@ -20,6 +21,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Notes()
+            if os.environ.get("ROCKING_MODELS"):
+                from rocking.restitution.from_file import register_own
+
+                register_own()
             # without arguments the help is the answer
             code = application(arguments)(args=arguments or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:

@@ -20,6 +20,7 @@ from rocking.lazy import presenter
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
+from rocking.restitution.from_file import origin_of
 
 if TYPE_CHECKING:
     from rocking.dynamics.contact import ContactResponse
@@ -362,6 +363,7 @@ class Response(ResponseBase):
             "body": type(self.body).__name__,
             "mass_kg": self.body.mass,
             "restitution": parameters.label,
+            **origin_of(parameters.label),
             **sides,
             "motion": "none: free rocking" if motion is None else motion.name,
             "motion_provenance": motion_provenance(motion),

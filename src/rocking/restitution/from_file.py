@@ -3,6 +3,7 @@
 import copyreg
 import hashlib
 import inspect
+import os
 import re
 import sys
 import traceback
@@ -12,13 +13,18 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rocking.errors import RockingError, UnknownModelError
+from rocking.bodies import Block
+from rocking.conventions import FEET, opposite
+from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.model import RestitutionModel
-from rocking.restitution.registry import built, model, number, parameters_in
+from rocking.restitution.registry import built, model, number, parameters_in, register
 
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
+_VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which are known by name
+_ROUNDING = 1e-9
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
+_REGISTERED: set[str] = set()
 
 
 def file_of(word: str) -> str | None:
@@ -49,6 +55,68 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
     return model(made, eta=number("eta", eta)) if eta else made
 
 
+def register_own() -> None:
+    """Register all models of the file that the owner of the machine names in ROCKING_MODELS, if each keeps its word."""
+    path = os.environ.get(_VARIABLE, "")
+    if not path or path in _REGISTERED:
+        return
+    try:
+        source = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        raise UnknownModelError(f"{_VARIABLE}={path} cannot be read: {error}") from error
+    with blamed(path):
+        kinds = [each for each in _kinds(source, path).values() if not inspect.isabstract(each)]
+        if not kinds:
+            raise UnknownModelError(f"{_VARIABLE}={path} has no restitution model")
+        digest = hashlib.sha256(source.encode()).hexdigest()
+        for kind in kinds:
+            name = getattr(kind, "name", kind.__name__)
+            try:
+                for parameters in kind.trials:
+                    _keeps_its_word(built(kind, name, parameters_in(parameters, name, {})))
+                register(kind)
+            except Exception as error:
+                raise InvalidValueError(f"{path}: model {name!r}: {in_own_model(error) or error}") from error
+            kind.reference = f"own model, {Path(path).name}, SHA-256 {digest}: {kind.reference}"
+    _REGISTERED.add(path)
+
+
+def origin_of(label: str) -> dict[str, str]:
+    """Return of which file a model of the user's own is, for what is computed with it; nothing for any other."""
+    name = label.rpartition("*")[2].partition(":")[0]
+    found = {
+        f"{Path(where).name}, SHA-256 {hashlib.sha256(source.encode()).hexdigest()}"
+        for kind, (source, where) in _SOURCES.items()
+        if getattr(kind, "name", None) == name
+    }
+    return {"restitution_file": "; ".join(sorted(found))} if found else {}
+
+
+def _keeps_its_word(tried: RestitutionModel) -> None:
+    """Refuse a model that breaks what every model promises, on bodies that are not symmetric and on rectangles."""
+    ratios = [0.05, 0.3, 1.0, 2.0, 4.0, 10.0, 100.0]
+    for ratio, r in zip(ratios, tried.of_slenderness(ratios).tolist(), strict=True):
+        if not 0.0 <= r <= 1.0 + _ROUNDING:
+            raise InvalidValueError(f"r must lie in [0, 1], is {r:.6g} for a rectangle of h/b = {ratio:g}")
+    for ratio in ratios[1:-1]:
+        block = Block(width=1.0, height=ratio)
+        for body in (block, block.with_feet(0.35, 0.95), block.with_feet(0.02, 0.7)):
+            for onto in FEET:
+                r, new, old = tried.coefficient(body, onto), body.side(onto), body.side(opposite(onto))
+                gain = r * r * new.moment_of_inertia / old.moment_of_inertia
+                where = f"for h/b = {ratio:g}, feet at {body.feet[0]:g} and {body.feet[1]:g} m, onto the {onto} one"
+                if tried.keeps_energy and gain > 1.0 + _ROUNDING:
+                    raise InvalidValueError(f"an impact creates energy, {gain:.6g} of what there was, {where}")
+                for seen, other, foot in (
+                    ("size", body.scaled(size=7.3), onto),
+                    ("density", body.scaled(density=0.013), onto),
+                    ("side", body.mirrored(), opposite(onto)),
+                ):
+                    there = tried.coefficient(other, foot)
+                    if abs(there - r) > 1e-8:
+                        raise InvalidValueError(f"r must not depend on {seen}, is {r:.6g} and {there:.6g} {where}")
+
+
 @contextmanager
 def blamed(where: str) -> Iterator[None]:
     """Say of an error in a file of the user's own where it is."""
@@ -67,6 +135,18 @@ def in_own_model(error: BaseException) -> str:
 
 
 def _kind(source: str, where: str, name: str) -> type[RestitutionModel]:
+    kinds = _kinds(source, where)
+    if len(kinds) == 1 and not name:
+        (name,) = kinds
+    if name not in kinds:
+        raise UnknownModelError(
+            f"{where} has no restitution model {name or '(name one)'}; it has {', '.join(kinds) or 'none'}"
+        )
+    return kinds[name]
+
+
+def _kinds(source: str, where: str) -> dict[str, type[RestitutionModel]]:
+    """Return the models of a file, each of which can be sent to another process with its source."""
     with blamed(where):
         module = _module(source, where)
     kinds = {
@@ -74,16 +154,10 @@ def _kind(source: str, where: str, name: str) -> type[RestitutionModel]:
         for key, kind in inspect.getmembers(module, inspect.isclass)
         if issubclass(kind, RestitutionModel) and kind.__module__ == module.__name__
     }
-    if len(kinds) == 1 and not name:
-        (name,) = kinds
-    if name not in kinds:
-        raise UnknownModelError(
-            f"{where} has no restitution model {name or '(name one)'}; it has {', '.join(kinds) or 'none'}"
-        )
     for kind in kinds.values():
         _SOURCES[kind] = (source, where)
         copyreg.pickle(kind, _reduced)
-    return kinds[name]
+    return kinds
 
 
 def _module(source: str, where: str) -> ModuleType:

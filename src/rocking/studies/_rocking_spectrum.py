@@ -129,6 +129,6 @@ def _row(name: str, row: Any, unit: str) -> FloatArray:
 
 def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:
     kept = question.attributes({})
-    about = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
+    about = {k: v for k, v in kept.items() if k in {"software", "seed", "restitution_file"} or k.startswith("setting_")}
     hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
     return {**about, "restitution": question.parameters.label, "scale": scale, "motion_sha256": hashes}

@@ -24,6 +24,7 @@ from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome, flags
+from rocking.restitution.from_file import origin_of
 from rocking.version import SOFTWARE
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3
@@ -107,6 +108,7 @@ class Question:
             "motion": motion.name,
             "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
             "restitution": self.parameters.label,
+            **origin_of(self.parameters.label),
             "seed": int(getattr(self.law, "seed", 0)),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},

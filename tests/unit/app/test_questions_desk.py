@@ -403,3 +403,18 @@ def test_over_the_api(client, stranger):
     assert client.post("/api/questions", json={"command": "predict", "tables": {}, "project": "x"}).status_code == 404
     assert client.delete(where).json() == {"deleted": asked.json()["id"]}
     assert client.get(where).status_code == 404
+
+
+def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
+    """A model of the file that the owner names is known in the process of a question, which cannot read the file."""
+    (tmp_path / "own.py").write_text(
+        "import rocking as rk\nclass Own(rk.restitution.RestitutionModel):\n    name = 'own'\n"
+        "    def raw_coefficient(self, body, onto):\n        return 0.5\n"
+    )
+    pulses = [{"pulse": ["sine:amplitude=3,period=0.8"]}]
+    tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"points": 40}}
+    asked = desk.ask("minimum", tables, {})
+    assert "no restitution model named 'own'" in ended(desk, asked.id).message
+    monkeypatch.setenv("ROCKING_MODELS", str(tmp_path / "own.py"))
+    asked = desk.ask("minimum", tables, {})
+    assert ended(desk, asked.id).state == "done", desk.get(asked.id).message

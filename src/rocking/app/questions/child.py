@@ -22,9 +22,15 @@ def main(arguments: list[str]) -> None:
     folder = Path(arguments[0]).resolve()
     threading.Thread(target=end_with_the_server, daemon=True).start()
     _limit()
-    os.chdir(folder)
+    from rocking.errors import RockingError
     from rocking.evidence.store import store
+    from rocking.restitution.from_file import register_own
 
+    try:
+        register_own()  # the owner's own models, which lie outside
+    except RockingError as error:
+        sys.exit(f"rocking: {error}")
+    os.chdir(folder)
     keep_inside(folder, store(), Path(os.environ["MPLCONFIGDIR"]))
     sys.argv[1:] = arguments[1:]
     run_module("rocking", run_name="__main__")

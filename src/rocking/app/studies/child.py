@@ -25,8 +25,10 @@ def main(arguments: list[str]) -> int:
         os.nice(10)
     from rocking.campaigns import CampaignInterrupted
     from rocking.errors import RockingError
+    from rocking.restitution.from_file import register_own
 
     try:
+        register_own()
         _compute(Path(arguments[0]), int(arguments[1]))
     except (CampaignInterrupted, KeyboardInterrupt):
         return STOPPED

@@ -24,6 +24,7 @@ from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
 from rocking.outcome import Outcome, contact_words, lost_contact, of_results, overturned
 from rocking.quantities import attributes
+from rocking.restitution.from_file import origin_of
 from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts
 from rocking.studies.histories import HistoryTable, Product
@@ -147,6 +148,7 @@ class Subject:
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,
             "restitution": self.parameters.label,
+            **origin_of(self.parameters.label),
             **{f"body_{name}": float(values[0]) for name, values in self._sides.items()},
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }

@@ -1,0 +1,110 @@
+"""Models of a file that the owner of the machine names are known by name; those that break their word are refused."""
+
+import hashlib
+import json
+
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+from rocking.errors import RockingError
+from rocking.restitution import registry
+from rocking.restitution.from_file import register_own
+
+MODEL = """
+import rocking as rk
+
+class Mine(rk.restitution.RestitutionModel):
+    name = "{name}"
+    title = "a model of my own"
+    reference = "my notes"
+    colour = "#7a5195"
+
+    def raw_coefficient(self, body, onto):
+        side = body.side(onto)
+        return {value}
+"""
+HOUSNER = "rk.coefficient_of_restitution(body, 'housner', onto=onto)"
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """Write a file, name it, and forget its models afterwards."""
+    monkeypatch.setattr(registry, "_MODELS", dict(registry._MODELS))
+
+    def write(value, name="mine"):
+        path = tmp_path / f"{name}.py"
+        path.write_text(MODEL.format(name=name, value=value))
+        monkeypatch.setenv("ROCKING_MODELS", str(path))
+        return path
+
+    return write
+
+
+def test_a_model_is_known_by_its_name(own, capsys):
+    """0.9 of Housner's 15.5/17 by name, at the command line and on the page, with the file's hash; twice is once."""
+    path = own(f"0.9 * {HOUSNER}")
+    register_own()
+    register_own()
+    block = rk.Block(width=1.0, height=4.0)
+    # Housner: 1 - 3/2 sin^2(alpha), tan(alpha) = 1/4
+    assert rk.coefficient_of_restitution(block, "mine") == pytest.approx(0.9 * 15.5 / 17.0, rel=1e-14, abs=0.0)
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert rk.restitution.models()["mine"].reference == f"own model, mine.py, SHA-256 {digest}: my notes"
+    with pytest.raises(SystemExit) as stop:
+        main(["models", "mine", "--json"])
+    assert not stop.value.code
+    assert digest in json.loads(capsys.readouterr().out)["mine"]["reference"]
+    response = rk.simulate(block, rk.pulses.sine(4.0, 0.8), "0.98*mine")
+    assert response._facts["restitution_file"] == f"mine.py, SHA-256 {digest}"
+    assert "restitution_file" not in rk.simulate(block, rk.pulses.sine(4.0, 0.8), "ked")._facts
+
+
+def test_the_page_lists_it(own):
+    """What there is to choose from holds the model, its colour, dash and source."""
+    from rocking.app.api.info import _models
+
+    own(f"0.9 * {HOUSNER}", "listed")
+    assert "listed" not in {each["name"] for each in _models()}
+    register_own()
+    (found,) = (each for each in _models() if each["name"] == "listed")
+    assert (found["label"], found["colour"], found["dash"]) == ("listed", "#7a5195", [])
+    assert found["citation"].startswith("own model, listed.py, SHA-256 ")
+
+
+@pytest.mark.parametrize(
+    ("value", "name", "reason"),
+    [
+        ("1 / 0", "raises", "model 'raises': .*line 12: ZeroDivisionError"),
+        ("1.2", "above", r"above.py: model 'above': r must lie in \[0, 1\], is 1.2"),
+        ("1.0", "gains", "model 'gains': an impact creates energy"),
+        ("1.0 / (2.0 + side.half_width)", "metres", "model 'metres': r must not depend on size"),
+        ("0.5 if onto == 'left' else 0.4", "sided", "model 'sided': r must not depend on side"),
+        ("float('nan')", "nan", "model 'nan': .*finite"),
+        (HOUSNER, "ked", "model 'ked': a restitution model named 'ked' exists already"),
+    ],
+)
+def test_negative_controls(own, value, name, reason):
+    """Each breach is refused, twice over, with file, model and reason, and nothing is registered."""
+    path = own(value, name)
+    before = set(registry._MODELS)
+    for _ in range(2):
+        with pytest.raises(RockingError, match=reason) as refused:
+            register_own()
+        assert str(path) in str(refused.value)
+    assert set(registry._MODELS) == before
+
+
+def test_a_command_and_a_server_refuse_the_file(own, capsys, monkeypatch):
+    """A file that is not there, or is no code, stops every command, serve too, with words and no traceback."""
+    monkeypatch.setattr("rocking.cli.serve._serve", lambda *_, **__: pytest.fail("it serves"))
+    path = own("(")
+    for words in (["cor", "--width", "1", "--height", "4"], ["serve", "--no-browser"]):
+        with pytest.raises(SystemExit) as stop:
+            main(words)
+        assert stop.value.code == 2
+        assert f"rocking: {path}" in capsys.readouterr().err
+    path.unlink()
+    with pytest.raises(SystemExit):
+        main(["serve", "--no-browser"])
+    assert "cannot be read" in capsys.readouterr().err
