@@ -22,6 +22,13 @@ from rocking.restitution.registry import built, model, number, parameters_in, re
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
 _VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which are known by name
 _ROUNDING = 1e-9
+# colour and strokes of models that say none, which no model of the package has
+_LOOKS = (
+    ("#7a3b00", (0, (9, 2))),
+    ("#00695c", (0, (2, 3))),
+    ("#8e2464", (0, (7, 2, 2, 2, 2, 2))),
+    ("#4a5a00", (0, (12, 4))),
+)
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
 _REGISTERED: set[str] = set()
@@ -69,7 +76,7 @@ def register_own() -> None:
         if not kinds:
             raise UnknownModelError(f"{_VARIABLE}={path} has no restitution model")
         digest = hashlib.sha256(source.encode()).hexdigest()
-        for kind in kinds:
+        for position, kind in enumerate(kinds):
             name = getattr(kind, "name", kind.__name__)
             try:
                 for parameters in kind.trials:
@@ -77,6 +84,9 @@ def register_own() -> None:
                 register(kind)
             except Exception as error:
                 raise InvalidValueError(f"{path}: model {name!r}: {in_own_model(error) or error}") from error
+            kind.title = kind.title or name
+            if not kind.colour:
+                kind.colour, kind.linestyle = _LOOKS[position % len(_LOOKS)]
             kind.reference = f"own model, {Path(path).name}, SHA-256 {digest}: {kind.reference}"
     _REGISTERED.add(path)
 
