@@ -547,7 +547,7 @@ inline bool turned_whole(const Problem& p, const Points& free, double still, Sol
         const double size = size_of(r), large = size_of(u);
         if (size <= kStraight * large) return true;
         for (int j = 0; j < 3; ++j) {
-            const double by = kSwing * large, kept = u[j];
+            const double by = kSwing * greater(large, still), kept = u[j];
             u[j] += by;
             if (!beside(u, other)) return false;
             u[j] = kept;

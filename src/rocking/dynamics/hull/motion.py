@@ -316,7 +316,7 @@ def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: flo
         large, most = length(tuple(u)), length(tuple(off))
         if most <= _STRAIGHT * large:
             return found
-        by = _SWING * large
+        by = _SWING * max(large, still)
         swung = [beside(u + by * axis) for axis in np.eye(3)]
         if any(s is None for s in swung):
             return None
