@@ -94,12 +94,11 @@ def register_own() -> None:
 def origin_of(label: str) -> dict[str, str]:
     """Return of which file a model of the user's own is, for what is computed with it; nothing for any other."""
     name = label.rpartition("*")[2].partition(":")[0]
-    found = {
-        f"{Path(where).name}, SHA-256 {hashlib.sha256(source.encode()).hexdigest()}"
-        for kind, (source, where) in _SOURCES.items()
-        if getattr(kind, "name", None) == name
-    }
-    return {"restitution_file": "; ".join(sorted(found))} if found else {}
+    found = [each for kind, each in _SOURCES.items() if getattr(kind, "name", None) == name]
+    if not found:
+        return {}
+    source, where = found[-1]  # the last that was read
+    return {"restitution_file": f"{Path(where).name}, SHA-256 {hashlib.sha256(source.encode()).hexdigest()}"}
 
 
 def _keeps_its_word(tried: RestitutionModel) -> None:
