@@ -24,10 +24,10 @@ _VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which
 _ROUNDING = 1e-9
 # colour and strokes of models that say none, which no model of the package has
 _LOOKS = (
-    ("#7a3b00", (0, (9, 2))),
-    ("#00695c", (0, (2, 3))),
-    ("#8e2464", (0, (7, 2, 2, 2, 2, 2))),
-    ("#4a5a00", (0, (12, 4))),
+    ("#a8642a", (0, (9, 2))),
+    ("#2f8f83", (0, (2, 3))),
+    ("#b0589a", (0, (7, 2, 2, 2, 2, 2))),
+    ("#76802f", (0, (12, 4))),
 )
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
