@@ -16,8 +16,8 @@ struct Contact {
     bool operator==(const Contact& o) const { return members == o.members && stuck == o.stuck; }
 };
 
-// Where a member stands among the members: the first of them.
-inline std::size_t slot_of(const Points& members, int i, std::size_t from) {  // from: where it may stand, as lists go on alike
+// Where a member stands among the members, looked for first beyond `from`: lists that are gone through together go on alike.
+inline std::size_t slot_of(const Points& members, int i, std::size_t from) {
     for (std::size_t k = from; k < members.size(); ++k)
         if (members[k] == i) return k;
     return static_cast<std::size_t>(std::find(members.begin(), members.end(), i) - members.begin());

@@ -267,13 +267,13 @@ def laplace(
     best = _objective(model, observer, scatter, noise, u)
     damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
     eye = np.eye(model.size)
+    parts = [slice(k, k + _PART) for k in range(0, best[1].shape[1], _PART)]
     for taken in range(steps):
         if taken == _PATIENCE:  # what is far behind by then weighs nothing
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
         value, residual, slopes, times, time_slopes = (each[active] for each in best)
         turned = slopes.transpose(0, 2, 1)
-        parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
         hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
         gradient = turned @ residual[..., None] - u[active, :, None]
         scale = damping[active, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]

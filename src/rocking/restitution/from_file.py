@@ -67,6 +67,7 @@ def register_own() -> None:
     path = os.environ.get(_VARIABLE, "")
     if not path or path in _REGISTERED:
         return
+    path = os.environ[_VARIABLE] = str(Path(path).absolute())  # processes of studies start in other folders
     try:
         source = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
@@ -75,7 +76,6 @@ def register_own() -> None:
         kinds = [each for each in _kinds(source, path).values() if not inspect.isabstract(each)]
         if not kinds:
             raise UnknownModelError(f"{_VARIABLE}={path} has no restitution model")
-        digest = hashlib.sha256(source.encode()).hexdigest()
         for position, kind in enumerate(kinds):
             name = getattr(kind, "name", kind.__name__)
             try:
@@ -87,7 +87,7 @@ def register_own() -> None:
             kind.title = kind.title or name
             if not kind.colour:
                 kind.colour, kind.linestyle = _LOOKS[position % len(_LOOKS)]
-            kind.reference = f"own model, {Path(path).name}, SHA-256 {digest}: {kind.reference}"
+            kind.reference = f"own model, {_signed(source, path)}: {kind.reference}"
     _REGISTERED.add(path)
 
 
@@ -95,10 +95,11 @@ def origin_of(label: str) -> dict[str, str]:
     """Return of which file a model of the user's own is, for what is computed with it; nothing for any other."""
     name = label.rpartition("*")[2].partition(":")[0]
     found = [each for kind, each in _SOURCES.items() if getattr(kind, "name", None) == name]
-    if not found:
-        return {}
-    source, where = found[-1]  # the last that was read
-    return {"restitution_file": f"{Path(where).name}, SHA-256 {hashlib.sha256(source.encode()).hexdigest()}"}
+    return {"restitution_file": _signed(*found[-1])} if found else {}  # the last that was read
+
+
+def _signed(source: str, where: str) -> str:
+    return f"{Path(where).name}, SHA-256 {hashlib.sha256(source.encode()).hexdigest()}"
 
 
 def _keeps_its_word(tried: RestitutionModel) -> None:

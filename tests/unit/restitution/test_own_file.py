@@ -2,13 +2,14 @@
 
 import hashlib
 import json
+import os
 
 import pytest
 
 import rocking as rk
 from rocking.cli import main
 from rocking.errors import RockingError
-from rocking.restitution import registry
+from rocking.restitution import from_file, registry
 from rocking.restitution.from_file import register_own
 
 MODEL = """
@@ -58,6 +59,27 @@ def test_a_model_is_known_by_its_name(own, capsys):
     response = rk.simulate(block, rk.pulses.sine(4.0, 0.8), "0.98*mine")
     assert response._facts["restitution_file"] == f"mine.py, SHA-256 {digest}"
     assert "restitution_file" not in rk.simulate(block, rk.pulses.sine(4.0, 0.8), "ked")._facts
+
+
+def test_a_relative_file_is_found_from_other_folders(own, tmp_path, monkeypatch):
+    """Processes of studies start elsewhere: what was said of the folder of the server is said in full."""
+    path = own(HOUSNER, "near")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROCKING_MODELS", "near.py")
+    register_own()
+    assert os.environ["ROCKING_MODELS"] == str(path)
+    register_own()  # twice is once
+
+
+def test_the_file_is_the_last_of_two_of_one_name(own):
+    """Negative control of provenance: an older model of that name was computed with before, not now."""
+    for value in (HOUSNER, f"0.9 * {HOUSNER}"):
+        path = own(value, "twice")
+        registry._MODELS.pop("twice", None)
+        from_file._REGISTERED.discard(str(path))
+        register_own()
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert from_file.origin_of("twice") == {"restitution_file": f"twice.py, SHA-256 {digest}"}
 
 
 def test_the_page_lists_it(own):
