@@ -59,17 +59,22 @@ def ring_integral(ring: FloatArray) -> float:
     """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring."""
     # by Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
     # elementary integral for every straight edge
-    start, end = ring, np.roll(ring, -1, axis=0)
+    return 0.25 * float(edge_integrals(ring, np.roll(ring, -1, axis=0)).sum())  # Eq. 8
+
+
+def edge_integrals(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return the integrals of y^4 d(phi), phi the polar angle, along straight edges; shape (n,)."""
     length = np.sqrt(np.square(end - start).sum(axis=1))
-    tau = (end - start) / length[:, None]
+    tau = (end - start) / np.maximum(length, 1e-300)[:, None]
     offset = tau[:, 1] * start[:, 0] - tau[:, 0] * start[:, 1]
     u0, u1 = (tau * start).sum(axis=1), (tau * end).sum(axis=1)
     radial = np.abs(offset) <= 1e-300
     smooth = ~radial & _is_smooth(offset, u0, u1)
     sharp = ~(radial | smooth)
-    total = _by_gauss(*(values[smooth] for values in (start[:, 1], end[:, 1], offset, u0, u1)))
-    total += _by_formula(*(values[sharp] for values in (tau[:, 0], tau[:, 1], offset, u0, u1)))
-    return 0.25 * total  # Eq. 8
+    found = np.zeros(len(start))
+    found[smooth] = _by_gauss(*(values[smooth] for values in (start[:, 1], end[:, 1], offset, u0, u1)))
+    found[sharp] = _by_formula(*(values[sharp] for values in (tau[:, 0], tau[:, 1], offset, u0, u1)))
+    return found
 
 
 def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
@@ -79,15 +84,15 @@ def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
     return np.maximum(np.abs(z + root), np.abs(z - root)) > _GAUSS_BEYOND
 
 
-def _by_gauss(y0: FloatArray, y1: FloatArray, offset: FloatArray, u0: FloatArray, u1: FloatArray) -> float:
+def _by_gauss(y0: FloatArray, y1: FloatArray, offset: FloatArray, u0: FloatArray, u1: FloatArray) -> FloatArray:
     share = 0.5 * (1.0 + _NODES)[:, None]
     y = y0 + (y1 - y0) * share
     u = u0 + (u1 - u0) * share
     integrand = (y * y) ** 2 * offset / (offset**2 + u**2)
-    return float((0.5 * (u1 - u0) * (_WEIGHTS[:, None] * integrand).sum(axis=0)).sum())
+    return np.asarray(0.5 * (u1 - u0) * (_WEIGHTS[:, None] * integrand).sum(axis=0))
 
 
-def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u1: FloatArray) -> float:
+def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u1: FloatArray) -> FloatArray:
     # y = s p + c u along the edge, with s = -tau_x and c = tau_y
     s, c2, s2, p2 = -c_x, c * c, c_x * c_x, p * p
     powers = (
@@ -98,7 +103,7 @@ def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u
     logs = 2.0 * c * s * (s2 - c2) * p2 * p2 * each(math.log, (p2 + u1 * u1) / (p2 + u0 * u0))
     turn = each(math.atan2, p * (u1 - u0), p2 + u0 * u1)
     angles = (s2 * s2 - 6.0 * c2 * s2 + c2 * c2) * p2 * p2 * turn
-    return float((powers + logs + angles).sum())  # Eq. 114
+    return np.asarray(powers + logs + angles)  # Eq. 114
 
 
 @dataclass(frozen=True)

@@ -15,17 +15,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid import Polyhedron, RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
 from rocking.restitution.space.impact import SpatialImpact
-from rocking.restitution.space.integrals import extruded_moment, height_squared
+from rocking.restitution.space.integrals import exact_moment, height_squared
 from rocking.restitution.space.model import SpatialFlag, SpatialModel
 
 HIGHEST = 32  # degree of the polynomials, at most
 
-_SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-9, 1e-7
+_SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-10, 1e-7
 _ARCS = 8
 _PIECE = 4096  # points at a time: what is computed of them stays in the cache
 
@@ -73,22 +73,18 @@ class ImpulsePosition:
         """Numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
         total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
         for part, cloud in zip(self.solid.local_parts, _clouds(self.solid), strict=True):
-            exact = extruded_moment(part, point, edge)
-            total += _of_cloud(cloud, edge, offset) if exact is None else exact
+            exact = exact_moment(part, point, edge)
+            total += exact if exact is not None else _of_cloud(cloud, edge, offset)
         return total
 
     def _fitted(self, middle: float, half: float) -> list[float]:
-        values = [self.exact(middle + half * share) for share in (1.0, 0.0, -1.0)]
-        degree, found = 2, _coefficients(values)
-        while degree < HIGHEST:
+        degree, values = 4, [self.exact(middle + half * math.cos(math.pi * j / 4)) for j in range(5)]
+        found = _coefficients(values)
+        while degree < HIGHEST and max(map(abs, found[-2:])) > _CONVERGED * max(1.0, *map(abs, values)):
             degree *= 2
             shares = [math.cos(math.pi * j / degree) for j in range(degree + 1)]
-            new = {share: self.exact(middle + half * share) for share in shares[1::2]}
-            error = max(abs(_value(found, share) - value) for share, value in new.items())
-            every = [new[share] if j % 2 else values[j // 2] for j, share in enumerate(shares)]
-            values, found = every, _coefficients(every)
-            if error <= _CONVERGED * max(1.0, *map(abs, every)):
-                break
+            values = [self.exact(middle + half * shares[j]) if j % 2 else values[j // 2] for j in range(degree + 1)]
+            found = _coefficients(values)
         return found
 
 
@@ -126,6 +122,9 @@ def _clouds(solid: Solid) -> list[FloatArray]:
     # z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction
     made = []
     for part in solid.local_parts:
+        if isinstance(part.shape, Polyhedron):
+            made.append(np.empty((6, 0)))  # `exact_moment`
+            continue
         shape, top = part.shape, float(part.box()[1][2])
         negligible = _NEGLIGIBLE * shape.moments().mass * top * top
         batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, height_squared)

@@ -2,7 +2,7 @@
 
 A product of features of degrees i and j about the landing point, divided by a squared length, is homogeneous; over the
 volume it is a sum over the surface (`samples`). About an edge and upright the one integral of the plane, Eq. 17 of
-Mao et al. 2024, is exact for extrusions along it.
+Mao et al. 2024, is exact for bodies with flat faces.
 
 What stage 2 of KED keeps are moments that serve every velocity and every vertical. Stage 1 leaves the velocities
 ``v = u + W s``, with s from the landing point, ``u = P c``, ``W = P [omega x]``, c the velocity of the landing point
@@ -23,10 +23,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from rocking.bodies.solid import Corner, Edge, Part, Polyhedron, Prism, Solid
+from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.sampling import Distance, samples
-from rocking.conventions import FloatArray
+from rocking.bodies.solid.surfaces import TriangleSurface, area_vectors, placed_points
+from rocking.conventions import FloatArray, IntArray
 from rocking.portable import applied, dot, gram, times
-from rocking.restitution.ked import ring_integral
+from rocking.restitution.ked import edge_integrals, ring_integral
 
 Features = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
@@ -34,12 +36,12 @@ _NEGLIGIBLE = 1e-17
 # a round surface hugs the tangent over a long way: 1e-10 of the integral needs no more
 _NEGLIGIBLE_ROUND = 1e-13
 _ALONG = 1e-12
+_STEEP = 1e-3
 _CACHED = 256
 
 
 def line_moment(solid: Solid, edge: Edge) -> float:
     """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in space."""
-    # for extrusions along the line it is the exact integral of the polygon times the length
     return _line_moment(solid, *edge.point.tolist(), *edge.direction.tolist())
 
 
@@ -52,24 +54,66 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
         return (s[:, 2] ** 2 * (1.0 / np.maximum(distance(s), 1e-300)))[:, None], np.ones(1)
 
     for part in solid.local_parts:
-        exact = extruded_moment(part, point, edge)
+        exact = exact_moment(part, point, edge)
         if exact is None:
             exact = float(of_part(part, point, features, (distance, height_squared))[0, 0])
         total += exact
     return total
 
 
-def extruded_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
-    """Return the exact integral of a part that is extruded along the line; None for any other."""
-    prism = part.shape
-    if not isinstance(prism, Prism) or not np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
+def exact_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
+    """Return the exact integral of a part with flat faces about a level line; None for any other."""
+    if not isinstance(part.shape, Polyhedron):
         return None
+    if isinstance(part.shape, Prism) and np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
+        return _extruded_moment(part, part.shape, point, edge)
+    return part.density * _facets(part).moment(point, edge)
+
+
+def _extruded_moment(part: Part, prism: Prism, point: FloatArray, edge: FloatArray) -> float:
     across = np.array([-edge[1], edge[0], 0.0])
     frame = np.stack([across, np.array([0.0, 0.0, 1.0])])
     plane, shift = times(frame, part.rotation[:, :2]), applied(frame, part.translation - point)
     turned = float(np.sign(plane[0, 0] * plane[1, 1] - plane[0, 1] * plane[1, 0]))
     length = part.density * prism.length
     return length * turned * sum(ring_integral(times(ring, plane.T) + shift) for ring in prism.region.rings)
+
+
+class _Facets:
+    """Flat faces in their place, each edge between two of them once."""
+
+    def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
+        self.vertices, self.faces = vertices, faces
+        self.areas = area_vectors(vertices[faces])
+        ends = directed_edges(faces)
+        _, first, self.numbers = np.unique(edge_numbers(faces), return_index=True, return_inverse=True)
+        self.ends = ends[first]
+        self.signs = np.where(ends[:, 0] == self.ends[self.numbers, 0], 1.0, -1.0)
+
+    def moment(self, point: FloatArray, edge: FloatArray) -> float:
+        """Return ``Int z^4/(t^2 + z^2) dV`` about a line, t and z across it, z upwards [m5]."""
+        s = self.vertices - point
+        cones = (self.areas * s[self.faces[:, 0]]).sum(axis=1)
+        along = self.areas[:, 0] * edge[0] + self.areas[:, 1] * edge[1]
+        steep = np.abs(along) > _STEEP * np.sqrt(np.square(self.areas).sum(axis=1))
+        shares = np.divide(cones, along, out=np.zeros(len(along)), where=steep)
+        weights = np.bincount(self.numbers, self.signs * np.tile(shares, 3))
+        seen = np.stack([s[:, 1] * edge[0] - s[:, 0] * edge[1], s[:, 2]], axis=1)
+        start, end = seen[self.ends[weights != 0.0]].swapaxes(0, 1)
+        total = float((weights[weights != 0.0] * edge_integrals(start, end)).sum()) / 20.0  # Eq. 322
+        # seen along the line the others are no areas, and would cancel
+        others, distance = TriangleSurface(s[self.faces[~steep]]), distance_to(edge)
+        negligible = _NEGLIGIBLE * float(np.abs(cones).sum() * np.square(s[:, 2]).max())
+        for points, areas in samples([others], distance, negligible, height_squared):
+            terms = np.square(points[:, 2] ** 2 / np.maximum(distance(points), 1e-300)) * (points * areas).sum(axis=1)
+            total += 0.2 * float(terms.sum())  # Eq. 107
+        return total
+
+
+@lru_cache(maxsize=8)
+def _facets(part: Part) -> _Facets:
+    assert isinstance(part.shape, Polyhedron)
+    return _Facets(placed_points(part.shape.vertices, part.rotation, part.translation), part.shape.faces)
 
 
 def distance_to(edge: FloatArray) -> Distance:
