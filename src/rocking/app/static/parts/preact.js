@@ -2,10 +2,13 @@
 
 import htm from "/vendor/htm/htm.mjs";
 import { h, render } from "/vendor/preact/preact.mjs";
-import { useEffect, useLayoutEffect, useMemo, useRef } from "/vendor/preact/hooks.mjs";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "/vendor/preact/hooks.mjs";
 import { batch, computed, signal } from "/vendor/signals/signals.mjs";
 
 /** A template: html`<p class="note">${words}</p>`; text stays text. */
 export const html = htm.bind(h);
 
-export { batch, computed, render, signal, useEffect, useLayoutEffect, useMemo, useRef };
+export { batch, computed, render, signal, useEffect, useLayoutEffect, useMemo, useRef, useState };
+
+/** A signal that lives as long as its component. */
+export const useSignal = (first) => useRef(signal(first)).current;

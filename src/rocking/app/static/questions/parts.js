@@ -1,12 +1,9 @@
-/** What every view of a question is made of: fields, its progress, its files, and earlier ones. */
+/** What every view of a question is made of: what is asked, its progress, its files, and earlier ones. */
 
-import { html, signal, useEffect, useRef } from "/parts/preact.js";
-import { freshId } from "/app/dom.js";
-import { parseNumber, pretty } from "/app/format.js";
+import { html, signal, useEffect, useRef, useSignal } from "/parts/preact.js";
+import { parseNumber } from "/app/format.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
-
-/** A signal that lives as long as its component. */
-export const useSignal = (first) => useRef(signal(first)).current;
+import { Button, Note, sentence } from "/parts/fields.js";
 
 /** The fields of a form that outlasts a reload; `form.at(...path)` is a signal of one of them. */
 export const useForm = (key, first) => {
@@ -23,47 +20,6 @@ export const useForm = (key, first) => {
     form.current = all;
   }
   return form.current;
-};
-
-/** A labelled field; `kind` is the type of the input. */
-export const Field = ({ label, unit, help, value, kind = "text", error, ...more }) => {
-  const id = useRef(freshId("field")).current;
-  const words = error || help;
-  return html`
-    <div class="field">
-      <div class="field-head"><label for=${id}>${label}${unit && html` <span class="unit">${unit}</span>`}</label></div>
-      <input id=${id} type=${kind} autocomplete="off" aria-describedby=${`${id}-about`} aria-invalid=${error ? "true" : null}
-        value=${value?.value} onInput=${(event) => value && (value.value = event.target.value)} ...${more} />
-      <p id=${`${id}-about`} class=${`field-help ${error ? "field-error" : ""}`}>${words}</p>
-    </div>`;
-};
-
-/** A choice of one; chosen: what it is while nothing was chosen. */
-export const Choice = ({ label, help, value, chosen, options }) => {
-  const id = useRef(freshId("choice")).current;
-  return html`
-    <div class="field">
-      <div class="field-head"><label for=${id}>${label}</label></div>
-      <select id=${id} aria-describedby=${`${id}-about`} value=${chosen ?? value.value}
-        onChange=${({ target }) => { value.value = target.value; target.value = value.value; }}>
-        ${options.map(([key, text]) => html`<option key=${key} value=${key}>${text}</option>`)}
-      </select>
-      <p id=${`${id}-about`} class="field-help">${help}</p>
-    </div>`;
-};
-
-const YES = { true: "yes", false: "no" };
-
-/** A field of a key, with the unit, the words and the choices of its description. */
-export const KeyField = ({ name, facts, ...more }) => {
-  const label = name.replaceAll("_", " ");
-  if (!facts.choices.length) {
-    return html`<${Field} label=${label} unit=${pretty(facts.unit.replace(/^-$/, ""))} help=${sentence(facts.words)}
-      placeholder=${facts.usual} ...${more} />`;
-  }
-  const others = facts.choices.filter((word) => word !== facts.usual).map((word) => [word, YES[word] ?? word]);
-  return html`<${Choice} label=${label} help=${sentence(facts.words)} ...${more}
-    options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 
 /** The keys that were filled in, as a table has them; what is no number is left for the server to refuse. */
@@ -131,8 +87,8 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
     <div class=${`drop ${over.value ? "over" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop}>
       <p>${label}</p>
       <div class="toolbar">
-        <button type="button" class="button" onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}</button>
-        ${many && html`<button type="button" class="button" onClick=${() => folder.current.click()}>Choose a folder</button>
+        <${Button} onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}<//>
+        ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
           <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory
             onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />`}
       </div>
@@ -142,8 +98,8 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
         ${files.value.map((one) => html`<li key=${one.sha}>${one.name}
-          <button type="button" class="button quiet" aria-label=${`Leave out ${one.name}`}
-            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out</button></li>`)}
+          <${Button} kind="quiet" aria-label=${`Leave out ${one.name}`}
+            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out<//></li>`)}
       </ul>`}
     </div>`;
 };
@@ -175,24 +131,20 @@ const Outcome = ({ questions, answer: Answer }) => {
     <section class="card question" aria-labelledby="outcome-title" data-testid="outcome" data-state=${question.state}>
       <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
-      ${question.state === "refused" && html`<${Wrong} words=${sentence(question.message)} />
+      ${question.state === "refused" && html`<${Note} kind="error" role="alert" words=${sentence(question.message)} />
         <${Drawing} question=${question} alt="What was found all the same" />`}
-      ${question.state === "stopped" && html`<p class="note info"><span class="sign" aria-hidden="true">i</span>
-        <span>It was stopped.</span></p>`}
+      ${question.state === "stopped" && html`<${Note} words="It was stopped." />`}
       ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
         questions=${questions} />`}
       ${done && html`<${Files} questions=${questions} question=${question} />`}
     </section>`;
 };
 
-/** Words as a sentence. */
-export const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
-
 const Waiting = ({ questions, question }) => html`
   <div class="waiting-line" role="status">
     <progress aria-label="Being answered"></progress>
     <span>${question.state === "waiting" ? "in line" : "being computed"}</span>
-    <button type="button" class="button" onClick=${questions.stop}>Stop</button>
+    <${Button} onClick=${questions.stop}>Stop<//>
   </div>`;
 
 const WORDS = {
@@ -206,8 +158,8 @@ const wordsOf = (name) => {
 
 const Files = ({ questions, question }) => html`
   <div class="toolbar" role="group" aria-label="Take away">
-    ${question.files.map((name) => html`<button type="button" class="button" key=${name} onClick=${() => questions.take(name)}>
-      ${wordsOf(name)}</button>`)}
+    ${question.files.map((name) => html`<${Button} key=${name} onClick=${() => questions.take(name)}>
+      ${wordsOf(name)}<//>`)}
   </div>
   <details><summary>The same on the command line</summary>
     ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} --out ${question.command}</pre>` : html`
@@ -219,21 +171,6 @@ const Files = ({ questions, question }) => html`
 export const Drawing = ({ question, alt }) => question.files.includes("picture.svg")
   && html`<img class="drawing" src=${`/api/questions/${question.id}/picture.svg`} alt=${alt} />`;
 
-/** A table; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words. */
-export const Rows = ({ caption, head, rows }) => html`
-  <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
-    <table><caption class="visually-hidden">${caption}</caption>
-      <thead><tr>${head.map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
-      <tbody>${rows.map((row, k) => html`<tr key=${k}>
-        ${row.map((cell, j) => {
-          const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
-          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>`
-            : html`<th scope="row" translate=${kind !== "own"}>${text}</th>`;
-        })}</tr>`)}
-      </tbody>
-    </table>
-  </div>`;
-
 // Earlier questions of the project.
 const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">
@@ -242,8 +179,8 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
       ${questions.all.value.map((one) => html`<li key=${one.id}>
         <p><strong>${one.name}</strong><span class="quiet">${new Date(one.asked).toLocaleString()}, ${one.state}</span></p>
         <div class="toolbar">
-          <button type="button" class="button" aria-label=${`Show ${one.name}`} onClick=${() => questions.open(one.id)}>Show</button>
-          <button type="button" class="button" aria-label=${`Delete ${one.name}`} onClick=${() => questions.remove(one.id)}>Delete</button>
+          <${Button} aria-label=${`Show ${one.name}`} onClick=${() => questions.open(one.id)}>Show<//>
+          <${Button} aria-label=${`Delete ${one.name}`} onClick=${() => questions.remove(one.id)}>Delete<//>
         </div></li>`)}
     </ul>
   </section>`;
@@ -255,14 +192,10 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
     <div class="asked">
       <form class="card" onSubmit=${onSubmit} aria-label="What is asked">
         ${children}
-        ${wrong && html`<${Wrong} words=${wrong} />`}
-        <button type="submit" class="button primary" disabled=${questions.busy.value}>Ask</button>
+        ${wrong && html`<${Note} kind="error" role="alert" words=${wrong} />`}
+        <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Ask<//>
       </form>
       <${Earlier} questions=${questions} />
     </div>
     <${Outcome} questions=${questions} answer=${answer} />
   </div>`;
-
-/** What is wrong. */
-export const Wrong = ({ words }) => html`
-  <p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span><span>${words}</span></p>`;

@@ -2,7 +2,7 @@
 
 import { html } from "/parts/preact.js";
 import { number } from "/app/format.js";
-import { Rows } from "/questions/parts.js";
+import { Rows } from "/parts/table.js";
 import { Scene } from "/space/scene.js";
 
 /** The edges of a question's body. */

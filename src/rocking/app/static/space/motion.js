@@ -1,9 +1,9 @@
 /** Playing the motion of a body in space: one time for the picture, the curve of the tilt, and the words. */
 
-import { html, useEffect, useRef } from "/parts/preact.js";
+import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
 import { highest } from "/app/extremes.js";
 import { lineChart } from "/charts/line.js";
-import { Choice, useSignal } from "/questions/parts.js";
+import { Choice } from "/parts/fields.js";
 import { Clock } from "/scene/clock.js";
 import { noteFrame, resetFrames } from "/scene/frames.js";
 import { Played } from "/space/played.js";

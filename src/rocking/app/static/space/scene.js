@@ -1,10 +1,10 @@
 /** A body in space on the page: the picture, how to turn it, and what it shows in words. */
 
-import { html, useEffect, useRef } from "/parts/preact.js";
+import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
+import { Note } from "/parts/fields.js";
 import { fetchFile } from "/app/api.js";
 import { freshId } from "/app/dom.js";
 import { onTheme } from "/charts/style.js";
-import { useSignal } from "/questions/parts.js";
 import { readGlb } from "/space/glb.js";
 import { Stage } from "/space/stage.js";
 
@@ -62,7 +62,7 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
     does();
   };
   return html`
-    ${trouble.value && html`<p class="note warning"><span class="sign" aria-hidden="true">!</span><span>${trouble.value}</span></p>`}
+    ${trouble.value && html`<${Note} kind="warning" words=${trouble.value} />`}
     <div class="space-picture" hidden=${Boolean(trouble.value)}>
       <canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
         data-testid="space-stage" onKeyDown=${keys}

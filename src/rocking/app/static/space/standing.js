@@ -1,8 +1,10 @@
 /** In which ways a body can stand: the poses, what it takes to leave them, and the landscape between them. */
 
-import { html, useRef } from "/parts/preact.js";
+import { html, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
-import { Choice, Drawing, Rows, useSignal } from "/questions/parts.js";
+import { Choice } from "/parts/fields.js";
+import { Rows } from "/parts/table.js";
+import { Drawing } from "/questions/parts.js";
 import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 

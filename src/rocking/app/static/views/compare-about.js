@@ -1,8 +1,8 @@
 /** What a model of the impact is: its source, assumptions, known defects, and what was measured. */
 
-import { html, useEffect, useRef } from "/parts/preact.js";
+import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
+import { Note } from "/parts/fields.js";
 import { number } from "/app/format.js";
-import { useSignal } from "/questions/parts.js";
 import { wordsOf } from "/views/response-labels.js";
 
 const familyOf = (label) => label.split("*").at(-1).split(":")[0];
@@ -46,4 +46,4 @@ const Evidence = ({ found, name }) => {
     <p class="field-help">${found.measured.points.length} published measurements. ${found.measured.source}</p>`;
 };
 
-const Warnings = ({ of }) => of.map((words) => html`<p key=${words} class="note warning"><span class="sign" aria-hidden="true">!</span><span>${words}</span></p>`);
+const Warnings = ({ of }) => of.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`);

@@ -1,7 +1,7 @@
 /** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
 
-import { html, useEffect } from "/parts/preact.js";
-import { Choice, useSignal } from "/questions/parts.js";
+import { html, useEffect, useSignal } from "/parts/preact.js";
+import { Choice, Note } from "/parts/fields.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
@@ -25,7 +25,7 @@ export const Studies = ({ app, asked }) => {
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
           <button type="button" class="button" onClick=${() => app.go("studies")}>Launch a study</button></p>` : html`
         <${Choice} label="Study" value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
-        ${refused.value ? html`<p class="note" data-testid="not-compared"><span class="sign" aria-hidden="true">i</span><span>${refused.value}</span></p>` : html`
+        ${refused.value ? html`<${Note} data-testid="not-compared" words=${refused.value} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
           <img key=${chosen.value} class="drawing" onLoad=${() => (drawn.value = chosen.value)} src=${path("svg", "differences")} alt=${`${study.name}: its models side by side, and what the choice changes`}
             onError=${() => (refused.value = "There is nothing to compare in it: it was asked with one model, or with more than six.")} />

@@ -1,12 +1,12 @@
 /** Compare: does it stand, and does the model matter? Every model of the impact, side by side. */
 
-import { computed, html, render, signal, useEffect, useMemo } from "/parts/preact.js";
+import { computed, html, render, signal, useEffect, useMemo, useSignal } from "/parts/preact.js";
+import { Note } from "/parts/fields.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number } from "/app/format.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { useSignal } from "/questions/parts.js";
 import { createAnswer } from "/views/answer.js";
 import { About } from "/views/compare-about.js";
 import { Studies } from "/views/compare-studies.js";
@@ -81,7 +81,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
   return html`
     <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
       <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
-    ${refused.value && html`<p class="note error" role="alert"><span class="sign" aria-hidden="true">\u2715</span><span>${refused.value}</span></p>`}
+    ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value} />`}
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
       <button type="button" class="button" onClick=${() => app.go("motion")}>Choose a motion</button></p>`}
     ${there.length > 0 && html`

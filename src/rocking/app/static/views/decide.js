@@ -1,10 +1,12 @@
 /** Decide: does the body stand, how sure is that, what to do; and all factors at which that changes. */
 
-import { html, render } from "/parts/preact.js";
+import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, KeyField, QuestionView, Rows, filled, recordEndings, sentence, useForm, useSignal } from "/questions/parts.js";
+import { Choice, Field, KeyField, sentence } from "/parts/fields.js";
+import { Rows } from "/parts/table.js";
+import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],

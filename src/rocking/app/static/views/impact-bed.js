@@ -1,11 +1,12 @@
 /** The contact bed as a laboratory: the coefficient that emerges from springs and dashpots, as one thing changes. */
 
-import { html, render, signal, useMemo, useRef } from "/parts/preact.js";
+import { html, render, signal, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { el } from "/app/dom.js";
 import { number } from "/app/format.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 import { createTime, Figure } from "/charts/figure.js";
-import { Choice, KeyField, Wrong, filled, sentence, useForm, useSignal } from "/questions/parts.js";
+import { Choice, KeyField, sentence, Note } from "/parts/fields.js";
+import { filled, useForm } from "/questions/parts.js";
 
 const VARIED = {
   slenderness: "slenderness", damping: "damping", modulus_over_thickness: "stiffness of a layer", friction: "friction",
@@ -54,7 +55,7 @@ const Laboratory = ({ app, body }) => {
       <${Choice} label="What changes" value=${varied} options=${Object.entries(VARIED)} />
       <details><summary>From where to where, and what the bed is</summary>
         <div class="fields">${[...RANGE, ...others].map(field)}</div></details>
-      ${wrong.value && html`<${Wrong} words=${wrong.value} />`}
+      ${wrong.value && html`<${Note} kind="error" role="alert" words=${wrong.value} />`}
       <div class="toolbar"><button type="submit" class="button" disabled=${busy.value}>Compute</button></div>
     </form>
     ${found.value && html`<${Emerged} found=${found.value} />`}`;

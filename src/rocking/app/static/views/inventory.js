@@ -1,9 +1,11 @@
 /** Inventory: a list of objects, as a museum keeps it, and which of them stay standing. */
 
-import { html, render, useEffect } from "/parts/preact.js";
+import { html, render, useEffect, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Field, FileDrop, KeyField, QuestionView, Rows, filled, useForm, useSignal } from "/questions/parts.js";
+import { Choice, Field, KeyField } from "/parts/fields.js";
+import { Rows } from "/parts/table.js";
+import { FileDrop, QuestionView, filled, useForm } from "/questions/parts.js";
 
 const LIGHTS = { red: "bad", amber: "fair", green: "good" };
 

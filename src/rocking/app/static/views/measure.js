@@ -1,9 +1,11 @@
 /** Measure: the coefficient of restitution from a sound, a table, or the microphone; and what was published of it. */
 
-import { html, render } from "/parts/preact.js";
+import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, QuestionView, Rows, useSignal } from "/questions/parts.js";
+import { Choice, Field, Note } from "/parts/fields.js";
+import { Rows } from "/parts/table.js";
+import { Drawing, FileDrop, QuestionView } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
 
 const KINDS = [
@@ -92,8 +94,7 @@ const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${(answer.doubts ?? []).map((words) => html`<p class="note warning" key=${words}>
-      <span class="sign" aria-hidden="true">!</span><span>${words}</span></p>`)}
+    ${(answer.doubts ?? []).map((words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
     ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0])}
       rows=${models.map((each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;

@@ -1,13 +1,13 @@
 /** Records: one corrected by a chain of steps, before and after; or many measured, chosen and scaled to a spectrum. */
 
 import { freshId } from "/app/dom.js";
-import { html, render, useRef } from "/parts/preact.js";
+import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import {
-  Choice, Drawing, FileDrop, KeyField, QuestionView, Rows, Wrong, filled, recordEndings, sentence, useForm, useSignal,
-} from "/questions/parts.js";
+import { Choice, KeyField, Note, sentence } from "/parts/fields.js";
+import { Rows } from "/parts/table.js";
+import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
 
 const G = 9.80665;
 const FIRST = { files: [], curve: [], steps: [], motion: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
@@ -122,7 +122,7 @@ const Chain = ({ app, form, stations, faulty }) => {
           ${keysOf(steps[place], known[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
             facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}
         </div>
-        ${faulty?.place === place && html`<${Wrong} words=${faulty.words} />`}
+        ${faulty?.place === place && html`<${Note} kind="error" role="alert" words=${faulty.words} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
         options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${words.toLowerCase()}`])]} />
@@ -182,7 +182,7 @@ const Corrected = ({ answer, question, questions }) => {
   const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
     <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
-    ${doubts.map((words) => html`<p class="note warning" key=${words}><span class="sign" aria-hidden="true">!</span><span>${sentence(words)}</span></p>`)}
+    ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
     <div class="toolbar"><button type="button" class="button primary" onClick=${() => use(questions, question)}>Use it as the motion</button></div>
     <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>

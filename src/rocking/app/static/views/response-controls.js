@@ -1,8 +1,6 @@
 /** What one may turn while the answer follows: strength, size, a free start, friction, models. */
-import { html, useRef } from "/parts/preact.js";
-import { numberField, slider } from "/app/fields.js";
-import { Kept, Switch, told } from "/parts/made.js";
-import { Choice, useSignal } from "/questions/parts.js";
+import { html, useRef, useSignal } from "/parts/preact.js";
+import { Card, Choice, NumberField, Slider, Switch } from "/parts/fields.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
 import { look } from "/views/response-chosen.js";
 import { Swatch, wordsOf } from "/views/response-labels.js";
@@ -32,20 +30,20 @@ export const Controls = ({ app, inputs }) => {
   const free = response?.free ?? null;
   return html`
     <div class="response-controls">
-      <section class="card" aria-label="Turn and see"><h2>Turn and see</h2>
-        <${Kept} make=${slider} label="Scale of the motion" unit="" min=${0.1} max=${10} log hidden=${free !== null || !motion}
+      <${Card} title="Turn and see">
+        <${Slider} label="Scale of the motion" min=${0.1} max=${10} log hidden=${free !== null || !motion}
           value=${clipped(motion?.scale ?? 1)} on=${(scale) => app.inputs.set("motion.scale", scale)} />
         <${Size} app=${app} body=${body} />
         <${Switch} label="Let it go from a lean instead" help="Free rocking: the ground stands still."
           value=${free !== null} on=${(yes) => (yes ? lean(app) : shake(app))} />
-        <${Kept} make=${slider} label="First rotation over slenderness angle" unit="" min=${-0.99} max=${0.99} step=${0.01}
+        <${Slider} label="First rotation over slenderness angle" min=${-0.99} max=${0.99} step=${0.01}
           hidden=${free === null} value=${free ?? LEAN} on=${(value) => app.inputs.set("response.free", value || 0.01)} />
-        <${Kept} make=${numberField} label="Friction between body and ground" min=${0.01} max=${10} step=${0.05}
+        <${NumberField} label="Friction between body and ground" min=${0.01} max=${10} step=${0.05}
           help="Rocking that takes more would slide." value=${response?.assumed_friction ?? 0.5}
           on=${(value) => app.inputs.set("response.assumed_friction", value)} />
-      </section>
-      <section class="card" aria-label="Models of the impact"><h2>Models of the impact</h2>
-        <${Models} app=${app} table=${restitution} /></section>
+      <//>
+      <${Card} title="Models of the impact">
+        <${Models} app=${app} table=${restitution} /><//>
     </div>`;
 };
 
@@ -58,7 +56,7 @@ const Size = ({ app, body }) => {
     factor.current = next;
     app.inputs.set("body", scaledBody(drawn.current, next));
   };
-  return html`<${Kept} make=${slider} label="Size of the body, all lengths" unit="" min=${0.2} max=${5} log hidden=${!canBeScaled(body)}
+  return html`<${Slider} label="Size of the body, all lengths" min=${0.2} max=${5} log hidden=${!canBeScaled(body)}
     help="Against the body as it was drawn; larger ones are more stable." value=${factor.current} on=${resize} />`;
 };
 
@@ -81,7 +79,7 @@ const Models = ({ app, table }) => {
     change({ models: [label, ...others(label)] });
     look(label);
   };
-  const foot = (words, index) => html`<${Kept} make=${numberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet[index]}
+  const foot = (words, index) => html`<${NumberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet[index]}
     on=${(given) => change({ feet: feet.map((one, k) => (k === index ? given : one)) })} />`;
   const known = app.info.models.filter(complete).map(({ label }) => label);
   return html`
@@ -93,12 +91,12 @@ const Models = ({ app, table }) => {
               onChange=${(event) => change({ models: event.target.checked ? [...others(label), label] : others(label) })} />
             <${Swatch} label=${label} /><span>${wordsOf(label)}</span></label>`)}
       </fieldset>
-      ${models.length > 1 && !feet && html`<${Choice} label="Main model" value=${told(models[0], lead)}
+      ${models.length > 1 && !feet && html`<${Choice} label="Main model" value=${models[0]} on=${lead}
         options=${models.map((label) => [label, wordsOf(label)])}
         help="Its answer comes first: in the files, the report and on the command line." />`}
       <${Switch} label="A coefficient of my own" hidden=${feet !== null} value=${value !== null}
         on=${(yes) => change({ value: yes ? USUAL : null })} />
-      ${value !== null && !feet && html`<${Kept} make=${slider} label="Coefficient of restitution r" unit="" min=${0} max=${1} step=${0.005}
+      ${value !== null && !feet && html`<${Slider} label="Coefficient of restitution r" min=${0} max=${1} step=${0.005}
         value=${Math.min(value, 1)} on=${(given) => change({ value: given })} />`}
       <p class="field-help">${CALIBRATED}</p>
       <${Switch} label="One coefficient for each foot" help="Stands alone, without models." value=${feet !== null}

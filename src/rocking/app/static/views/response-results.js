@@ -1,9 +1,9 @@
 /** The verdict's cards, the impacts in a table, and files to take away. */
 import { html, useMemo } from "/parts/preact.js";
-import { tableOf } from "/app/fields.js";
 import { number, quantity } from "/app/format.js";
-import { Made, told } from "/parts/made.js";
-import { Choice } from "/questions/parts.js";
+import { Made } from "/parts/made.js";
+import { Button, Card, Choice } from "/parts/fields.js";
+import { Table } from "/parts/table.js";
 import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
 import { curveKey, Swatch, wordsOf } from "/views/response-labels.js";
 import { outcomeOf } from "/views/response-words.js";
@@ -16,12 +16,12 @@ export const Cards = ({ answers, lead }) => html`
     ${answers.map((one) => (one.error ? html`
       <div key=${one.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${one.label} />
         <span class="outcome-facts">${one.error}</span></div>`
-    : html`<${Card} key=${curveKey(one.label)} answer=${one} checked=${one.label === lead} />`))}
+    : html`<${Verdict} key=${curveKey(one.label)} answer=${one} checked=${one.label === lead} />`))}
   </fieldset>`;
 
 const Head = ({ label }) => html`<span class="outcome-model"><${Swatch} label=${label} />${wordsOf(label)}</span>`;
 
-const Card = ({ answer, checked }) => {
+const Verdict = ({ answer, checked }) => {
   const { kind, sign, word } = outcomeOf(answer);
   return html`
     <label class=${`outcome outcome-${kind}`} data-testid=${`outcome-${answer.label}`} data-outcome=${answer.outcome}>
@@ -58,16 +58,13 @@ const rowsOf = (impacts) =>
 
 /** The impacts of the model that is looked at. */
 export const Impacts = ({ app, answers, answer }) => {
-  const node = useMemo(() => {
-    const rows = rowsOf(answer.impacts);
-    const more = rows.length > MOST ? `; the first ${MOST} are shown, copying takes them all` : "";
-    const caption = `${rows.length} impact${rows.length === 1 ? "" : "s"} (${wordsOf(answer.label)})${more}`;
-    const csv = () => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv");
-    return tableOf(COLUMNS, rows.slice(0, MOST), { caption, csv, testid: "impacts-table", copyRows: () => rows });
-  }, [answer]);
-  return html`<section class="card" aria-label="Impacts"><h2>Impacts</h2><div class="impacts">
-    <${Choice} label="Model" value=${told(answer.label, look)} options=${answers.map(({ label }) => [label, wordsOf(label)])} />
-    <${Made} node=${node} data-testid="impacts" /></div></section>`;
+  const rows = useMemo(() => rowsOf(answer.impacts), [answer]);
+  const more = rows.length > MOST ? `; the first ${MOST} are shown, copying takes them all` : "";
+  return html`<${Card} title="Impacts"><div class="impacts">
+    <${Choice} label="Model" value=${answer.label} on=${look} options=${answers.map(({ label }) => [label, wordsOf(label)])} />
+    <div data-testid="impacts"><${Table} columns=${COLUMNS} rows=${rows.slice(0, MOST)} copied=${() => rows} testid="impacts-table"
+      caption=${`${rows.length} impact${rows.length === 1 ? "" : "s"} (${wordsOf(answer.label)})${more}`}
+      csv=${() => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv")} /></div></div><//>`;
 };
 
 const FILES = [
@@ -81,10 +78,10 @@ export const TakeAway = ({ app, restitution }) => {
   const save = ([, path, chosen]) =>
     app.download(chosen ? pathOfChosen(path, restitution) : path, app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);
-  return html`<section class="card" aria-label="Take away"><h2>Take away</h2>
-    <div class="toolbar">${FILES.map((file) => html`<button type="button" class="button" key=${file[0]} onClick=${() => save(file)}>${file[0]}</button>`)}
+  return html`<${Card} title="Take away">
+    <div class="toolbar">${FILES.map((file) => html`<${Button} key=${file[0]} onClick=${() => save(file)}>${file[0]}<//>`)}
       <${Made} node=${film.button} /></div>
     <${Made} node=${film.progress} />
     <p class="field-help" data-testid="files-model">${labels.length > 1
-      && `Pictures show all models; curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p></section>`;
+      && `Pictures show all models; curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p><//>`;
 };

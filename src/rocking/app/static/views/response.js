@@ -1,5 +1,6 @@
 /** How the body rocks: one stage of verdict, animation and linked figures, for several restitution models at once. */
 import { html, render, signal, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
+import { Note } from "/parts/fields.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Player } from "/scene/player.js";
@@ -74,7 +75,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
     <header class="view-head"><h1>Response</h1>
       <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
     <div aria-live="polite" data-testid="response-refusal">
-      ${refused.value && html`<p class="note error"><span class="sign" aria-hidden="true">\u2715</span><span>${refused.value}</span></p>`}
+      ${refused.value && html`<${Note} kind="error" words=${refused.value} />`}
       ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
       <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
@@ -98,6 +99,6 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
 };
 
 const NothingMoves = ({ app }) => html`
-  <p class="note"><span class="sign" aria-hidden="true">i</span><span>Nothing moves the body yet: choose a motion, or let it go from a lean.</span></p>
+  <${Note} words="Nothing moves the body yet: choose a motion, or let it go from a lean." />
   <div class="toolbar"><button type="button" class="button primary" onClick=${() => app.go("motion")}>Choose a motion</button>
     <button type="button" class="button" onClick=${() => lean(app)}>Let it go from a lean</button></div>`;

@@ -1,9 +1,10 @@
 /** In space: a scan, what was mended in it, in which ways it can stand, what its edges cost, and how it moves. */
 
-import { html, render } from "/parts/preact.js";
+import { html, render, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Drawing, Field, FileDrop, QuestionView, recordEndings, useSignal } from "/questions/parts.js";
+import { Choice, Field } from "/parts/fields.js";
+import { Drawing, FileDrop, QuestionView, recordEndings } from "/questions/parts.js";
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
 import { Standing } from "/space/standing.js";

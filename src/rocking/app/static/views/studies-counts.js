@@ -1,7 +1,6 @@
 /** Studies without a picture of their own: how many histories ended in which way, and tables. */
-import { html, useMemo } from "/parts/preact.js";
-import { Made } from "/parts/made.js";
-import { tableOf } from "/app/fields.js";
+import { html } from "/parts/preact.js";
+import { Table } from "/parts/table.js";
 import { percent } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 
@@ -11,7 +10,7 @@ const MOST = 500;
 export const Counts = ({ found }) => {
   const several = found.restitutions?.length > 1;
   return html`
-    ${(found.shares ?? []).map((shares, k) => html`<${Sheet} key=${k} heads=${["Outcome", "histories", "share"]} testid="study-counts"
+    ${(found.shares ?? []).map((shares, k) => html`<${Table} key=${k} columns=${["Outcome", "histories", "share"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
       caption=${several ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes"} />`)}
     ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
@@ -21,9 +20,6 @@ const Columns = ({ name, columns }) => {
   const count = columns[0]?.values.length ?? 0;
   const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));
   const heads = columns.map((each) => ({ label: each.name.replaceAll("_", " "), unit: each.unit === "1" ? "" : each.unit }));
-  return html`<div><${Sheet} heads=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
+  return html`<div><${Table} columns=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
     ${count > MOST && html`<p class="quiet">${`${count - MOST} more rows are in the files.`}</p>`}</div>`;
 };
-
-/** A table of a result, which does not change. */
-export const Sheet = ({ heads, rows, ...more }) => html`<${Made} node=${useMemo(() => tableOf(heads, rows, more), [])} />`;

@@ -1,6 +1,6 @@
 /** Files of a finished study. */
-import { html } from "/parts/preact.js";
-import { useSignal } from "/questions/parts.js";
+import { html, useSignal } from "/parts/preact.js";
+import { Button, Note } from "/parts/fields.js";
 
 const FILES = [
   ["png", "PNG"], ["svg", "SVG"], ["csv", "CSV"], ["xlsx", "Excel"], ["mat", "MATLAB"], ["nc", "netCDF"],
@@ -41,16 +41,12 @@ export const Exports = ({ app, study, found, chosen }) => {
     <div class="study-exports">
       <h3>Take away</h3>
       <div class="toolbar">${offered.map(([suffix, text]) => html`
-        <button type="button" class="button" key=${suffix} aria-label=${`${study.name} as ${text}`} data-testid=${`export-${suffix}`}
-          disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}</button>`)}</div>
+        <${Button} key=${suffix} aria-label=${`${study.name} as ${text}`} data-testid=${`export-${suffix}`}
+          disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}<//>`)}</div>
       <div aria-live="polite">
-        ${said.value && html`<${Info} words=${said.value} />`}
-        ${said.value === CROSS && html`<button type="button" class="button" data-testid="export-nested" onClick=${nest}>Save with one dispersion</button>`}
+        ${said.value && html`<${Note} words=${said.value} />`}
+        ${said.value === CROSS && html`<${Button} data-testid="export-nested" onClick=${nest}>Save with one dispersion<//>`}
       </div>
       ${curveless && html`<p class="quiet" data-testid="no-nrml">${NO_FIT}</p>`}
     </div>`;
 };
-
-/** A sentence that is good to know. */
-export const Info = ({ words }) => html`
-  <p class="note info"><span class="sign" aria-hidden="true">i</span><span>${words}</span></p>`;

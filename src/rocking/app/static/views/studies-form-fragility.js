@@ -1,21 +1,12 @@
 /** The question of a fragility: which motions, which measure, which levels and states. */
-import { html, useMemo, useRef } from "/parts/preact.js";
-import { Kept, told } from "/parts/made.js";
-import { numberField, segmented } from "/app/fields.js";
+import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { pretty } from "/app/format.js";
-import { Choice, useSignal } from "/questions/parts.js";
+import { Choice, NumberField, Segmented } from "/parts/fields.js";
 import { Range, rangeOf, unitOf } from "/views/studies-form-parts.js";
 import { RecordChoice } from "/views/studies-form-records.js";
 
-const ANALYSES = [
-  { value: "stripes", text: "Stripes" },
-  { value: "incremental", text: "Incremental" },
-  { value: "cloud", text: "Cloud" },
-];
-const SOURCES = [
-  { value: "synthetic", text: "Synthetic set" },
-  { value: "records", text: "Uploaded records" },
-];
+const ANALYSES = [["stripes", "Stripes"], ["incremental", "Incremental"], ["cloud", "Cloud"]];
+const SOURCES = [["synthetic", "Synthetic set"], ["records", "Uploaded records"]];
 
 /** Where the levels of a measure usually lie. */
 const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
@@ -34,24 +25,22 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     return { from, to, count: 12 };
   }, [measure]);
   const take = (key) => (value) => (chosen.value = { ...chosen.value, [key]: value });
-  const choice = (key, label, options) => html`
-    <${Choice} label=${label} options=${options} value=${told(chosen.value[key], take(key))} />`;
-  const field = (make, key, label, more) => html`
-    <${Kept} make=${make} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
+  const field = (Kind, key, label, more) => html`<${Kind} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
+  const choice = (key, label, options) => field(Choice, key, label, { options });
   question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records.current) };
   return html`<div class="question">
-    ${field(segmented, "kind", "Analysis", { options: ANALYSES })}
-    ${field(segmented, "source", "Motions", { options: SOURCES })}
+    ${field(Segmented, "kind", "Analysis", { options: ANALYSES })}
+    ${field(Segmented, "source", "Motions", { options: SOURCES })}
     <div class="fields" hidden=${source !== "synthetic"}>
       ${choice("family", "Family", families.map(({ name, title }) => [name, title ?? name]))}
-      ${field(numberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
-      ${field(numberField, "seed", "Seed", { min: 0, step: 1 })}
+      ${field(NumberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
+      ${field(NumberField, "seed", "Seed", { min: 0, step: 1 })}
     </div>
     <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
     ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
       [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
-    ${field(numberField, "state", "Rocking counts from", {
+    ${field(NumberField, "state", "Rocking counts from", {
       unit: "\u03b1", min: 0.01, max: 1, step: 0.05,
       help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
     })}

@@ -1,7 +1,6 @@
 /** The question of an overturning map: two axes. */
-import { html, useMemo } from "/parts/preact.js";
-import { told } from "/parts/made.js";
-import { Choice, useSignal } from "/questions/parts.js";
+import { html, useMemo, useSignal } from "/parts/preact.js";
+import { Choice } from "/parts/fields.js";
 import { greek } from "/views/studies-words.js";
 import { Range, motionsOf, rangeOf, unitOf } from "/views/studies-form-parts.js";
 
@@ -44,7 +43,7 @@ export const MapQuestion = ({ app, question }) => {
   };
   const side = (which, range) => html`
     <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words }) => [name, greek(words)])}
-      value=${told(chosen[which], (name) => (own.value = { ...own.value, [which]: name }))} />
+      value=${chosen[which]} on=${(name) => (own.value = { ...own.value, [which]: name })} />
     <${Range} key=${which + chosen[which]} name=${`${SIDES[which]}, values`} range=${range}
       unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;
   return html`<div class="map-question">${side("x", x)}${side("y", y)}</div>`;

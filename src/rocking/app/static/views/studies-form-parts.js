@@ -1,11 +1,10 @@
 /** Parts of the forms of studies: a range of numbers, and the motions of the inputs as tables of a job. */
 import { html } from "/parts/preact.js";
-import { Kept } from "/parts/made.js";
-import { numberField } from "/app/fields.js";
+import { NumberField } from "/parts/fields.js";
 
 /** Three fields: from, to, number, which write into `range`; another range needs another key. */
 export const Range = ({ name, unit = "", range }) => {
-  const field = (key, label, more) => html`<${Kept} make=${numberField} label=${label} value=${range[key]}
+  const field = (key, label, more) => html`<${NumberField} label=${label} value=${range[key]}
     on=${(given) => (range[key] = given)} ...${more} />`;
   return html`<fieldset class="range-fields"><legend>${name}</legend>
     ${field("from", "from", { unit })}${field("to", "to", { unit })}${field("count", "number", { min: 1, max: 400, step: 1 })}

@@ -1,8 +1,7 @@
 /** The uploaded records, to be ticked for a study, told what they do not say, and deleted. */
-import { html, useEffect, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
+import { html, useEffect, useLayoutEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { Made } from "/parts/made.js";
 import { quantity } from "/app/format.js";
-import { useSignal } from "/questions/parts.js";
 import { allAnswered, answersOf, questionsOf } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 

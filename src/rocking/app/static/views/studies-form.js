@@ -1,20 +1,14 @@
 /** What a new study computes: chosen here, about the body and the motion of the other steps. */
-import { html, useRef } from "/parts/preact.js";
-import { Kept } from "/parts/made.js";
-import { segmented } from "/app/fields.js";
-import { useSignal } from "/questions/parts.js";
+import { html, useRef, useSignal } from "/parts/preact.js";
+import { Button, Field, Segmented, wrongIn } from "/parts/fields.js";
 import { MapQuestion } from "/views/studies-form-map.js";
 import { FragilityQuestion } from "/views/studies-form-fragility.js";
 import { SpectrumQuestion } from "/views/studies-form-spectrum.js";
 
 const QUESTIONS = { "overturning-map": MapQuestion, fragility: FragilityQuestion, "rocking-spectrum": SpectrumQuestion };
 const KINDS = [
-  { value: "overturning-map", text: "Overturning map" },
-  { value: "fragility", text: "Fragility" },
-  { value: "rocking-spectrum", text: "Rocking spectra" },
+  ["overturning-map", "Overturning map"], ["fragility", "Fragility"], ["rocking-spectrum", "Rocking spectra"],
 ];
-
-const onScreen = (node) => node.offsetParent !== null;
 
 /** A name that no study has yet. */
 const fresh = (name, taken) => {
@@ -31,7 +25,7 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
 
   /** A field in error holds its last good number, which is not the one on the screen. */
   const faultOf = () => {
-    const wrong = [...form.current.querySelectorAll("[aria-invalid=true]")].find(onScreen);
+    const wrong = wrongIn(form.current);
     wrong?.focus();
     return wrong ? "A number of this form is marked as wrong: correct it first." : app.faults.sentence({ inputs: true });
   };
@@ -60,12 +54,10 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   };
   return html`
     <form ref=${form} class="study-form" onSubmit=${launch}>
-      <${Kept} make=${segmented} label="Kind" options=${KINDS} value=${kind.value} on=${choose} />
+      <${Segmented} label="Kind" options=${KINDS} value=${kind.value} on=${choose} />
       <div class="study-question"><${Question} app=${app} question=${question} visits=${visits} /></div>
-      <div class="field"><label for="study-name" class="field-label">Name</label>
-        <input type="text" id="study-name" maxlength="100" autocomplete="off" value=${name.value}
-          onInput=${(event) => (name.value = event.target.value)} /></div>
+      <${Field} label="Name" id="study-name" value=${name} maxlength="100" />
       <p class="error-text" role="alert" id="study-problem">${problem.value}</p>
-      <div class="toolbar"><button type="submit" class="button primary" data-testid="study-launch" disabled=${busy.value}>Launch</button></div>
+      <div class="toolbar"><${Button} type="submit" kind="primary" data-testid="study-launch" disabled=${busy.value}>Launch<//></div>
     </form>`;
 };

@@ -1,11 +1,10 @@
 /** A fragility: probability curves with their bands, the points they come from, and what the fit says. */
-import { html, useMemo } from "/parts/preact.js";
+import { html, useMemo, useSignal } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
 import { pretty, quantity } from "/app/format.js";
-import { Choice, useSignal } from "/questions/parts.js";
-import { Sheet } from "/views/studies-counts.js";
-import { Info } from "/views/studies-exports.js";
+import { Choice, Note } from "/parts/fields.js";
+import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
 
 /** Fragility curves, of one restitution at a time. */
@@ -29,11 +28,11 @@ const Analysis = ({ found, analysis }) => {
     ${Object.entries(analysis.points).map(([state, points], index) => html`
       <${Curve} key=${state} state=${state} curve=${analysis.curves[state] ?? NO_CURVE} points=${points} index=${index} x=${x} />
       ${reasons.has(state) && html`<div data-testid="no-curve">
-        <${Info} words=${whyNone(reasons.get(state), state, found.uplift_threshold, unit)} /></div>`}`)}
-    ${analysis.resurrection && html`<${Info} words=${analysis.resurrection} />`}
-    ${analysis.sentences.filter((each) => !told.has(each)).map((each) => html`<${Info} key=${each} words=${withUnit(each, unit)} />`)}
+        <${Note} words=${whyNone(reasons.get(state), state, found.uplift_threshold, unit)} /></div>`}`)}
+    ${analysis.resurrection && html`<${Note} words=${analysis.resurrection} />`}
+    ${analysis.sentences.filter((each) => !told.has(each)).map((each) => html`<${Note} key=${each} words=${withUnit(each, unit)} />`)}
     ${found.definition && html`<p class="quiet">${plainWords(found.definition)}</p>`}
-    <${Sheet} heads=${columnsOf(unit)} rows=${Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit))}
+    <${Table} columns=${columnsOf(unit)} rows=${Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit))}
       caption="Lognormal fits" testid="fragility-fits" />
   </div>`;
 };

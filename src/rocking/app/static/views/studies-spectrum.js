@@ -1,17 +1,11 @@
 /** Rocking spectra: peak rotation against the period of the block. */
-import { html, useMemo } from "/parts/preact.js";
-import { Kept } from "/parts/made.js";
-import { segmented } from "/app/fields.js";
+import { html, useMemo, useSignal } from "/parts/preact.js";
+import { Segmented } from "/parts/fields.js";
 import { number } from "/app/format.js";
 import { angleStyle, modelWords } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
-import { useSignal } from "/questions/parts.js";
 
-const SHOWN = [
-  { value: "median", text: "Median peak" },
-  { value: "high", text: "84 % peak" },
-  { value: "overturned", text: "Share that overturns" },
-];
+const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Share that overturns"]];
 
 /** Spectra, of the peaks or of how often the block overturns. */
 export const Spectrum = ({ found }) => {
@@ -28,7 +22,7 @@ export const Spectrum = ({ found }) => {
     series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
   };
   return html`
-    ${count > 1 && html`<${Kept} make=${segmented} label="Show" options=${SHOWN} value=${what.value} on=${(next) => (what.value = next)} />`}
+    ${count > 1 && html`<${Segmented} label="Show" options=${SHOWN} value=${what} />`}
     <${Figure} shape=${shape} data=${data} testid="spectrum-chart" />
     <p class="quiet">${count === 1 ? "A gap is a block that overturns."
       : `Over ${count} motions; a gap is where they overturn the block.`}</p>`;

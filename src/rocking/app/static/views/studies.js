@@ -1,6 +1,6 @@
 /** Studies: many histories at once, launched as campaigns; their progress, and their results. */
 import { computed, html, render, signal, useLayoutEffect, useRef } from "/parts/preact.js";
-import { Switch } from "/parts/made.js";
+import { Switch } from "/parts/fields.js";
 import { StudyForm } from "/views/studies-form.js";
 import { StudyList, actsOf, stateWords } from "/views/studies-list.js";
 import { liveStudies } from "/views/studies-live.js";
@@ -65,7 +65,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
         <${StudyForm} app=${app} visits=${visits.value} onLaunched=${launched}
           taken=${() => new Set(studies.value.map(({ name }) => name))} /></section>
       <section class="card" aria-labelledby="studies-there"><h2 id="studies-there">Studies</h2>
-        <${Switch} label="Studies of all projects" value=${every.value} on=${(next) => (every.value = next)} />
+        <${Switch} label="Studies of all projects" value=${every} />
         <${StudyList} studies=${studies.value} onShow=${show} acts=${acts} /></section>
     </div>
     ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}

@@ -1,0 +1,192 @@
+/** What forms are made of: fields with a label, a unit and a place for what is wrong with them; buttons, cards, notes.
+ * `value` is a signal, or a plain value beside an `on` that hears of each change. */
+
+import { html, useLayoutEffect, useRef, useState } from "/parts/preact.js";
+import { freshId } from "/app/dom.js";
+import { faults } from "/app/faults.js";
+import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
+
+const useId = (stem) => useRef(freshId(stem)).current;
+
+const bound = (value, on) => (value !== null && typeof value === "object"
+  ? [value.value, (next) => (value.value = next)] : [value, (next) => on?.(next)]);
+
+// What stands in a box: what was typed there, until `now` becomes something else.
+const useTyped = (now, written, says) => {
+  const [, draw] = useState();
+  const held = useRef({ text: written(now), now, fault: "" }).current;
+  if (held.now !== now) Object.assign(held, { now, fault: "" }, says(held.text, now) ? {} : { text: written(now) });
+  const type = (text, fault = "") => {
+    Object.assign(held, { text, fault });
+    draw({});
+  };
+  return [held, type];
+};
+
+const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
+  <div class=${`field ${kind}`} hidden=${hidden}>
+    <div class="field-head"><label for=${id}>${label}${unit && html`<span class="unit">${` ${pretty(unit)}`}</span>`}</label>${beside}</div>
+    ${children}
+    <p id=${`${id}-about`} class=${`field-help ${error ? "field-error" : ""}`}>${error || help}</p>
+  </div>`;
+
+// What every box says of itself: its name, its words, and whether it is wrong.
+const told = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
+
+/** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
+ * optional one that was emptied null. */
+export const NumberField = ({
+  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, optional, ...more
+}) => {
+  const id = useId("number");
+  const box = useRef(null);
+  const [now, put] = bound(value, on);
+  const [held, type] = useTyped(now ?? null, editable, saysNumber);
+  const wrong = held.fault || error;
+  useLayoutEffect(() => faults.mark(box.current, label, wrong), [label, wrong]);
+  useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
+  const take = (text) => {
+    const { fault = "", given } = checked(text, { min, above, max, whole, optional, unit });
+    type(text, fault);
+    if (!fault) put(given);
+  };
+  const turn = (event) => {
+    const turns = { ArrowUp: 1, ArrowDown: -1 }[event.key] * (event.shiftKey ? 10 : 1);
+    if (!turns) return;
+    event.preventDefault();
+    take(editable(stepped(held.text, turns, { min: min ?? above, max, step })));
+  };
+  return html`<${Frame} id=${id} label=${label} unit=${unit} help=${decimalWords(held.text) || help} error=${wrong} kind=${kind} hidden=${hidden}>
+    <input ...${told(id, wrong)} ref=${box} type="text" inputmode="decimal" autocomplete="off" spellcheck=${false}
+      value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
+};
+
+/** A line of text; `type` is that of its box. */
+export const Field = ({
+  label, id = useId("field"), unit, value, on, help, error, kind, hidden, type = "text", ...more
+}) => {
+  const [now, put] = bound(value, on);
+  const [held, typed] = useTyped(now ?? "", String, saysText);
+  const take = ({ target }) => {
+    typed(target.value);
+    put(target.value);
+  };
+  return html`<${Frame} id=${id} label=${label} unit=${unit} help=${help} error=${error} kind=${kind} hidden=${hidden}>
+    <input ...${told(id, error)} type=${type} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
+};
+
+/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen. */
+export const Choice = ({ label, value, on, chosen, options, help, error, hidden, ...more }) => {
+  const id = useId("choice");
+  const [now, put] = bound(value, on);
+  const shown = String(chosen ?? now ?? "");
+  const take = ({ target }) => {
+    put(options[target.selectedIndex][0]);
+    target.value = shown; // until what it belongs to has taken it
+  };
+  return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
+    <select ...${told(id, error)} value=${shown} onChange=${take} ...${more}>
+      ${options.map(([key, words]) => html`<option key=${key} value=${String(key)}>${words}</option>`)}</select><//>`;
+};
+
+/** A choice of one from a few [value, words], all in sight. */
+export const Segmented = ({ label, value, on, options, hidden }) => {
+  const name = useId("choice");
+  const [now, put] = bound(value, on);
+  return html`<fieldset class="segmented" hidden=${hidden}><legend>${label}</legend><div class="segments">
+    ${options.map(([key, words]) => html`<label class="segment" key=${key}>
+      <input type="radio" name=${name} value=${String(key)} checked=${key === now} onChange=${() => put(key)} /><span>${words}</span></label>`)}
+  </div></fieldset>`;
+};
+
+/** Yes or no. */
+export const Switch = ({ label, value, on, help, hidden }) => {
+  const id = useId("switch");
+  const [now, put] = bound(value, on);
+  return html`<div class="field field-switch" hidden=${hidden}>
+    <label for=${id}><input id=${id} type="checkbox" checked=${now} aria-describedby=${`${id}-about`}
+      onChange=${({ target }) => put(target.checked)} /><span>${label}</span></label>
+    <p id=${`${id}-about`} class="field-help">${help}</p></div>`;
+};
+
+/** A slider that says its value beside its label; logarithmic on request. */
+export const Slider = ({ label, unit = "", value, on, min, max, step, log = false, help, hidden }) => {
+  const id = useId("slider");
+  const [now, put] = bound(value, on);
+  const scale = log ? logarithmic(min, max) : { low: min, high: max, step: step ?? "any", from: (given) => given, to: tidy };
+  const words = quantity(now, unit);
+  const beside = html`<output for=${id} class="slider-value">${words}</output>`;
+  return html`<${Frame} id=${id} label=${label} beside=${beside} help=${help} kind="field-slider" hidden=${hidden}>
+    <input ...${told(id)} type="range" min=${scale.low} max=${scale.high} step=${scale.step} value=${scale.from(now)}
+      aria-valuetext=${words} onInput=${({ target }) => put(scale.to(Number(target.value)))} /><//>`;
+};
+
+const YES = { true: "yes", false: "no" };
+
+/** A field of a key, with the unit, the words and the choices of its description. */
+export const KeyField = ({ name, facts, ...more }) => {
+  const label = name.replaceAll("_", " ");
+  if (!facts.choices.length) {
+    return html`<${Field} label=${label} unit=${facts.unit.replace(/^-$/, "")} help=${sentence(facts.words)}
+      placeholder=${facts.usual} ...${more} />`;
+  }
+  const others = facts.choices.filter((word) => word !== facts.usual).map((word) => [word, YES[word] ?? word]);
+  return html`<${Choice} label=${label} help=${sentence(facts.words)} ...${more}
+    options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
+};
+
+/** Words as a sentence. */
+export const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+
+/** The first field of a form that someone sees and that is wrong. */
+export const wrongIn = (form) => [...form.querySelectorAll("[aria-invalid=true]")].find((box) => box.offsetParent !== null);
+
+/** Put the keyboard on the first field that is wrong, once it is drawn so. */
+export const toWrong = (form) => setTimeout(() => wrongIn(form)?.focus());
+
+/** A button; kind is "primary", "quiet", "danger", "icon" or nothing. */
+export const Button = ({ kind = "", ...more }) => html`<button type="button" class=${`button ${kind}`} ...${more} />`;
+
+/** A titled part of a view. */
+export const Card = ({ title, kind = "", children, ...more }) => {
+  const id = useId("card");
+  return html`<section class=${`card ${kind}`} aria-labelledby=${id} ...${more}><h2 id=${id}>${title}</h2>${children}</section>`;
+};
+
+const SIGNS = { info: "i", warning: "!", error: "\u2715", good: "\u2713" };
+
+/** A sentence with a sign: kind is "info", "warning", "error" or "good". */
+export const Note = ({ words, kind = "info", ...more }) => html`
+  <p class=${`note ${kind}`} ...${more}><span class="sign" aria-hidden="true">${SIGNS[kind]}</span><span>${words}</span></p>`;
+
+const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(text) === now : now === null);
+const saysText = (text, now) => text.trim() === now;
+
+const checked = (text, { min, above, max, whole, optional, unit }) => {
+  if (!text.trim()) return optional ? { given: null } : { fault: "A number is needed here." };
+  const given = parseNumber(text);
+  if (given === null) return { fault: "This is not a number." };
+  const wrong = [
+    [above !== undefined && given <= above, "More than", above],
+    [min !== undefined && min !== null && given < min, "At least", min],
+    [max !== undefined && max !== null && given > max, "At most", max],
+  ].find(([fails]) => fails);
+  if (wrong) return { fault: `${wrong[1]} ${quantity(wrong[2], unit)}.` };
+  return whole && !Number.isInteger(given) ? { fault: "A whole number is needed." } : { given };
+};
+
+// "1,000" is one to us and a thousand to others: say how it was read.
+const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
+  && `Read as ${number(parseNumber(text))}: the comma is the decimal sign. For thousands leave it out.`;
+
+const stepped = (text, turns, { min, max, step }) => {
+  const value = parseNumber(text) ?? min ?? 0;
+  const by = step ?? 10 ** Math.floor(Math.log10(Math.abs(value) || 1) - 1);
+  return tidy(Math.min(max ?? Infinity, Math.max(min ?? -Infinity, value + turns * by)));
+};
+
+const logarithmic = (min, max) => ({
+  low: 0, high: 1000, step: 1,
+  from: (value) => (1000 * Math.log(value / min)) / Math.log(max / min),
+  to: (place) => tidy(min * (max / min) ** (place / 1000), 4),
+});

@@ -1,0 +1,52 @@
+/** Tables that anyone can read: a caption, headings with units, and a copy button where there are numbers. */
+
+import { html, useRef } from "/parts/preact.js";
+import { copyTable } from "/app/copy.js";
+import { freshId } from "/app/dom.js";
+import { number, pretty } from "/app/format.js";
+import { Button } from "/parts/fields.js";
+
+const LONG = 20;
+
+/** A table of columns (text or {label, unit, digits}) and rows of numbers, texts or templates; `copied` are the rows as
+ * text and numbers where they are others. */
+export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows, actions }) => {
+  const id = useRef(freshId("table")).current;
+  const heads = columns.map((each) => (typeof each === "string" ? { label: each } : each));
+  return html`
+    <div class="table-block">
+      <div class="table-head"><p id=${id} class="caption">${caption}</p><div class="toolbar">
+        <${Button} kind="quiet" aria-label=${caption && `Copy table: ${caption}`} onClick=${() => copyTable(heads, copied())}>Copy table<//>
+        ${csv && html`<${Button} kind="quiet" aria-label=${`Save ${caption || "the table"} as CSV`} onClick=${csv}>CSV<//>`}${actions}</div></div>
+      <div class=${`table-scroll ${rows.length > LONG ? "long" : ""}`} tabindex="0" role="region" aria-labelledby=${id}>
+        <table aria-labelledby=${id} data-testid=${testid}>
+          <thead><tr>${heads.map(({ label, unit, numeric }) => html`<th key=${label} scope="col" class=${numeric === false ? "text" : ""}>
+            ${label}${unit && unit !== "-" && html`<span class="unit">${` ${pretty(unit)}`}</span>`}</th>`)}</tr></thead>
+          <tbody>${rows.map((row, k) => html`<tr key=${k}>${row.map((value, at) => html`
+            <${Cell} key=${at} value=${value} ...${heads[at]} first=${at === 0} />`)}</tr>`)}</tbody>
+        </table></div>
+    </div>`;
+};
+
+const Cell = ({ value, digits, numeric, nowrap, first }) => {
+  const isNumber = typeof value === "number";
+  const shown = isNumber ? number(value, digits) : value;
+  const kind = isNumber || numeric ? "number" : nowrap ? "text nowrap" : "text";
+  const title = isNumber ? String(value) : null;
+  return first ? html`<th scope="row" class=${kind} title=${title}>${shown}</th>` : html`<td class=${kind} title=${title}>${shown}</td>`;
+};
+
+/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words. */
+export const Rows = ({ caption, head, rows }) => html`
+  <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
+    <table><caption class="visually-hidden">${caption}</caption>
+      <thead><tr>${head.map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+      <tbody>${rows.map((row, k) => html`<tr key=${k}>
+        ${row.map((cell, j) => {
+          const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
+          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>`
+            : html`<th scope="row" translate=${kind !== "own"}>${text}</th>`;
+        })}</tr>`)}
+      </tbody>
+    </table>
+  </div>`;
