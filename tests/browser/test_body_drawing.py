@@ -118,6 +118,84 @@ def test_regions_have_densities_of_their_own(page: Any) -> None:
     assert page.locator(".vertex").count() == 8
 
 
+def test_a_mass_puts_densities_aside(page: Any) -> None:
+    """Typed over two densities it holds through Undo and another shape; emptied, they are back; a density replaces it."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    page.get_by_role("button", name="Add region").click()
+    page.get_by_label("Density of region 1").fill("1000")
+    page.get_by_label("Density of region 2").fill("9600")
+    dense = 0.5 * 0.5 * (2.0 * 1000.0 + 0.5 * 9600.0)
+    settled(page, "Mass kg", dense)
+    mass = page.get_by_role("textbox", name="Mass kg")
+    mass.fill("300")
+    settled(page, "Mass kg", 300.0)
+    expect(page.get_by_label("Density of region 2")).to_have_value("")
+    page.get_by_role("button", name="Undo").click()  # regions that had densities: the mass still holds
+    settled(page, "Mass kg", 300.0)
+    page.get_by_role("button", name="Redo").click()
+    mass.fill("")
+    settled(page, "Mass kg", dense)
+    expect(page.get_by_label("Density of region 2")).to_have_value("9600")
+    mass.fill("300")
+    settled(page, "Mass kg", 300.0)
+    page.get_by_label("Density of region 2").fill("4800")
+    expect(mass).to_have_value("")
+    settled(page, "Mass kg", 0.5 * 0.5 * (2.0 * 2400.0 + 0.5 * 4800.0))
+    mass.fill("300")
+    page.get_by_label("Shape").select_option("block")
+    settled(page, "Mass kg", 300.0)
+    page.get_by_label("Shape").select_option("section")
+    settled(page, "Mass kg", 300.0)
+
+
+def test_a_mass_outlasts_another_shape(page: Any) -> None:
+    """A block of 300 kg is a polygon of 300 kg, and its own density is back once the mass is emptied."""
+    page.get_by_label("Density").fill("500")
+    mass = page.get_by_role("textbox", name="Mass kg")
+    mass.fill("300")
+    settled(page, "Mass kg", 300.0)
+    expect(page.get_by_label("Density")).to_have_value("")
+    mass.fill("")
+    settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 500.0)
+    mass.fill("300")
+    settled(page, "Mass kg", 300.0)
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    expect(mass).to_have_value("300")
+    settled(page, "Mass kg", 300.0)
+
+
+def test_what_is_wrong_has_the_keyboard(page: Any) -> None:
+    """Points that cannot be read, an arc without a rise, a file without a unit: marked, and the keyboard is there."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    paste(page, "0 0 0", "Use as outline")
+    points = page.get_by_label("Points, x and y on each line")
+    expect(points).to_be_focused()
+    expect(points).to_have_attribute("aria-invalid", "true")
+    points.fill("0 0\n1 0\n0 1")
+    expect(points).not_to_have_attribute("aria-invalid", "true")
+    page.get_by_test_id("edge").locator("summary").click()
+    page.get_by_role("button", name="Make it an arc").click()
+    rise = page.get_by_label("Rise of the arc")
+    expect(rise).to_be_focused()
+    expect(rise).to_have_accessible_description("How far does the arc rise? A number other than 0.")
+    rise.fill("0.1")
+    expect(rise).not_to_have_attribute("aria-invalid", "true")
+    wkt = {"name": "a.wkt", "mimeType": "text/plain", "buffer": b"POLYGON ((0 0, 1 0, 1 2, 0 2, 0 0))"}
+    page.get_by_label("Body file").set_input_files(wkt)
+    units = page.get_by_label("Unit of the file")
+    expect(units).to_be_focused()
+    expect(units).to_have_attribute("aria-invalid", "true")
+    units.select_option("m")
+    settled(page, "Slenderness h/b", 2.0)
+    expect(units).not_to_have_attribute("aria-invalid", "true")
+    page.get_by_label("Left foot").fill("-3")
+    page.get_by_label("Right foot").fill("0.4")
+    expect(page.get_by_label("Left foot")).to_have_attribute("aria-invalid", "true")
+
+
 def square(x: float, y: float, width: float, height: float) -> str:
     """Return the corners of a rectangle as lines to paste."""
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]

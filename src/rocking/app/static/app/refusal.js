@@ -17,7 +17,8 @@ export const plainWords = (message, body) => {
 };
 
 /** The key of the body's field that a refusal is about; nothing if it names none. */
-export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z]+) must /)?.[1] ?? null;
+export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z_]+) must /)?.[1]
+  ?? (/ foot must lie /.test(message) ? "feet" : / centre of mass .*must lie /.test(message) ? "centre" : null);
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index. */
 export const placeOf = (message) => {

@@ -23,7 +23,8 @@ const useTyped = (now, written, says) => {
   return [held, type];
 };
 
-const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
+/** A box of one's own with the label and the words of a field. */
+export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
   <div class=${`field ${kind}`} hidden=${hidden}>
     <div class="field-head"><label for=${id}>${label}${unit && html`<span class="unit">${` ${pretty(unit)}`}</span>`}</label>${beside}</div>
     ${children}
@@ -61,9 +62,9 @@ export const NumberField = ({
       value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
 };
 
-/** A line of text; `type` is that of its box. */
+/** A line of text, or as `tag` says a "textarea"; `type` is that of its box. */
 export const Field = ({
-  label, id = useId("field"), unit, value, on, help, error, kind, hidden, type = "text", ...more
+  label, id = useId("field"), unit, value, on, help, error, kind, hidden, tag = "input", type = "text", ...more
 }) => {
   const [now, put] = bound(value, on);
   const [held, typed] = useTyped(now ?? "", String, saysText);
@@ -72,7 +73,7 @@ export const Field = ({
     put(target.value);
   };
   return html`<${Frame} id=${id} label=${label} unit=${unit} help=${help} error=${error} kind=${kind} hidden=${hidden}>
-    <input ...${told(id, error)} type=${type} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
+    <${tag} ...${told(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
 /** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen. */

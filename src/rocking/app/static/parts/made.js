@@ -1,6 +1,6 @@
-/** What is made by the page's own functions, as a component. */
+/** What is made by the page's own functions, as components: a node, a picture. */
 
-import { html, useLayoutEffect, useRef } from "/parts/preact.js";
+import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { fill } from "/app/dom.js";
 
 /** A node that was made elsewhere. */
@@ -8,4 +8,17 @@ export const Made = ({ node, ...more }) => {
   const place = useRef(null);
   useLayoutEffect(() => void fill(place.current, node), [node]);
   return html`<div ref=${place} ...${more}></div>`;
+};
+
+/** A picture in the width that it has, drawn by `draw(...of, width)`. */
+export const Drawn = ({ draw, of }) => {
+  const place = useRef(null);
+  const width = useSignal(0);
+  useLayoutEffect(() => {
+    const watcher = new ResizeObserver(([entry]) => (width.value = Math.floor(entry.contentRect.width) || width.value));
+    watcher.observe(place.current);
+    return () => watcher.disconnect();
+  }, []);
+  useLayoutEffect(() => void (width.value && fill(place.current, draw(...of, width.value))), [width.value, ...of]);
+  return html`<div ref=${place} class="responsive"></div>`;
 };

@@ -3,6 +3,7 @@
 import { html, signal, useEffect, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
+import { Drop } from "/parts/drop.js";
 import { Button, Note, sentence } from "/parts/fields.js";
 
 /** The fields of a form that outlasts a reload; `form.at(...path)` is a signal of one of them. */
@@ -49,13 +50,9 @@ export const recordEndings = ({ info }) => [
 ].join(",");
 
 /** Files by dropping or choosing; `files` is a signal of what was sent. */
-export const FileDrop = ({ label, help, accept, files, many = false, questions, app }) => {
-  const input = useRef(null);
-  const over = useSignal(false);
-  const folder = useRef(null);
+export const FileDrop = ({ files, many = false, questions, app, help, ...more }) => {
   const sending = useSignal("");
-  const take = async (list) => {
-    const chosen = many ? [...list] : [...list].slice(0, 1);
+  const take = async (chosen) => {
     let sent = [];
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
@@ -72,50 +69,18 @@ export const FileDrop = ({ label, help, accept, files, many = false, questions, 
     }
     sending.value = "";
   };
-  const drop = (event) => {
-    event.preventDefault();
-    over.value = false;
-    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-    if (many && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
-    return take([...event.dataTransfer.files]);
-  };
-  const mark = (on) => (event) => {
-    event.preventDefault();
-    over.value = on;
-  };
   return html`
-    <div class=${`drop ${over.value ? "over" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop}>
-      <p>${label}</p>
-      <div class="toolbar">
-        <${Button} onClick=${() => input.current.click()}>Choose ${many ? "files" : "a file"}<//>
-        ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
-          <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory
-            onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />`}
-      </div>
-      <input ref=${input} class="visually-hidden" type="file" tabindex="-1" aria-label=${label} accept=${accept}
-        multiple=${many} onChange=${(event) => { take([...event.target.files]); event.target.value = ""; }} />
+    <${Drop} many=${many} on=${take} ...${more}>
       <p class="field-help">${help}</p>
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
         ${files.value.map((one) => html`<li key=${one.sha}>${one.name}
           <${Button} kind="quiet" aria-label=${`Leave out ${one.name}`}
             onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out<//></li>`)}
-      </ul>`}
-    </div>`;
+      </ul>`}<//>`;
 };
 
 const AT_ONCE = 6; // files that are sent beside one another
-
-// All files of what was dropped, of folders those in them, which browsers give in pieces.
-const inFolders = async (entries) => (await Promise.all(entries.map(async (entry) => {
-  if (entry.isFile) return new Promise((resolve, reject) => entry.file(resolve, reject));
-  const reader = entry.createReader();
-  const inside = async () => {
-    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
-    return some.length ? [...await inFolders(some), ...await inside()] : [];
-  };
-  return inside();
-}))).flat();
 
 // What stands of a question: being answered, refused, or its answer.
 const Outcome = ({ questions, answer: Answer }) => {

@@ -1,6 +1,7 @@
 /** The board on which regions are drawn: by pointer or by keys alike, seen from as near as one likes. */
 
-import { el, fill, number, svg, tidy } from "/views/body-parts.js";
+import { el, fill, svg } from "/app/dom.js";
+import { number, tidy } from "/app/format.js";
 import * as model from "/views/body-editor-model.js";
 import { pathOf, regionPaths } from "/drawing/outline.js";
 import { centreMark, footMark, words } from "/drawing/symbols.js";
@@ -16,13 +17,13 @@ const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body f
 const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
   + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
 
-/** The board: {element, follow, zoom, pan, fit, focus}. */
-export const createCanvas = (editor) => {
+/** The board, in an element: {follow, zoom, pan, fit, focus}. */
+export const createCanvas = (editor, element) => {
   const board = svg("svg", {
     class: "picture board", role: "group", tabindex: "0", "data-testid": "board", "aria-label": ABOUT,
   });
   const wrong = el("p", { class: "board-refusal", "aria-hidden": "true", hidden: true });
-  const element = el("div", { class: "board-box" }, board, wrong);
+  element.prepend(board, wrong);
   let [view, width, drag] = [null, 0, null];
   let look = null; // {middle, scale} once zoomed or panned; until then the whole body is shown
   let units = editor.units();
@@ -172,7 +173,7 @@ export const createCanvas = (editor) => {
       editor.tell();
     }
   }).observe(element);
-  return { element, follow, zoom, pan, fit, focus: () => board.focus() };
+  return { follow, zoom, pan, fit, focus: () => board.focus() };
 };
 
 const set = (board, width) => {

@@ -1,89 +1,52 @@
 /** What stands around the board: undo, regions and holes, densities, the grid, the chosen vertex. */
 
 import { highest, lowest } from "/app/extremes.js";
-import { editable } from "/app/format.js";
-import { button, el, fill, numberField, switchField, tidy, toolbar } from "/views/body-parts.js";
+import { editable, tidy } from "/app/format.js";
+import { Button, NumberField, Switch } from "/parts/fields.js";
+import { html } from "/parts/preact.js";
 import * as model from "/views/body-editor-model.js";
 
-/** The panel: {tools, details, follow}. */
-export const createPanel = (editor) => {
-  const undo = button({ text: "Undo", onClick: () => editor.travel("undo") });
-  const redo = button({ text: "Redo", onClick: () => editor.travel("redo") });
-  const addRegion = button({ text: "Add region", onClick: () => newRegion(editor) });
-  const addHole = button({ text: "Add hole", onClick: () => newHole(editor) });
-  const dropRing = button({ text: "Remove part", kind: "danger", onClick: () => removePart(editor) });
-  const stand = button({
-    text: "Stand on the ground", onClick: () => editor.change(model.onTheGround(editor.regions(), tidy)),
-  });
-  const snap = switchField({
-    label: "Snap to grid", value: editor.state.snap, onChange: (on) => {
-      editor.state.snap = on;
-    },
-  });
-  const grid = numberField({
-    label: "Grid step", above: 0, optional: true, value: null,
-    onChange: (value) => {
-      editor.state.step = value;
-      editor.tell();
-    },
-    help: "Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks.",
-  });
-  const vertex = vertexFields(editor);
-  const densities = el("div", { class: "fields", "data-testid": "densities" });
-  let shown = -1;
-  let boxes = [];
-  const follow = () => {
-    const regions = editor.regions();
-    if (!regions.length) return;
-    able(undo, editor.history.canUndo());
-    able(redo, editor.history.canRedo());
-    dropRing.disabled = editor.state.place.ring < 0 && regions.length < 2;
-    grid.input.placeholder = editable(editor.step());
-    vertex.follow();
-    if (shown !== regions.length) {
-      boxes = regions.map((_, index) => densityField(editor, index));
-      fill(densities, boxes);
-      shown = regions.length;
-    }
-    boxes.forEach((field, index) => (field.value = regions[index].density ?? null));
-  };
-  return {
-    tools: toolbar(undo, redo, addRegion, addHole, dropRing, stand),
-    details: el(
-      "div", { class: "stack" }, el("div", { class: "fields" }, vertex.fields, grid, snap), densities,
-    ),
-    follow,
-  };
+/** What is done with the whole drawing; `children` are the tools. */
+export const Tools = ({ editor, children }) => {
+  const { history, state } = editor;
+  // a button that becomes disabled would drop the focus; one that says that it is keeps it
+  const travel = (direction, words, can) => html`
+    <${Button} aria-disabled=${can ? null : "true"} onClick=${() => editor.travel(direction)}>${words}<//>`;
+  return html`<div class="toolbar">
+    ${travel("undo", "Undo", history.canUndo())}${travel("redo", "Redo", history.canRedo())}
+    <${Button} onClick=${() => newRegion(editor)}>Add region<//>
+    <${Button} onClick=${() => newHole(editor)}>Add hole<//>
+    <${Button} kind="danger" disabled=${state.place.ring < 0 && editor.regions().length < 2} onClick=${() => removePart(editor)}>Remove part<//>
+    <${Button} onClick=${() => editor.change(model.onTheGround(editor.regions(), tidy))}>Stand on the ground<//>
+    ${children}
+  </div>`;
 };
 
-// A button that becomes disabled would drop the focus; one that says that it is keeps it.
-const able = (node, can) => {
-  if (can) node.removeAttribute("aria-disabled");
-  else node.setAttribute("aria-disabled", "true");
-};
-
-const vertexFields = (editor) => {
-  const fields = ["x", "y"].map((axis, index) => numberField({
-    label: `Vertex ${axis}`,
-    onChange: (value) => {
-      const { place } = editor.state;
-      const point = [...model.ringAt(editor.regions(), place)[place.vertex]];
-      point[index] = value;
-      editor.change(model.moved(editor.regions(), place, point));
-    },
-  }));
-  const follow = () => {
-    const point = model.ringAt(editor.regions(), editor.state.place)?.[editor.state.place.vertex];
-    fields.forEach((field, index) => point && (field.value = point[index]));
+/** The chosen vertex, the grid and the densities, in numbers. */
+export const Details = ({ editor }) => {
+  const { place, snap, step } = editor.state;
+  const regions = editor.regions();
+  const point = model.ringAt(regions, place)[place.vertex];
+  const put = (index) => (value) => editor.change(model.moved(editor.regions(), place, point.with(index, value)));
+  const weigh = (index) => (value) => editor.weigh(model.withDensity(editor.regions(), index, value), value);
+  const set = (key) => (value) => {
+    editor.state[key] = value;
+    editor.tell();
   };
-  return { fields, follow };
+  return html`
+    <div class="stack">
+      <div class="fields">
+        ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${`Vertex ${axis}`}
+          value=${point[index]} on=${put(index)} />`)}
+        <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional placeholder=${editable(editor.step())}
+          help="Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks." />
+        <${Switch} label="Snap to grid" value=${snap} on=${set("snap")} />
+      </div>
+      <div class="fields" data-testid="densities">${regions.map(({ density }, index) => html`
+        <${NumberField} key=${index} label=${`Density of region ${index + 1}`} unit="kg/m3" above=${0} optional
+          help="Empty: 2400 kg/m\u00b3." value=${density} on=${weigh(index)} />`)}</div>
+    </div>`;
 };
-
-const densityField = (editor, index) => numberField({
-  label: `Density of region ${index + 1}`, unit: "kg/m3", above: 0, optional: true,
-  help: "Empty: 2400 kg/m\u00b3.",
-  onChange: (value) => editor.change(model.withDensity(editor.regions(), index, value)),
-});
 
 // A new region stands on top of the others, as wide as they are and a quarter as high.
 const newRegion = (editor) => {

@@ -1,40 +1,49 @@
 /** The polygon editor: vertices that pointer and keyboard move alike, holes, densities, undo. */
 
+import { html, signal, useLayoutEffect, useRef } from "/parts/preact.js";
+import { tidy } from "/app/format.js";
+import { Button, Card } from "/parts/fields.js";
 import { createCanvas } from "/views/body-editor-canvas.js";
 import * as model from "/views/body-editor-model.js";
-import { createPanel } from "/views/body-editor-panel.js";
-import { createTools } from "/views/body-editor-tools.js";
-import { pastePart } from "/views/body-paste.js";
-import { card, el, fill, tidy } from "/views/body-parts.js";
-import { regionsOf, shapeOf } from "/views/body-shapes.js";
-import { inUnits, METRES } from "/views/body-units.js";
+import { Details, Tools } from "/views/body-editor-panel.js";
+import { EdgePart, Pen, PenEnds, PhotoPart, createTool } from "/views/body-editor-tools.js";
+import { PastePart } from "/views/body-paste.js";
+import { regionsOf, shapeOf, weighed } from "/views/body-shapes.js";
+import { METRES, inUnits } from "/views/body-units.js";
 
-/** Put the editor in its place; follow() shows it for a polygon and takes it away for any other shape. */
-export const mountEditor = (place, app) => {
-  const editor = createEditor(app);
-  const canvas = createCanvas(editor);
-  const [panel, tools] = [createPanel(editor), createTools(editor, canvas)];
-  panel.tools.append(...tools.pen);
-  const parts = [canvas, panel, tools]; // the board first: it knows the step of its grid
-  const board = card("Draw", panel.tools,
-    el("div", { class: "board-row" }, el("div", { class: "stack" }, canvas.element, tools.told, tools.ends), panel.details),
-    tools.edge, tools.photo, pastePart(editor));
-  board.dataset.testid = "editor";
-  fill(place, board);
-  let units = editor.units();
-  const follow = () => {
-    place.hidden = shapeOf(app.inputs.get().body) !== "section";
-    if (place.hidden) return;
-    if (units !== editor.units()) changeUnits(editor.state, METRES[units] / editor.metres());
-    units = editor.units();
-    const regions = editor.regions();
-    if (regions.length) editor.state.place = withinReach(regions, editor.state.place);
-    for (const part of parts) part.follow();
-  };
-  editor.watch(follow);
-  app.inputs.subscribe((_, changed) => changed.has("body") && follow());
-  follow();
-  return { follow };
+/** The editor of a polygon; of any other shape it is out of sight. */
+export const Editor = ({ editor }) => {
+  const drawn = editor.drawn.value; // every part is drawn anew with it
+  const [shown, there] = [editor.shown(), editor.regions().length > 0];
+  return html`
+    <div class="editor-place" hidden=${!shown}>
+      <${Card} title="Draw" data-testid="editor">
+        ${there && html`<${Tools} editor=${editor} drawn=${drawn}><${Pen} editor=${editor} drawn=${drawn} /><//>`}
+        <div class="board-row">
+          <div class="stack"><${Board} editor=${editor} />
+            <p class="field-help board-told" role="status" data-testid="board-told">${editor.told.value}</p>
+            ${there && html`<${PenEnds} editor=${editor} drawn=${drawn} />`}</div>
+          ${there && html`<${Details} editor=${editor} drawn=${drawn} />`}</div>
+        ${there && html`<${EdgePart} editor=${editor} drawn=${drawn} /><${PhotoPart} editor=${editor} drawn=${drawn} />`}
+        <${PastePart} editor=${editor} /><//>
+    </div>`;
+};
+
+const VIEWS = [
+  ["+", "Zoom in", (board) => board.zoom(1.5)], ["\u2212", "Zoom out", (board) => board.zoom(1 / 1.5)],
+  ["\u2922", "Show the whole body", (board) => board.fit()],
+  ["\u2190", "Pan left", (board) => board.pan(80, 0)], ["\u2192", "Pan right", (board) => board.pan(-80, 0)],
+  ["\u2191", "Pan up", (board) => board.pan(0, 80)], ["\u2193", "Pan down", (board) => board.pan(0, -80)],
+];
+
+const Board = ({ editor }) => {
+  const box = useRef(null);
+  useLayoutEffect(() => {
+    editor.board = createCanvas(editor, box.current);
+  }, []);
+  return html`<div ref=${box} class="board-box"><div class="board-view">${VIEWS.map(([sign, label, look]) => html`
+    <${Button} key=${label} kind="icon" aria-label=${label} title=${label} onClick=${() => look(editor.board)}>
+      <span aria-hidden="true">${sign}</span><//>`)}</div></div>`;
 };
 
 // The picture stays where it was on the body; points that were set in the former unit are gone.
@@ -43,38 +52,44 @@ const changeUnits = (state, factor) => {
   if (state.photo) for (const key of ["x", "y", "scale"]) state.photo[key] *= factor;
 };
 
-const createEditor = (app) => {
+/** What is drawn and how it changes: `tell()` draws it anew; the tools and the board ask it for everything. */
+export const createEditor = (app) => {
   const history = model.createHistory();
-  const watchers = new Set();
+  const [drawn, told] = [signal(0), signal("")];
   // Photograph and tool are this browser's alone: they are no part of the body.
   const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
-  const tell = () => watchers.forEach((each) => each());
+  let { units } = body();
   // Feet and depth are typed beside the board: a step takes them along only if it changed them itself.
   const now = ({ whole = false } = {}) => {
-    const { section, units } = body();
-    return { section, regions: regions(), units, whole };
+    const { section, units: of } = body();
+    return { section, regions: regions(), units: of, whole };
   };
-  const put = (next) => app.inputs.set("body.section.region", next);
   const step = () => state.grid ?? state.step ?? 0.05;
   const editor = {
-    state, history, regions, step,
+    state, history, regions, step, drawn, told, board: null,
+    tool: null,
+    shown: () => shapeOf(body()) === "section",
     section: () => body().section,
     units: () => body().units,
     facts: () => app.body.get(),
     metres: () => METRES[body().units],
     refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
     refusalWords: () => app.body.error()?.message ?? "",
-    watch: (watcher) => watchers.add(watcher),
     change: (next, place = state.place) => {
       history.keep(now());
       editor.adjust(next, place);
     },
     adjust: (next, place = state.place) => {
       state.place = place;
-      put(next);
-      tell();
+      app.inputs.set("body.section.region", weighed(next, body().section));
+      editor.tell();
+    },
+    /** Regions of another density, which takes the place of a mass. */
+    weigh: (next, density) => {
+      if (density !== null) app.inputs.set("body.section.mass", undefined);
+      editor.change(next);
     },
     replace: (section) => {
       history.keep(now({ whole: true }));
@@ -83,12 +98,12 @@ const createEditor = (app) => {
     show: (section, place) => {
       state.place = place;
       app.inputs.set("body.section", section);
-      tell();
+      editor.tell();
     },
     keep: () => history.keep(now()),
     select: (place) => {
       state.place = place;
-      tell();
+      editor.tell();
     },
     snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
     travel: (direction) => {
@@ -101,8 +116,18 @@ const createEditor = (app) => {
       else editor.adjust(section.region, place);
     },
     say: app.say,
-    tell,
+    tell: () => {
+      if (editor.shown()) {
+        if (units !== body().units) changeUnits(state, METRES[units] / editor.metres());
+        ({ units } = body());
+        const found = regions();
+        if (found.length) state.place = withinReach(found, state.place);
+        editor.board?.follow(); // first: it knows the step of its grid
+      }
+      drawn.value += 1;
+    },
   };
+  editor.tool = createTool(editor);
   return editor;
 };
 

@@ -1,10 +1,13 @@
 /** The numbers of a body: one column, or one for each side where they differ. */
 
-import { note, number, quantity, tableOf } from "/views/body-parts.js";
+import { html } from "/parts/preact.js";
+import { number, quantity } from "/app/format.js";
 import { sameSides } from "/drawing/body-picture.js";
+import { Note } from "/parts/fields.js";
+import { Table } from "/parts/table.js";
 
 /** The table of facts. */
-export const factsTable = (body, app) => {
+export const Facts = ({ app, facts: body }) => {
   const { left, right } = body.sides;
   const differ = !sameSides(body.sides);
   const sides = differ ? [left, right] : [right];
@@ -29,11 +32,9 @@ export const factsTable = (body, app) => {
     whole("Mass", "kg", body.mass_kg),
     whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia_kg_m2),
   ];
-  return tableOf(columns, rows, {
-    caption: differ ? "By the foot that it rocks about" : "The same for both feet",
-    testid: "facts-table",
-    csv: () => app.download("table/body.csv", app.inputs.get(), "body.csv"),
-  });
+  return html`<${Table} columns=${columns} rows=${rows} testid="facts-table"
+    caption=${differ ? "By the foot that it rocks about" : "The same for both feet"}
+    csv=${() => app.download("table/body.csv", app.inputs.get(), "body.csv")} />`;
 };
 
 // What rounding left of a zero is a zero: smaller than the body by fifteen powers of ten.
@@ -41,12 +42,10 @@ const settled = (length, { sides }) =>
   (Math.abs(length) < 1e-14 * sides.right.semi_diagonal_m ? 0 : length);
 
 /** Warnings in plain words, or what stands in their place. */
-export const warningsOf = (body) => {
-  const given = (body.warnings ?? []).map((each) => note(each, "warning"));
-  const assumed = (body.assumed ?? []).map((each) => note(each));
-  const well = [note(`It uplifts at ${upliftWords(body)} of ground acceleration.`, "good")];
-  return [...(given.length ? given : well), ...assumed];
-};
+export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
+  ${warnings.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}
+  ${!warnings.length && html`<${Note} kind="good" words=${`It uplifts at ${upliftWords(body)} of ground acceleration.`} />`}
+  ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
 
 const upliftWords = ({ sides, gravity_m_s2: gravity }) => {
   const least = Math.min(sides.left.uplift_acceleration_m_s2, sides.right.uplift_acceleration_m_s2);

@@ -1,80 +1,56 @@
 /** A drawing or body file, dropped or chosen: DXF, WKT, GeoJSON or TOML. */
 
+import { html, useRef, useSignal } from "/parts/preact.js";
 import { contentOf } from "/app/file-content.js";
-import { button, el, fill, note, selectField } from "/views/body-parts.js";
+import { Drop } from "/parts/drop.js";
+import { Choice, Note, toWrong } from "/parts/fields.js";
 import { METRES } from "/views/body-units.js";
 
+const UNITS = [["", "as the file says"], ...Object.keys(METRES).map((unit) => [unit, unit])];
+
 /** The place to drop a file, and its unit where the file does not say it. */
-export const dropZone = (app) => {
-  let held = null;
-  let content = null;
-  let placed = "";
-  const said = el("div", { class: "refusal", role: "alert", "data-testid": "file-refusal" });
-  const name = el("p", { class: "field-help", "data-testid": "held-file" });
-  // The file is kept: another unit reads it again, unless the body was changed since by hand.
-  const again = () => {
-    if (held && (!placed || JSON.stringify(app.inputs.get().body) === placed)) read();
-  };
-  const units = selectField({
-    label: "Unit of the file", value: "", onChange: again,
-    options: [
-      {
-        value: "", text: "as the file says",
-      }, ...Object.keys(METRES).map((value) => ({ value, text: value })),
-    ],
-    help: "WKT and GeoJSON never say it, some drawings do, a TOML file always.",
-  });
-  const chooser = el("input", {
-    type: "file", accept: ".dxf,.wkt,.txt,.geojson,.json,.toml", class: "visually-hidden",
-    "aria-label": "Body file",
-    tabindex: "-1", onchange: () => {
-      const [file] = chooser.files;
-      chooser.value = ""; // or the same file, mended, could not be chosen again
-      if (file) take(file);
-    },
-  });
-  const take = (file) => {
-    [held, content] = [file, null];
-    fill(name, `File: ${file.name}. Choosing another unit reads it again.`);
-    return read();
-  };
+export const BodyFile = ({ app }) => {
+  const box = useRef(null);
+  const held = useRef({}); // the file, its content, and the body that it became
+  const [units, name, wrong] = ["", "", ""].map(useSignal);
   const read = async () => {
-    const file = held;
-    placed = "";
-    fill(said);
+    const mine = held.current;
+    mine.placed = "";
+    wrong.value = "";
     try {
-      content ??= await contentOf(file);
-      const query = { name: file.name, units: units.value || undefined };
-      const answer = await app.call("body/file", { body: content, query });
-      if (file !== held) return;
-      app.inputs.lend({ ...app.inputs.get(), body: answer.body }, `the body of ${file.name}`);
-      placed = JSON.stringify(app.inputs.get().body);
-      app.say(`Read ${file.name}.`);
+      mine.content ??= await contentOf(mine.file);
+      const query = { name: mine.file.name, units: units.value || undefined };
+      const answer = await app.call("body/file", { body: mine.content, query });
+      if (mine !== held.current) return;
+      app.inputs.lend({ ...app.inputs.get(), body: answer.body }, `the body of ${mine.file.name}`);
+      mine.placed = JSON.stringify(app.inputs.get().body);
+      app.say(`Read ${mine.file.name}.`);
     } catch (error) {
-      if (file !== held) return;
-      fill(said, note(error.message, "error"));
+      if (mine !== held.current) return;
+      wrong.value = error.message;
       app.say(error.message, "error");
-      if (/unit/.test(error.message)) units.input.focus();
+      toWrong(box.current);
     }
   };
-  const zone = el("div", { class: "drop", "data-testid": "body-drop" },
-    el("p", {}, "Drop a DXF, WKT, GeoJSON or TOML file here"),
-    button({ text: "Choose a file", onClick: () => chooser.click() }), chooser);
-  catchFiles(zone, take);
-  return el("div", { class: "stack" }, zone, name, said, units);
-};
-
-/** Let an element take a dropped file. */
-export const catchFiles = (zone, take) => {
-  const over = (on) => (event) => {
-    event.preventDefault();
-    zone.classList.toggle("over", on);
+  const take = ([file]) => {
+    held.current = { file };
+    name.value = file.name;
+    return read();
   };
-  zone.addEventListener("dragover", over(true));
-  zone.addEventListener("dragleave", over(false));
-  zone.addEventListener("drop", (event) => {
-    over(false)(event);
-    const file = event.dataTransfer?.files?.[0];
-    if (file) take(file);
-  });
+  // The file is kept: another unit reads it again, unless the body was changed since by hand.
+  const inUnit = (unit) => {
+    units.value = unit;
+    const { file, placed } = held.current;
+    if (file && (!placed || JSON.stringify(app.inputs.get().body) === placed)) read();
+  };
+  const ofUnit = /unit/.test(wrong.value);
+  return html`
+    <div ref=${box} class="stack">
+      <${Drop} label="Drop a DXF, WKT, GeoJSON or TOML file here" name="Body file" accept=".dxf,.wkt,.txt,.geojson,.json,.toml"
+        on=${take} data-testid="body-drop" />
+      <p class="field-help" data-testid="held-file">${name.value && `File: ${name.value}. Choosing another unit reads it again.`}</p>
+      <div class="refusal" role="alert" data-testid="file-refusal">${wrong.value && !ofUnit && html`<${Note} kind="error" words=${wrong.value} />`}</div>
+      <${Choice} label="Unit of the file" value=${units.value} on=${inUnit} options=${UNITS} error=${ofUnit && wrong.value}
+        help="WKT and GeoJSON never say it, some drawings do, a TOML file always." />
+    </div>`;
 };

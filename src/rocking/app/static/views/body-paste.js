@@ -1,38 +1,40 @@
 /** Points from a table: paste two columns, see how many were read, use them. */
 
-import { button, el, fill, freshId, toolbar } from "/views/body-parts.js";
+import { html, useRef, useSignal } from "/parts/preact.js";
+import { Button, Field, toWrong } from "/parts/fields.js";
 import * as model from "/views/body-editor-model.js";
 import { parsePoints } from "/views/body-points.js";
 
+const USES = [
+  ["Use as outline", "primary", (...given) => asOutline(...given)], ["Add as region", "", (...given) => asRegion(...given)],
+  ["Add as hole", "", (...given) => asHole(...given)],
+];
+
 /** The part of the editor that takes pasted points. */
-export const pastePart = (editor) => {
-  const id = freshId("paste");
-  const told = el("p", { id: `${id}-about`, class: "field-help", role: "status" });
-  const box = el("textarea", {
-    id, rows: 5, spellcheck: "false", placeholder: "0\t0\n0.6\t0\n0.4\t1.8",
-    "aria-describedby": `${id}-about`,
-    oninput: () => tell(parsePoints(box.value)),
-  });
-  const tell = ({ points, fault }) => {
-    told.classList.toggle("field-error", Boolean(fault));
-    fill(told, fault || `${points.length} points read, in ${editor.units()}.`);
+export const PastePart = ({ editor }) => {
+  const box = useRef(null);
+  const [text, told, fault] = ["", "", ""].map(useSignal);
+  const read = (given) => {
+    const { points, fault: wrong } = parsePoints(given);
+    text.value = given;
+    fault.value = wrong;
+    told.value = wrong ? "" : `${points.length} points read, in ${editor.units()}.`;
+    return wrong ? null : points;
   };
-  const use = (make) => () => {
-    const read = parsePoints(box.value);
-    tell(read);
-    if (read.fault) return;
-    const words = make(editor, read.points);
-    if (words) fill(told, words);
+  const use = (make) => {
+    const points = read(text.value);
+    if (!points) return toWrong(box.current);
+    told.value = make(editor, points) ?? told.value;
+    return undefined;
   };
-  return el("details", { class: "paste" },
-    el("summary", {}, "Paste points from Excel or a file"),
-    el("div", { class: "stack" },
-      el("div", { class: "field" },
-        el("label", { for: id }, "Points, x and y on each line"), box, told),
-      toolbar(
-        button({ text: "Use as outline", kind: "primary", onClick: use(asOutline) }),
-        button({ text: "Add as region", onClick: use(asRegion) }),
-        button({ text: "Add as hole", onClick: use(asHole) }))));
+  return html`
+    <details ref=${box} class="paste"><summary>Paste points from Excel or a file</summary><div class="stack">
+      <${Field} tag="textarea" label="Points, x and y on each line" value=${text.value} on=${read} error=${fault.value}
+        rows="5" spellcheck=${false} placeholder=${"0\t0\n0.6\t0\n0.4\t1.8"} />
+      <p class="field-help" role="status">${told.value}</p>
+      <div class="toolbar">${USES.map(([words, kind, make]) => html`
+        <${Button} key=${words} kind=${kind} onClick=${() => use(make)}>${words}<//>`)}</div>
+    </div></details>`;
 };
 
 /** Points as the whole body; what was done, in words. */

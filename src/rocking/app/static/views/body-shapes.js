@@ -1,6 +1,7 @@
 /** The shapes that can be chosen: their fields, and a first size taken from the body before. */
 
 import { spanOf } from "/app/extremes.js";
+import { changedAt } from "/app/inputs.js";
 import { fromMetres } from "/views/body-units.js";
 
 /** Shapes with the fields of each; a field is a length unless it says otherwise. */
@@ -35,8 +36,40 @@ export const shapeOf = (body) => Object.keys(SHAPES).find((each) => body[each]) 
 /** The table that holds the sizes: the body itself for a block in its short form. */
 export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
 
-/** The path of the table in the inputs. */
-export const pathOfShape = (body) => (body[shapeOf(body)] ? `body.${shapeOf(body)}` : "body");
+/** The body with another number of its table; nothing takes it away. Mass and density say the same, and the one that was
+ * typed last is meant: densities that a mass takes the place of go into `replaced`, and come back when it is gone. */
+export const withKey = (body, key, value, replaced) => {
+  const shape = shapeOf(body);
+  const given = value ?? undefined;
+  // feet of its own stand in a block's table; the short form has none
+  if (key === "feet" && given && !body[shape]) return withFeet(body, given);
+  const at = body[shape] ? [shape] : [];
+  const next = changedAt(body, [...at, key], given);
+  if (key === "density" && given) return changedAt(next, [...at, "mass"], undefined);
+  if (key !== "mass") return next;
+  if (given === undefined) return changedTable(next, (table) => withDensities(table, replaced[shape]));
+  if (tableOfShape(body).mass === undefined) replaced[shape] = densitiesOf(tableOfShape(body));
+  return changedTable(next, (table) => withDensities(table, []));
+};
+
+const changedTable = (body, change) => {
+  const shape = shapeOf(body);
+  return body[shape] ? { ...body, [shape]: change(body[shape]) } : change(body);
+};
+
+const densitiesOf = ({ density, region = [] }) => [density, ...region.map((each) => each.density)];
+
+// A table's own density and those of its regions, as long as they are the same regions; of none of them none.
+const withDensities = (table, [density, ...others] = []) => {
+  const same = others.length === table.region?.length ? others : [];
+  const region = table.region?.map(({ density: _, ...each }, k) => clean({ ...each, density: same[k] }));
+  return clean({ ...table, density, region });
+};
+
+const withFeet = ({ units, name, ...block }, feet) => ({ units, ...(name ? { name } : {}), block: { ...block, feet } });
+
+/** Regions as a section may hold them: where its mass was typed they have no densities. */
+export const weighed = (regions, { mass }) => (mass === undefined ? regions : withDensities({ region: regions }).region);
 
 /** The body in another shape of about the same size. */
 export const asShape = (body, shape, facts) => {
@@ -51,7 +84,7 @@ export const asShape = (body, shape, facts) => {
     trapezoid: { base: width, top: round(width * 0.6), height, lean: 0 },
     ellipse: { width, height, sides: 24 },
     regular_polygon: { sides: 6, radius: round(height / 2) },
-    section: { region: drawn.length ? drawn : [rectangle(width, height)], depth: common.depth },
+    section: { region: weighed(drawn.length ? drawn : [rectangle(width, height)], from), depth: from.depth, mass: from.mass },
   };
   const table = clean(shape === "section" ? sizes.section : { ...sizes[shape], ...common });
   return clean(shape === "block" ? { units, name, ...table } : { units, name, [shape]: table });

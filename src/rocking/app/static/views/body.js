@@ -1,66 +1,66 @@
 /** The Body view: choose, type, draw, paste or drop a body, and see at once what it is. */
 
-import { card, el, fill, note } from "/views/body-parts.js";
-import { dropZone } from "/views/body-file.js";
-import { createForm } from "/views/body-form.js";
-import { mountEditor } from "/views/body-editor.js";
-import { factsTable, warningsOf } from "/views/body-facts.js";
-import { shapeOf } from "/views/body-shapes.js";
-import { pictureTools } from "/drawing/picture-tools.js";
+import { batch, html, render, signal, useLayoutEffect, useMemo } from "/parts/preact.js";
 import { bodyPicture } from "/drawing/body-picture.js";
-import { responsive } from "/drawing/responsive.js";
+import { pictureTools } from "/drawing/picture-tools.js";
+import { Card, Note } from "/parts/fields.js";
+import { Drawn, Made } from "/parts/made.js";
+import { Editor, createEditor } from "/views/body-editor.js";
+import { Facts, Warnings } from "/views/body-facts.js";
+import { BodyFile } from "/views/body-file.js";
+import { Form } from "/views/body-form.js";
 
 const OLDER = "The picture and the numbers are those of the last valid sizes.";
 
 /** Show the view. */
 export const mount = (section, app) => {
-  const refusal = el("div", { class: "refusal", role: "alert", "data-testid": "body-refusal" });
-  const warnings = el("div", { class: "stack", "data-testid": "body-warnings" });
-  const numbers = el("div", { class: "stack", "data-testid": "body-facts" });
-  const picture = responsive((width) => {
-    const body = app.body.get();
-    return body ? bodyPicture(body, { width, height: 430 }) : null;
-  });
-  const pictureCard = card("To scale", refusal, picture, warnings, pictureTools(app, "body"));
-  const numbersCard = card("Numbers", numbers);
-  const form = createForm(app);
-  const editor = el("div", { class: "editor-place" });
-  fill(section,
-    el("header", { class: "view-head" },
-      el("h1", {}, "What rocks?"),
-      el(
-        "p", { class: "lead" },
-        "Type its sizes, draw it, paste its points or drop a drawing. Everything beside follows at once.",
-      )),
-    el("div", { class: "body-columns" },
-      el("div", { class: "area-form" }, card("Outline and size", form.element)),
-      el(
-        "div", { class: "area-results stack" }, editor,
-        el("div", { class: "columns two" }, pictureCard, numbersCard),
-      ),
-      el("div", { class: "area-file" }, card("From a file", dropZone(app)))));
-
-  const drawing = mountEditor(editor, app);
-  app.inputs.subscribe((_, changed) => changed.has("body") && form.follow());
-  let said = "";
-  const look = () => {
-    const wrong = app.body.error()?.message ?? "";
-    const typed = app.faults.sentence({ view: "body", but: wrong });
-    for (const each of [pictureCard, numbersCard]) each.classList.toggle("stale", Boolean(wrong || typed));
-    form.refuse(app.body.error());
-    if (said === wrong + typed) return;
-    said = wrong + typed;
-    fill(refusal, wrong ? note(wrong, "error") : null,
-      typed ? note(`${typed} ${OLDER}`, "warning") : null);
-  };
+  const [body, facts, refusal, faulty] = [app.inputs.get().body, app.body.get(), app.body.error(), ""].map(signal);
+  const others = signal(0); // how often the whole document became another
+  const editor = createEditor(app);
+  app.inputs.subscribe((inputs, changed) => changed.has("body") && batch(() => {
+    body.value = inputs.body;
+    if (changed.size > 1) others.value += 1;
+    editor.tell();
+  }));
+  const look = () => (faulty.value = app.faults.sentence({ view: "body", but: app.body.error()?.message }));
   app.faults.subscribe(look);
-  app.body.subscribe((body) => {
+  app.body.subscribe((found, error) => batch(() => {
+    [facts.value, refusal.value] = [found, error];
     look();
-    drawing.follow();
-    if (!body) return;
-    picture.redraw();
-    fill(warnings, warningsOf(body));
-    fill(numbers, factsTable(body, app));
-  });
-  return { shown: () => shapeOf(app.inputs.get().body) === "section" && drawing.follow() };
+    editor.tell();
+  }));
+  render(html`<${Body} app=${app} editor=${editor} body=${body} others=${others} facts=${facts} refusal=${refusal} faulty=${faulty} />`, section);
+  return { shown: editor.tell };
 };
+
+const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
+  useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields came and went
+  return html`
+    <header class="view-head"><h1>What rocks?</h1>
+      <p class="lead">Type its sizes, draw it, paste its points or drop a drawing. Everything beside follows at once.</p></header>
+    <div class="body-columns">
+      <div class="area-form"><${Card} title="Outline and size">
+        <${Form} key=${others.value} app=${app} body=${body.value} refusal=${refusal.value} /><//></div>
+      <div class="area-results stack">
+        <${Editor} editor=${editor} />
+        <div class="columns two"><${Results} app=${app} facts=${facts} refusal=${refusal} faulty=${faulty} /></div></div>
+      <div class="area-file"><${Card} title="From a file"><${BodyFile} app=${app} /><//></div>
+    </div>`;
+};
+
+const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, faulty: { value: faulty } }) => {
+  const tools = useMemo(() => pictureTools(app, "body"), []);
+  const kind = refused || faulty ? "stale" : "";
+  return html`
+    <${Card} title="To scale" kind=${kind}>
+      <div class="refusal" role="alert" data-testid="body-refusal">
+        ${refused && html`<${Note} kind="error" words=${refused.message} />`}
+        ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${OLDER}`} />`}</div>
+      <${Drawn} draw=${drawn} of=${[facts]} />
+      <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div>
+      <${Made} node=${tools} /><//>
+    <${Card} title="Numbers" kind=${kind}>
+      <div class="stack" data-testid="body-facts">${facts && html`<${Facts} app=${app} facts=${facts} />`}</div><//>`;
+};
+
+const drawn = (facts, width) => facts && bodyPicture(facts, { width, height: 430 });

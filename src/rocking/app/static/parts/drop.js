@@ -1,0 +1,47 @@
+/** Files by dropping or choosing. */
+
+import { html, useRef } from "/parts/preact.js";
+import { Button } from "/parts/fields.js";
+
+/** A place for files; `on` gets a list of them, one of them unless there may be many. */
+export const Drop = ({ label, name = label, accept, many = false, on, children, ...more }) => {
+  const [one, folder] = [useRef(null), useRef(null)];
+  const mark = (over) => (event) => {
+    event.preventDefault();
+    event.currentTarget.classList.toggle("over", over);
+  };
+  const take = (files) => files.length && on(many ? [...files] : [files[0]]);
+  const drop = (event) => {
+    mark(false)(event);
+    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+    if (many && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
+    return take(event.dataTransfer.files);
+  };
+  const chosen = ({ target }) => {
+    const files = [...target.files];
+    target.value = ""; // or the same file, mended, could not be chosen again
+    take(files);
+  };
+  return html`
+    <div class="drop" onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop} ...${more}>
+      <p>${label}</p>
+      <div class="toolbar">
+        <${Button} onClick=${() => one.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
+        ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
+          <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory onChange=${chosen} />`}
+      </div>
+      <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} onChange=${chosen} />
+      ${children}
+    </div>`;
+};
+
+// All files of what was dropped, of folders those in them, which browsers give in pieces.
+const inFolders = async (entries) => (await Promise.all(entries.map(async (entry) => {
+  if (entry.isFile) return new Promise((resolve, reject) => entry.file(resolve, reject));
+  const reader = entry.createReader();
+  const inside = async () => {
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    return some.length ? [...await inFolders(some), ...await inside()] : [];
+  };
+  return inside();
+}))).flat();
