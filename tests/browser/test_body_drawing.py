@@ -119,7 +119,7 @@ def test_regions_have_densities_of_their_own(page: Any) -> None:
 
 
 def test_a_mass_puts_densities_aside(page: Any) -> None:
-    """Typed over two densities it holds through Undo and another shape; emptied, they are back; a density replaces it."""
+    """Typed over two densities it outlasts Undo and another shape; emptied, they are back; a density ends it."""
     page.get_by_label("Shape").select_option("section")
     page.get_by_test_id("board").wait_for()
     page.get_by_role("button", name="Add region").click()

@@ -35,16 +35,17 @@ export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden,
 const told = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
 
 /** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
- * optional one that was emptied null. */
+ * optional one that was emptied null; what is wrong with one that is `aside` is no fault of the inputs. */
 export const NumberField = ({
-  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, optional, ...more
+  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, optional, aside = false,
+  ...more
 }) => {
   const id = useId("number");
   const box = useRef(null);
   const [now, put] = bound(value, on);
   const [held, type] = useTyped(now ?? null, editable, saysNumber);
   const wrong = held.fault || error;
-  useLayoutEffect(() => faults.mark(box.current, label, wrong), [label, wrong]);
+  useLayoutEffect(() => void (aside || faults.mark(box.current, label, wrong)), [label, wrong]);
   useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
   const take = (text) => {
     const { fault = "", given } = checked(text, { min, above, max, whole, optional, unit });

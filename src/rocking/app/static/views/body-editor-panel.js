@@ -38,7 +38,7 @@ export const Details = ({ editor }) => {
       <div class="fields">
         ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${`Vertex ${axis}`}
           value=${point[index]} on=${put(index)} />`)}
-        <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional placeholder=${editable(editor.step())}
+        <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional aside placeholder=${editable(editor.step())}
           help="Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks." />
         <${Switch} label="Snap to grid" value=${snap} on=${set("snap")} />
       </div>

@@ -131,9 +131,9 @@ export const EdgePart = ({ editor }) => {
         <${NumberField} key=${`angle ${of}`} label="Edge angle" unit="°" value=${tidy(angle, 9)} on=${change("angle")}
           help="From the horizontal, counter-clockwise." /></div>
       <div ref=${box} class="fields">
-        <${NumberField} label="Rise of the arc" value=${rise.value} on=${rises} error=${wrong.value} optional
+        <${NumberField} label="Rise of the arc" value=${rise.value} on=${rises} error=${wrong.value} optional aside
           help="Out of the body; less than 0: into it." />
-        <${NumberField} label="At most off the arc" value=${off} above=${0} optional help="Empty: a hundredth of the rise." /></div>
+        <${NumberField} label="At most off the arc" value=${off} above=${0} optional aside help="Empty: a hundredth of the rise." /></div>
       <div class="toolbar"><${Button} onClick=${arc}>Make it an arc<//>
         <${Button} onClick=${() => fixed() && editor.change(model.doubled(editor.regions(), place, tidy))}>Double over this edge<//></div>
     </div></details>`;
@@ -201,10 +201,10 @@ export const PhotoPart = ({ editor }) => {
       ${photo && html`<div class="stack">
         <div class="fields">
           <${Slider} label="Opacity" value=${opacity.value} on=${fade} min=${0.1} max=${1} step=${0.05} />
-          <${NumberField} label="Picture's left edge" value=${tidy(photo.x, 9)} on=${put("x")} />
-          <${NumberField} label="Picture's lower edge" value=${tidy(photo.y, 9)} on=${put("y")} />
+          <${NumberField} label="Picture's left edge" value=${tidy(photo.x, 9)} on=${put("x")} aside />
+          <${NumberField} label="Picture's lower edge" value=${tidy(photo.y, 9)} on=${put("y")} aside />
           <${NumberField} label="Length between the two points" name="known-length" value=${known.value} on=${measure} error=${wrong.value}
-            above=${0} optional /></div>
+            above=${0} optional aside /></div>
         <div class="toolbar">
           <${Button} aria-pressed=${String(tool?.kind === "scale")} onClick=${() => editor.tool.take("scale")}>Set two points<//>
           <${Button} kind="primary" onClick=${apply}>Apply the length<//>
