@@ -1,18 +1,24 @@
-/** A start that failed: what went wrong in words, and the way to try again. */
+/** What could not be shown: why in words, and the way to try again. */
 
-import { button, note } from "/app/controls.js";
-import { el, fill } from "/app/dom.js";
+import { html, render } from "/parts/preact.js";
+import { Button, Note, sentence } from "/parts/fields.js";
+
+/** Put components in a place of their own instead of all that stands in a node. */
+export const inPlaceOf = (node, what) => {
+  const place = document.createElement("div");
+  node.replaceChildren(place);
+  render(what, place);
+};
 
 /** Say why the page could not start; what the address holds is kept for the next try. */
 export const showFailure = (message) => {
-  const words = `${message[0].toUpperCase()}${message.slice(1)}`.replace(/([^.?!])$/, "$1.");
-  const again = button({ text: "Try again", kind: "primary", onClick: () => location.reload() });
-  fill(document.getElementById("main"),
-    el("div", { class: "card door", "data-testid": "failure" },
-      el("h1", {}, "rocking could not start"),
-      el("div", { class: "refusal", role: "alert" }, note(words, "error")),
-      el("p", {}, "You need not sign in again, and your inputs are kept in this browser."),
-      again));
+  inPlaceOf(document.getElementById("main"), html`
+    <div class="card door" data-testid="failure">
+      <h1>rocking could not start</h1>
+      <div class="refusal" role="alert"><${Note} kind="error" words=${sentence(message)} /></div>
+      <p>You need not sign in again, and your inputs are kept in this browser.</p>
+      <${Button} kind="primary" onClick=${() => location.reload()}>Try again<//>
+    </div>`);
   document.body.classList.add("at-the-door");
-  again.focus();
+  document.querySelector(".door button").focus();
 };

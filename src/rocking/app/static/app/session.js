@@ -1,11 +1,11 @@
 /** Signing in: a one-time link from the terminal becomes a cookie that no script can read. */
 
+import { html, render, signal, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { call } from "/app/api.js";
-import { button, note } from "/app/controls.js";
-import { el, fill } from "/app/dom.js";
-import { textField } from "/app/fields.js";
+import { inPlaceOf } from "/app/failure.js";
+import { Button, Field, Note, toWrong } from "/parts/fields.js";
 
-let door = null;
+const said = signal(null); // what the door says; nothing while there is none
 
 /** Exchange the token of a link for the cookie; says why not if it did not work. */
 export const exchange = async (token) => {
@@ -17,81 +17,88 @@ export const exchange = async (token) => {
   }
 };
 
+const signedIn = () => document.dispatchEvent(new CustomEvent("rocking:signed-in"));
+const onSignedIn = (done) => document.addEventListener("rocking:signed-in", done, { once: true });
+
 /** A page that says how to get in, before the application; what the address holds is kept for after. */
 export const showDoor = (message) => {
-  if (door) return door.tell(message);
-  const running = document.body.dataset.started === "true";
-  const form = doorForm(message, running);
-  if (running) return openOver(form);
-  fill(document.getElementById("main"), form.element);
+  const before = said.value;
+  said.value = message;
+  if (before !== null) return;
+  if (document.body.dataset.started === "true") return openOver();
+  inPlaceOf(document.getElementById("main"), html`<${Door} />`);
   document.body.classList.add("at-the-door");
-  door = { tell: form.tell };
-  document.addEventListener("rocking:signed-in", () => location.reload(), { once: true });
+  onSignedIn(() => location.reload());
 };
 
 // Over the running application: nothing that was typed or drawn is lost.
-const openOver = (form) => {
-  const dialog = el("dialog", { class: "over", "aria-label": "Sign in again", oncancel: stay }, form.element);
+const openOver = () => {
+  const close = over("Sign in again", html`<${Door} running />`, { stays: true });
   const look = async () => {
     if (document.hidden) return;
     const { signed_in: inside } = await call("session").catch(() => ({}));
-    if (inside) document.dispatchEvent(new CustomEvent("rocking:signed-in"));
+    if (inside) signedIn();
   };
-  document.body.append(dialog);
-  dialog.showModal();
   addEventListener("focus", look);
-  door = { tell: form.tell };
-  document.addEventListener("rocking:signed-in", () => {
+  onSignedIn(() => {
     removeEventListener("focus", look);
-    dialog.close();
-    dialog.remove();
-    door = null;
-  }, { once: true });
+    close();
+    said.value = null;
+  });
 };
 
-const stay = (event) => event.preventDefault();
+/** A dialog over the page; returns how to close it. */
+const over = (label, what, { stays = false } = {}) => {
+  const place = document.body.appendChild(document.createElement("div"));
+  const gone = () => {
+    render(null, place);
+    place.remove();
+  };
+  render(html`<dialog class="over" aria-label=${label} onClose=${gone} onCancel=${(event) => stays && event.preventDefault()}>${what}</dialog>`, place);
+  const dialog = place.firstElementChild;
+  dialog.showModal();
+  return () => dialog.close();
+};
 
-const doorForm = (message, running) => {
-  const said = el("div", { class: "refusal", role: "alert" });
-  const tell = (words) => fill(said, words ? note(words, "warning") : null);
-  const link = textField(
-    { label: "Link or token", help: "The line that begins with http:// in the terminal." }
-  );
+const Door = ({ running = false }) => {
+  const form = useRef(null);
+  const [link, wrong] = [useSignal(""), useSignal("")];
   const enter = async (event) => {
     event.preventDefault();
     const token = link.value.trim().split("token=").at(-1).split("&")[0];
-    if (!token) return link.setError("Paste the link first.");
-    const refusal = await exchange(token);
-    if (refusal) return tell(refusal);
-    document.dispatchEvent(new CustomEvent("rocking:signed-in"));
+    wrong.value = token ? "" : "Paste the link first.";
+    if (!token) return toWrong(form.current);
+    said.value = await exchange(token);
+    return said.value || signedIn();
   };
-  tell(message);
-  const element = el("form", { class: "card door", onsubmit: enter, "data-testid": "door" },
-    el("h1", {}, running ? "Sign in again" : "Open the link from the terminal"),
-    running ? el("p", {}, "The server no longer knows this browser; it was probably started again. ",
-      "Your inputs are still here.") : null,
-    el("p", {}, "`rocking serve` prints a link that works once, so that only you can use this server. ",
-      "Open that link, or paste it here. If it has been used, press \u201cLink for another browser\u201d ",
-      "at the foot of the page in a browser that is signed in, or start the server again."),
-    said, link, button({ text: "Sign in", kind: "primary", onClick: enter }));
-  return { element, tell };
+  return html`
+    <form ref=${form} class="card door" onSubmit=${enter} data-testid="door">
+      <h1>${running ? "Sign in again" : "Open the link from the terminal"}</h1>
+      ${running && html`<p>${"The server no longer knows this browser; it was probably started again. "}${"Your inputs are still here."}</p>`}
+      <p>${"`rocking serve` prints a link that works once, so that only you can use this server. "}
+        ${"Open that link, or paste it here. If it has been used, press \u201cLink for another browser\u201d "}
+        ${"at the foot of the page in a browser that is signed in, or start the server again."}</p>
+      <div class="refusal" role="alert">${said.value && html`<${Note} kind="warning" words=${said.value} />`}</div>
+      <${Field} label="Link or token" value=${link} error=${wrong.value} help="The line that begins with http:// in the terminal." />
+      <${Button} type="submit" kind="primary">Sign in<//>
+    </form>`;
 };
 
 /** Show a new one-time link for another browser, on the clipboard where that is allowed. */
 export const linkForAnother = async (app) => {
   const { url } = await app.call("session/link", { method: "POST" });
-  const box = textField({ label: "Link that signs one more browser in", value: url,
-    help: "It works once, within 15 minutes. Whoever has it can use this server." });
-  box.input.readOnly = true;
-  const copy = () => navigator.clipboard.writeText(url)
-    .then(() => app.say("The link is on the clipboard."), () => box.input.select());
-  const dialog = el("dialog", {
-    class: "over", "aria-label": "Link for another browser", onclose: () => dialog.remove(),
-  },
-    el("div", { class: "card door", "data-testid": "another" }, el("h1", {}, "Link for another browser"), box,
-      el("div", { class: "toolbar" }, button({ text: "Copy link", kind: "primary", onClick: copy }),
-        button({ text: "Close", onClick: () => dialog.close() }))));
-  document.body.append(dialog);
-  dialog.showModal();
-  box.input.select();
+  const close = over("Link for another browser", html`<${Another} app=${app} url=${url} close=${() => close()} />`);
+};
+
+const Another = ({ app, url, close }) => {
+  const box = useRef(null);
+  const mark = () => box.current.querySelector("input").select();
+  useLayoutEffect(() => void setTimeout(mark), []);
+  const copy = () => navigator.clipboard.writeText(url).then(() => app.say("The link is on the clipboard."), mark);
+  return html`
+    <div ref=${box} class="card door" data-testid="another"><h1>Link for another browser</h1>
+      <${Field} label="Link that signs one more browser in" value=${url} readonly
+        help="It works once, within 15 minutes. Whoever has it can use this server." />
+      <div class="toolbar"><${Button} kind="primary" onClick=${copy}>Copy link<//><${Button} onClick=${close}>Close<//></div>
+    </div>`;
 };

@@ -1,38 +1,38 @@
 /** The body column beside every other view: what stands there, at a glance. */
 
-import { note } from "/app/controls.js";
-import { el, fill } from "/app/dom.js";
+import { html, render, signal, useMemo } from "/parts/preact.js";
 import { number, quantity } from "/app/format.js";
 import { bodyPicture } from "/drawing/body-picture.js";
+import { Button, Note } from "/parts/fields.js";
+import { Made } from "/parts/made.js";
 
 /** Keep the column up to date. */
 export const mountSummary = (aside, app) => {
-  const picture = el("div", { class: "summary-picture" });
-  const facts = el("dl", { class: "facts compact", "data-testid": "summary" });
-  const name = el("p", { class: "summary-name" });
-  const edit = el(
-    "button", { type: "button", class: "button quiet", onclick: () => app.go("body") }, "Change the body",
-  );
-  const refusal = el("div", { class: "refusal", "data-testid": "summary-faults" });
-  fill(aside, el("h2", {}, "The body"), refusal, name, picture, facts, edit);
+  const [facts, wrong] = [signal(app.body.get()), signal("")]; // what is wrong, a line each
   const look = () => {
     const refused = app.body.error()?.message;
-    const wrong = [app.faults.sentence({ inputs: true, but: refused }), refused].filter(Boolean);
-    aside.classList.toggle("stale", wrong.length > 0);
-    if (refusal.dataset.words === wrong.join()) return;
-    refusal.dataset.words = wrong.join();
-    fill(refusal, wrong.map((words) => note(words, "error")));
+    wrong.value = [app.faults.sentence({ inputs: true, but: refused }), refused].filter(Boolean).join("\n");
+    aside.classList.toggle("stale", wrong.value !== "");
   };
   app.faults.subscribe(look);
-  app.body.subscribe((body) => {
+  app.body.subscribe((found) => {
     look();
-    if (!body) return;
-    fill(name, body.name ?? "");
-    name.hidden = !body.name;
-    fill(picture, bodyPicture(body, { height: 190, plain: true }));
-    fill(facts, ...rows(body).map(([term, text]) => [el("dt", {}, term), el("dd", {}, text)]));
+    facts.value = found;
   });
+  render(html`<${Summary} app=${app} facts=${facts} wrong=${wrong} />`, aside);
 };
+
+const Summary = ({ app, facts: { value: facts }, wrong }) => html`
+  <h2>The body</h2>
+  <div class="refusal" data-testid="summary-faults">
+    ${wrong.value.split("\n").filter(Boolean).map((words) => html`<${Note} key=${words} kind="error" words=${words} />`)}</div>
+  ${facts && html`<${Facts} facts=${facts} />`}
+  <${Button} kind="quiet" onClick=${() => app.go("body")}>Change the body<//>`;
+
+const Facts = ({ facts }) => html`
+  ${facts.name && html`<p class="summary-name" translate=${false}>${facts.name}</p>`}
+  <${Made} class="summary-picture" node=${useMemo(() => bodyPicture(facts, { height: 190, plain: true }), [facts])} />
+  <dl class="facts compact" data-testid="summary">${rows(facts).map(([term, text]) => html`<dt key=${term}>${term}</dt><dd>${text}</dd>`)}</dl>`;
 
 const rows = ({ sides, mass_kg: mass }) => {
   const { left, right } = sides;

@@ -1,7 +1,8 @@
 /** Loading the views: each is mounted when it is first shown. */
 
-import { button, note } from "/app/controls.js";
-import { fill } from "/app/dom.js";
+import { inPlaceOf } from "/app/failure.js";
+import { Button, Note } from "/parts/fields.js";
+import { html } from "/parts/preact.js";
 
 /** A keeper of views: show(name, before) mounts and tells them. */
 export const createViews = (app) => {
@@ -32,14 +33,14 @@ const load = async (name, app, forget) => {
   const section = document.getElementById(`view-${name}`);
   try {
     const { mount } = await import(address(name));
-    fill(section);
+    section.replaceChildren();
     const view = (await mount(section, app)) ?? {};
     section.dataset.ready = "true";
     return view;
   } catch (error) {
     forget();
-    fill(section, note(failure(error), "error"),
-      button({ text: "Load the page again", kind: "primary", onClick: () => location.reload() }));
+    inPlaceOf(section, html`<${Note} kind="error" words=${failure(error)} />
+      <${Button} kind="primary" onClick=${() => location.reload()}>Load the page again<//>`);
     section.dataset.ready = "failed";
     return {};
   }
