@@ -355,8 +355,8 @@ def test_each_step_has_a_heading(open_page: Callable[..., Any], view: str, words
 
 
 LARGE_MAP = """async (count) => {
-  const [{ layersOf, cellWords }, { showMap }] = await Promise.all(
-    ["/views/studies-layers.js", "/views/studies-map.js"].map((each) => import(each)));
+  const [{ layersOf, cellWords }, { OverturningMap }, { html, render }] = await Promise.all(
+    ["/views/studies-layers.js", "/views/studies-map.js", "/parts/preact.js"].map((each) => import(each)));
   const many = (value) => Array.from({ length: count }, (_, k) => value(k));
   const grid = (value) => many((iy) => many((ix) => value(ix, iy)));
   const axis = { values: many((k) => 1 + k), unit: "1", words: "a" };
@@ -369,11 +369,14 @@ LARGE_MAP = """async (count) => {
   const place = document.createElement("div");
   document.querySelector("#view-studies").append(place);
   const busy = () => performance.now(), started = busy();
-  showMap(place, { call: async () => ({}) }, { id: "x" }, found, { restitution: 0 });
+  const app = { call: async () => ({ stored: { impacts: 2 } }) }, chosen = { restitution: 0 };
+  render(html`<${OverturningMap} app=${app} study=${{ id: "x" }} found=${found} chosen=${chosen} />`, place);
   const shown = busy() - started, canvas = place.querySelector("canvas"), box = canvas.getBoundingClientRect();
   const again = busy();
-  for (let k = 0; k < 20; k += 1) canvas.dispatchEvent(new PointerEvent("pointermove",
-    { clientX: box.left + 100 + 10 * k, clientY: box.top + 100 }));
+  for (let k = 0; k < 20; k += 1) {
+    canvas.dispatchEvent(new PointerEvent("pointermove", { clientX: box.left + 100 + 10 * k, clientY: box.top + 100 }));
+    await new Promise((done) => setTimeout(done));
+  }
   const moved = (busy() - again) / 20;
   const paint = (x, y) => Array.from(canvas.getContext("2d").getImageData(
     Math.round(x * canvas.width), Math.round(y * canvas.height), 1, 1).data);

@@ -4,7 +4,7 @@ import { Switch } from "/parts/fields.js";
 import { StudyForm } from "/views/studies-form.js";
 import { StudyList, actsOf, stateWords } from "/views/studies-list.js";
 import { liveStudies } from "/views/studies-live.js";
-import { showMap } from "/views/studies-map.js";
+import { OverturningMap } from "/views/studies-map.js";
 import { Fragility } from "/views/studies-fragility.js";
 import { Spectrum } from "/views/studies-spectrum.js";
 import { Counts } from "/views/studies-counts.js";
@@ -85,12 +85,6 @@ const Outcome = ({ app, shown, found, refused, chosen }) => {
           <${Exports} app=${app} study=${shown} found=${found} chosen=${chosen} />`}
       </div>
     </section>`;
-};
-
-const OverturningMap = ({ app, study, found, chosen }) => {
-  const place = useRef(null);
-  useLayoutEffect(() => showMap(place.current, app, study, found, chosen), []);
-  return html`<div ref=${place} class="study-result"></div>`;
 };
 
 const SHOW = {
