@@ -2,22 +2,25 @@
 
 import { batch, signal } from "/parts/preact.js";
 
-/** Ask for a response: `question()` says what, null where nothing moves; only what `keys` name matters. */
-export const createAnswer = (app, name, keys, question) => {
-  const [answer, refused, part] = [signal(null), signal(""), signal(null)];
+/** Ask `path` of the API: `question()` says what, null where nothing moves; only what `keys` name matters.
+ * A part of the time is asked with `detail` beside it; an answer that `keeps` outlasts a refusal. */
+export const createAnswer = (app, name, keys, question, { path = "response", detail = {}, keeps = false } = {}) => {
+  const [answer, refused, part] = [signal(null), signal(null), signal(null)];
   let [visible, dirty, queued] = [false, true, false];
-  const become = (found, words = "") => batch(() => {
-    [answer.value, refused.value, part.value] = [found, words, null];
+  const become = (found, error = null) => batch(() => {
+    [answer.value, refused.value, part.value] = [found, error, null];
   });
   const refresh = async () => {
     [queued, dirty] = [false, false];
     const given = question();
     if (!given) return become(null);
     try {
-      const found = await app.latest(name, "response", given);
+      const found = await app.latest(name, path, given);
       if (question()) become(found); // else nothing moves any more
     } catch (error) {
-      if (!app.superseded(error)) become(null, error.message);
+      if (app.superseded(error)) return undefined;
+      dirty = true; // what failed once is asked again when the view is next shown
+      become(keeps ? answer.value : null, error);
     }
     return undefined;
   };
@@ -37,11 +40,11 @@ export const createAnswer = (app, name, keys, question) => {
     /** Ask again for the part of the time that the figures show; null shows all of it. */
     look: async (window) => {
       const whole = answer.value;
-      part.value = window && { window, answers: [] };
+      part.value = window && { window };
       if (!window) return undefined;
       try {
-        const found = await app.latest(`${name}-part`, "response", { ...question(), window });
-        if (whole === answer.value && part.value?.window === window) part.value = { window, answers: found.answers };
+        const found = await app.latest(`${name}-part`, path, { ...question(), ...detail, window });
+        if (whole === answer.value && part.value?.window === window) part.value = { window, ...found };
       } catch (error) {
         if (!app.superseded(error)) app.say(error.message, "error");
       }

@@ -81,7 +81,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
   return html`
     <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
       <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
-    ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value} />`}
+    ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
       <button type="button" class="button" onClick=${() => app.go("motion")}>Choose a motion</button></p>`}
     ${there.length > 0 && html`

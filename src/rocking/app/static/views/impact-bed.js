@@ -1,7 +1,6 @@
 /** The contact bed as a laboratory: the coefficient that emerges from springs and dashpots, as one thing changes. */
 
-import { html, render, signal, useMemo, useRef, useSignal } from "/parts/preact.js";
-import { el } from "/app/dom.js";
+import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 import { createTime, Figure } from "/charts/figure.js";
@@ -17,20 +16,8 @@ const RANGE = ["from", "to", "count", "spacing"];
 const NOTHING = {};
 const BED = { label: "contact bed", colour: "--accent", points: true };
 
-/** The part and how it follows the body: {node, follow(answer, foot)}. */
-export const bedPart = (app) => {
-  const body = signal({});
-  const node = el("div", { class: "question", "data-testid": "bed" });
-  render(html`<${Laboratory} app=${app} body=${body} />`, node);
-  return {
-    node,
-    follow: ({ body: { sides, base } }, foot) => (body.value = {
-      slenderness: sides[foot === "right" ? "left" : "right"].slenderness_ratio, width: base[1] - base[0],
-    }),
-  };
-};
-
-const Laboratory = ({ app, body }) => {
+/** What is asked of the bed and what comes out of it; `body` has the slenderness and the width. */
+export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;
   const form = useForm("rocking.bed", {});
   const varied = useSignal("slenderness");
@@ -39,7 +26,7 @@ const Laboratory = ({ app, body }) => {
     event.preventDefault();
     busy.value = true;
     try {
-      const json = { ...body.value, ...filled(form.value, keys), varied: varied.value };
+      const json = { ...body, ...filled(form.value, keys), varied: varied.value };
       found.value = await app.call("contact-bed", { json });
       wrong.value = "";
     } catch (error) {
@@ -48,9 +35,9 @@ const Laboratory = ({ app, body }) => {
     busy.value = false;
   };
   const field = (name) => html`<${KeyField} key=${name} name=${name} facts=${keys[name]} value=${form.at(name)}
-    ...${name in body.value ? { placeholder: number(body.value[name], 4) } : {}} />`;
+    ...${name in body ? { placeholder: number(body[name], 4) } : {}} />`;
   const others = Object.keys(keys).filter((name) => name !== "varied" && !RANGE.includes(name));
-  return html`
+  return html`<div class="question" data-testid="bed">
     <form class="stack" onSubmit=${compute} aria-label="Contact bed">
       <${Choice} label="What changes" value=${varied} options=${Object.entries(VARIED)} />
       <details><summary>From where to where, and what the bed is</summary>
@@ -58,7 +45,7 @@ const Laboratory = ({ app, body }) => {
       ${wrong.value && html`<${Note} kind="error" role="alert" words=${wrong.value} />`}
       <div class="toolbar"><button type="submit" class="button" disabled=${busy.value}>Compute</button></div>
     </form>
-    ${found.value && html`<${Emerged} found=${found.value} />`}`;
+    ${found.value && html`<${Emerged} found=${found.value} />`}</div>`;
 };
 
 const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {

@@ -1,58 +1,51 @@
 /** Coefficients against measurements: a cloud over slenderness, and the intervals of this body. */
 
-import { el, fill, svg } from "/app/dom.js";
+import { html } from "/parts/preact.js";
+import { svg } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
-import { dashKey, GROUPS, modelStyle, modelWords } from "/app/palette.js";
+import { GROUPS } from "/app/palette.js";
 import { marker } from "/drawing/markers.js";
 import { measuredPicture } from "/drawing/measured-picture.js";
-import { responsive } from "/drawing/responsive.js";
 import { rowPicture } from "/drawing/row-picture.js";
+import { Drawn, Made } from "/parts/made.js";
+import { Swatch, wordsOf } from "/views/response-labels.js";
 
-/** Pictures and legend: {nodes, follow(answer, foot)}. */
-export const evidenceParts = () => {
-  let shown = null;
-  const cloud = responsive((width) => (shown ? measuredPicture(shown, { width }) : null));
-  const intervals = responsive((width) => (shown ? intervalPicture(shown, width) : null));
-  const legend = el("div", {});
-  const source = el("p", { class: "field-help" });
-  const follow = (answer, foot) => {
-    shown = evidenceOf(answer, foot);
-    fill(legend, legendOf(shown));
-    fill(source, answer.measured.source ?? "");
-    cloud.redraw();
-    intervals.redraw();
-  };
-  return {
-    nodes: [
-      el("div", { class: "columns two" }, el("div", { class: "stack" }, cloud, legend), intervals), source,
-    ],
-    follow,
-  };
-};
+/** Pictures and legend. */
+export const Evidence = ({ answer, foot }) => html`
+  <div class="columns two">
+    <div class="stack"><${Drawn} draw=${cloudPicture} of=${[answer, foot]} />
+      <ul class="legend">
+        ${[...new Set(pointsOf(answer).map(({ group }) => group))].map((group) => html`
+          <li key=${group}><${Made} node=${groupKey(group)} />${GROUPS[group]?.words ?? group}</li>`)}
+        ${(answer.curves ?? []).map(({ model }) => html`
+          <li key=${model}><${Swatch} label=${model} />${wordsOf(model)}</li>`)}
+      </ul></div>
+    <${Drawn} draw=${intervalPicture} of=${[answer, foot]} />
+  </div>
+  <p class="field-help">${answer.measured.source}</p>`;
 
-const evidenceOf = (answer, foot) => ({
-  measured: answer.measured.points ?? answer.measured,
-  curves: answer.curves ?? [],
-  slenderness: answer.body.sides[foot === "right" ? "left" : "right"].slenderness_ratio,
-  rows: answer.coefficients[foot].map((row) => ({
-    model: row.model, value: row.coefficient_of_restitution, low: row.low_95, high: row.high_95,
-  })),
-});
+/** Of the side about which the body turns before it lands on a foot. */
+export const slendernessOf = ({ body: { sides } }, foot) => sides[foot === "right" ? "left" : "right"].slenderness_ratio;
 
-const intervalPicture = ({ rows }, width) => {
+const pointsOf = ({ measured }) => measured.points ?? measured;
+
+const rowsOf = (answer, foot) => answer.coefficients[foot].map((row) => ({
+  model: row.model, value: row.coefficient_of_restitution, low: row.low_95, high: row.high_95,
+}));
+
+const cloudPicture = (answer, foot, width) => measuredPicture({
+  measured: pointsOf(answer), curves: answer.curves ?? [], rows: rowsOf(answer, foot),
+  slenderness: slendernessOf(answer, foot),
+}, { width });
+
+const intervalPicture = (answer, foot, width) => {
+  const rows = rowsOf(answer, foot);
   const low = lowest(rows.map((row) => row.low));
   const high = highest(rows.map((row) => row.value), 1);
   return rowPicture(rows, {
     width, domain: [Math.floor(low * 20) / 20, high + 0.002], label: "coefficient of restitution r",
     title: "Coefficient of restitution of this body", testid: "interval-picture",
   });
-};
-
-const legendOf = ({ measured, curves }) => {
-  const groups = [...new Set(measured.map((each) => each.group))];
-  return el("ul", { class: "legend" },
-    groups.map((group) => el("li", {}, groupKey(group), GROUPS[group]?.words ?? group)),
-    curves.map(({ model }) => el("li", {}, dashKey(modelStyle(model)), modelWords(model))));
 };
 
 const groupKey = (group) => svg(

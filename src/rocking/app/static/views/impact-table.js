@@ -1,59 +1,42 @@
 /** The table of the models, and their warnings in plain words. */
 
-import { tableOf, note } from "/app/fields.js";
-import { el } from "/app/dom.js";
+import { html } from "/parts/preact.js";
 import { percent } from "/app/format.js";
-import { dashKey, modelStyle, modelWords } from "/app/palette.js";
+import { Note, sentence } from "/parts/fields.js";
+import { Table } from "/parts/table.js";
+import { Swatch, wordsOf } from "/views/response-labels.js";
+
+const COLUMNS = [
+  { label: "Model" }, { label: "Coefficient r", digits: 5 }, { label: "95 % interval", numeric: true },
+  { label: "Impulse at k", digits: 4 }, { label: "Energy lost", numeric: true }, { label: "Friction needed", digits: 4 },
+  { label: "Admissible", numeric: false },
+];
 
 /** One row for each model; copying takes every digit. */
-export const coefficientTable = (answer, foot, app) => {
+export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
-  const columns = [
-    { label: "Model" }, { label: "Coefficient r", digits: 5 }, {
-      label: "95 % interval", numeric: true,
-    }, { label: "Impulse at k", digits: 4 },
-    {
-      label: "Energy lost", numeric: true,
-    }, { label: "Friction needed", digits: 4 }, { label: "Admissible", numeric: false },
-  ];
   const shown = rows.map((row) => [
-    modelName(row.model, answer.titles?.[row.model]),
-    row.coefficient_of_restitution,
-    range(row),
-    row.impulse_ratio_k,
-    percent(row.energy_loss),
-    row.friction_demand,
-    row.admissible ? "yes" : el("strong", { class: "bad" }, "no"),
+    html`<span class="model-name" title=${answer.titles?.[row.model]}><${Swatch} label=${row.model} />${wordsOf(row.model)}</span>`,
+    row.coefficient_of_restitution, `${row.low_95.toFixed(4)} \u2026 ${row.high_95.toFixed(4)}`, row.impulse_ratio_k,
+    percent(row.energy_loss), row.friction_demand, row.admissible ? "yes" : html`<strong class="bad">no</strong>`,
   ]);
-  return tableOf(columns, shown, {
-    caption: `Velocity after over velocity before, landing on the ${foot} foot`,
-    testid: "coefficients",
-    csv: () => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv"),
-    copyRows: () => rows.map((row) => [
-      row.model, row.coefficient_of_restitution, `${row.low_95} to ${row.high_95}`, row.impulse_ratio_k,
-      row.energy_loss,
-      row.friction_demand, row.admissible ? "yes" : "no",
-    ]),
-  });
+  const copied = () => rows.map((row) => [
+    row.model, row.coefficient_of_restitution, `${row.low_95} to ${row.high_95}`, row.impulse_ratio_k, row.energy_loss,
+    row.friction_demand, row.admissible ? "yes" : "no",
+  ]);
+  return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"
+    caption=${`Velocity after over velocity before, landing on the ${foot} foot`}
+    csv=${() => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 
 /** The warnings of one foot, each with the models it concerns. */
-export const warningNotes = (answer, foot) => {
-  const here = new Map();
-  for (const { model, warnings } of answer.coefficients[foot]) {
-    for (const words of warnings) here.set(words, [...(here.get(words) ?? []), model]);
+export const Warnings = ({ answer, foot }) => {
+  const models = answer.coefficients[foot];
+  const found = new Map();
+  for (const { model, warnings } of models) {
+    for (const words of warnings) found.set(words, [...(found.get(words) ?? []), model]);
   }
-  const every = answer.coefficients[foot].length;
-  return [...here].map(([words, models]) =>
-    note(
-      sentence(models.length === every ? words : `${models.map(modelWords).join(", ")}: ${words}`), "warning",
-    ));
+  return html`<div class="stack" data-testid="impact-warnings">${[...found].map(([words, whose]) => html`
+    <${Note} key=${words} kind="warning"
+      words=${sentence(whose.length === models.length ? words : `${whose.map(wordsOf).join(", ")}: ${words}`)} />`)}</div>`;
 };
-
-const sentence = (words) => words[0].toUpperCase() + words.slice(1);
-
-/** A model's key and words. */
-export const modelName = (label, title) =>
-  el("span", { class: "model-name", title }, dashKey(modelStyle(label)), modelWords(label));
-
-const range = ({ low_95: low, high_95: high }) => `${low.toFixed(4)} \u2026 ${high.toFixed(4)}`;

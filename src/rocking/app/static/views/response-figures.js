@@ -86,7 +86,7 @@ export const marksWords = (answers, whose) => `Ticks on the axis: impacts of ${w
 /** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into. */
 export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) => {
   const shown = useMemo(() => answers.map((answer) => {
-    const found = part?.answers.find(({ label }) => label === answer.label)?.series;
+    const found = part?.answers?.find(({ label }) => label === answer.label)?.series;
     return found ? { ...answer, series: detailed(answer.series, found) } : answer;
   }), [answers, part]);
   const first = shown.find(({ label }) => label === lead) ?? shown[0];

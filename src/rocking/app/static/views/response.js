@@ -75,7 +75,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
     <header class="view-head"><h1>Response</h1>
       <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
     <div aria-live="polite" data-testid="response-refusal">
-      ${refused.value && html`<${Note} kind="error" words=${refused.value} />`}
+      ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
       ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
       <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
