@@ -43,10 +43,7 @@ export const lineChart = (container, options) => {
   const plot = new uPlot({
     width: widthOf(stage), height, bands,
     legend: { show: false },
-    cursor: {
-      sync: options.sync ? { key: options.sync } : undefined, points: { size: 7 },
-      drag: { x: true, y: false },
-    },
+    cursor: { points: { size: 7 }, drag: { x: true, y: false } },
     scales: { x: { time: false, ...(x.log ? WHOLE : {}) }, y: scaleOf(y) },
     axes: axes(x, y),
     series: [{ label: axisWords(x) }, ...options.series.map(seriesOf)],

@@ -16,21 +16,3 @@ export const detailed = (whole, part) => {
     [name, Array.isArray(values) ? [...values.slice(0, begin), ...part[name], ...values.slice(end)] : values];
   return Object.fromEntries(Object.entries(whole).map(spliced));
 };
-
-/** Follow several charts that are looked into together: `ask(window)` once, null when all is in sight again. */
-export const zoomOf = (ask) => {
-  let [wanted, asked] = [null, null];
-  const settle = () => {
-    if (String(wanted) === String(asked)) return;
-    asked = wanted;
-    ask(asked);
-  };
-  return {
-    look: (window) => {
-      wanted = window;
-      queueMicrotask(settle);
-    },
-    reset: () => ([wanted, asked] = [null, null]),
-    window: () => asked,
-  };
-};

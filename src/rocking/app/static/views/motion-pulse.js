@@ -1,55 +1,41 @@
 /** A pulse: which one, and its parameters. */
-import { el, fill } from "/app/dom.js";
-import { numberField, slider } from "/app/fields.js";
+import { html, useMemo } from "/parts/preact.js";
+import { NumberField, Slider } from "/parts/fields.js";
 import { readPulse, writePulse } from "/views/motion-pulse-words.js";
 import { pulsesOf } from "/views/motion-pulses.js";
-import { sketch } from "/views/motion-sketch.js";
+import { Sketch } from "/views/motion-sketch.js";
 import { plainWords } from "/views/studies-words.js";
 
 const USUAL = "sine";
+const kept = new Map(); // the parameters of each pulse that were turned
 
-/** Returns the editor of a pulse. */
-export const pulseEditor = (app, onChange) => {
-  const pulses = pulsesOf(app.info);
-  const kept = new Map();
-  const fields = el("div", { class: "pulse-fields", "data-testid": "pulse-parameters" });
-  const cards = pulseCards(pulses, (name) => choose(name));
-  const element = el("div", { class: "pulse-editor" }, cards.element, fields);
-  let shown = { name: "", parameters: {}, controls: {} };
-
-  const parametersOf = (name) => kept.get(name) || borrowed(pulses.get(name), shown.parameters);
-  const wordsOf = () => writePulse(shown.name, shown.parameters);
-  const choose = (name) => {
-    build(name, parametersOf(name));
-    onChange({ pulse: wordsOf() });
+/** The editor of a pulse. */
+export const Pulse = ({ app, motion, onChange }) => {
+  const pulses = useMemo(() => pulsesOf(app.info), []);
+  const [name, parameters] = readPulse(motion?.pulse ?? "");
+  const shown = pulses.get(name);
+  const choose = (next) => onChange({ pulse: writePulse(next, kept.get(next) ?? borrowed(pulses.get(next), parameters)) });
+  const turn = (key, value) => {
+    kept.set(name, { ...parameters, [key]: value });
+    onChange({ pulse: writePulse(name, kept.get(name)) });
   };
-  const build = (name, parameters) => {
-    shown = { name, parameters: { ...parameters }, controls: {} };
-    const pulse = pulses.get(name);
-    const parts = pulse.parameters.map((one) => {
-      const control = parameterControl(one, parameters[one.name] ?? one.usual, (value) => {
-        shown.parameters[one.name] = value;
-        kept.set(name, { ...shown.parameters });
-        onChange({ pulse: wordsOf() });
-      });
-      shown.controls[one.name] = control;
-      return control.element;
-    });
-    fill(fields, el("p", { class: "field-help" }, aboutOf(pulse)), parts);
-    cards.choose(name);
-  };
-  const show = (motion) => {
-    const [name, parameters] = readPulse(motion.pulse);
-    if (!pulses.has(name) || motion.pulse === wordsOf()) return;
-    if (name !== shown.name) build(name, parameters);
-    shown.parameters = { ...parameters };
-    for (const [key, control] of Object.entries(shown.controls)) {
-      if (parameters[key] !== undefined) control.show(parameters[key]);
-    }
-  };
-  const usual = () => ({ pulse: writePulse(USUAL, parametersOf(USUAL)) });
-  return { element, show, usual };
+  return html`
+    <div class="pulse-editor">
+      <fieldset class="pulse-cards"><legend>Pulse</legend>${[...pulses].map(([key, { title }]) => html`
+        <label key=${key} class="pulse-card">
+          <input type="radio" name="pulse" value=${key} checked=${key === name} onChange=${() => choose(key)} />
+          <${Sketch} name=${key} /><span class="pulse-name">${title}</span></label>`)}
+      </fieldset>
+      <div class="pulse-fields" data-testid="pulse-parameters">
+        ${shown && html`<p class="field-help">${aboutOf(shown)}</p>
+          ${shown.parameters.map((one) => html`<${Parameter} key=${`${name} ${one.name}`} ...${one}
+            value=${parameters[one.name] ?? one.usual} on=${(value) => turn(one.name, value)} />`)}`}
+      </div>
+    </div>`;
 };
+
+/** The pulse to begin with. */
+export const usualPulse = ({ info }) => ({ pulse: writePulse(USUAL, kept.get(USUAL) ?? borrowed(pulsesOf(info).get(USUAL), {})) });
 
 const aboutOf = ({ summary }) => {
   const text = summary.replace(/^Return /, "").replaceAll("`", "");
@@ -61,49 +47,9 @@ const borrowed = (pulse, before) =>
   Object.fromEntries(pulse.parameters.filter((one) => one.needed || one.name in before)
     .map((one) => [one.name, before[one.name] ?? one.usual]));
 
-const parameterControl = ({ label, unit, usual, low, high, whole, log }, value, onChange) => {
-  const bar = slider({
-    label,
-    unit,
-    min: low,
-    max: high,
-    step: whole ? 1 : log ? undefined : (high - low) / 200,
-    value: Math.min(Math.max(Math.abs(value), low), high),
-    log,
-    onInput: (given) => {
-      exact.value = given;
-      onChange(given);
-    },
-  });
-  const exact = numberField({
-    label: `${label}, exactly`,
-    unit,
-    value,
-    step: whole ? 1 : undefined,
-    onChange: (given) => {
-      bar.value = Math.min(Math.max(Math.abs(given ?? usual), low), high);
-      onChange(given);
-    },
-  });
-  exact.classList.add("exact");
-  const show = (given) => {
-    exact.value = given;
-    bar.value = Math.min(Math.max(Math.abs(given), low), high);
-  };
-  return { element: el("div", { class: "parameter" }, bar, exact), show };
-};
-
-const pulseCards = (pulses, onChoose) => {
-  const items = new Map();
-  for (const [name, { title }] of pulses) {
-    const input = el("input", { type: "radio", name: "pulse", value: name, onchange: () => onChoose(name) });
-    const words = el("span", { class: "pulse-name" }, title);
-    items.set(name, [input, el("label", { class: "pulse-card" }, input, sketch(name), words)]);
-  }
-  const labels = [...items.values()].map(([, label]) => label);
-  const element = el("fieldset", { class: "pulse-cards" }, el("legend", {}, "Pulse"), ...labels);
-  const choose = (name) => {
-    for (const [key, [input]] of items) input.checked = key === name;
-  };
-  return { element, choose };
-};
+const Parameter = ({ label, unit, low, high, whole, log, value, on }) => html`
+  <div class="parameter">
+    <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${whole ? 1 : (high - low) / 200} log=${log}
+      value=${Math.min(Math.max(Math.abs(value), low), high)} on=${on} />
+    <${NumberField} kind="exact" label=${`${label}, exactly`} unit=${unit} step=${whole ? 1 : undefined} value=${value} on=${on} />
+  </div>`;

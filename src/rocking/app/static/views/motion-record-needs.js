@@ -1,5 +1,6 @@
 /** What a record file does not say, asked in a small form. */
-import { numberField, selectField } from "/app/fields.js";
+import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
+import { Button, Choice, NumberField, toWrong, wrongIn } from "/parts/fields.js";
 
 const LABELS = {
   units: "Unit of the accelerations",
@@ -14,6 +15,7 @@ const HELP = {
 
 const MISSING = {
   units: "Choose the unit.",
+  time_step: "A number is needed here.",
   component: "Choose the horizontal component.",
   format: "Choose the format.",
 };
@@ -24,7 +26,8 @@ const SIGNS = {
   component: /component/i, format: /format/i,
 };
 
-const nameOf = (one) => one.name || one;
+/** The name of a need. */
+export const nameOf = (one) => one.name || one;
 
 const choicesOf = (one, answer, info) => {
   const name = nameOf(one);
@@ -38,47 +41,48 @@ const choicesOf = (one, answer, info) => {
 const namesOf = (given) =>
   Array.isArray(given) ? given.map((one) => one.name ?? one.label ?? one) : Object.keys(given || {});
 
-/** Returns the questions to ask: [{name, field, wrong}]; `wrong()` says what an answer lacks. */
-export const questionsOf = (answer, info, given) =>
-  answer.needs.map((one) => {
-    const name = nameOf(one);
-    const label = LABELS[name] || name;
-    const about = { label, value: given[name] ?? "", help: one.message || HELP[name] };
-    if (name === "time_step") return stepQuestion(about);
-    return choiceQuestion(name, about, choicesOf(one, answer, info));
-  });
-
-const stepQuestion = (about) => {
-  const limits = { min: 1e-6, max: 10, step: 0.005 };
-  const field = numberField({ ...about, value: about.value || null, unit: "s", ...limits });
-  return { name: "time_step", field, wrong: () => field.fault() };
+/** What of some needs a refusal of the server is about: {name, words}; null if about none of them. */
+export const blamedOf = (needs, words) => {
+  const name = needs.map(nameOf).find((one) => SIGNS[one]?.test(words));
+  return name ? { name, words } : null;
 };
 
-const choiceQuestion = (name, about, choices) => {
-  const options = [{ value: "", text: "Choose" }, ...choices.map((value) => ({ value, text: value }))];
-  const field = selectField({ ...about, options, onChange: () => field.setError("") });
-  const open = () => choices.length > 0 && field.value === "";
-  return { name, field, wrong: () => (open() ? MISSING[name] ?? "Choose one." : "") };
-};
-
-/** Whether every question has an answer; if not, says beside each field what is missing. */
-export const allAnswered = (questions) => {
-  for (const { field, wrong } of questions) if (wrong()) field.setError(wrong());
-  const first = questions.find(({ wrong }) => wrong());
-  first?.field.input.focus();
-  return !first;
-};
-
-/** Says a refusal of the server beside the field it is about; false if it is about none of them. */
-export const blamed = (questions, message) => {
-  const found = questions.find(({ name }) => SIGNS[name]?.test(message));
-  found?.field.setError(message);
-  found?.field.input.focus();
-  return Boolean(found);
-};
-
-/** Returns what was answered, without what was left open. */
-export const answersOf = (questions) => {
-  const pairs = questions.map(({ name, field }) => [name, field.value]);
-  return Object.fromEntries(pairs.filter(([, value]) => value !== "" && (value ?? null) !== null));
+/** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong. */
+export const Needs = ({ answer, info, given, blamed, take, button, ...more }) => {
+  const place = useRef(null);
+  const [answers, wrong, pressed] = [useSignal(given), useSignal({}), useSignal(0)];
+  const fields = answer.needs.map((one) => [one, nameOf(one), choicesOf(one, answer, info)]);
+  useLayoutEffect(() => {
+    wrong.value = blamed ? { [blamed.name]: blamed.words } : {};
+    if (blamed) toWrong(place.current);
+  }, [blamed]);
+  useLayoutEffect(() => {
+    if (!pressed.value) return;
+    const first = wrongIn(place.current);
+    if (first) first.focus();
+    else take(answers.value);
+  }, [pressed.value]);
+  const press = () => {
+    const open = fields.filter(([, name, choices]) => (name === "time_step" || choices.length) && !answers.value[name]);
+    wrong.value = Object.fromEntries(open.map(([, name]) => [name, MISSING[name] ?? "Choose one."]));
+    pressed.value += 1;
+  };
+  const entered = (event) => {
+    if (event.key !== "Enter" || !event.target.matches("input")) return;
+    event.preventDefault();
+    press();
+  };
+  const field = ([one, name, choices]) => {
+    const about = {
+      label: LABELS[name] || name, help: one.message || HELP[name], error: wrong.value[name], value: answers.value[name],
+      on: (value) => {
+        answers.value = { ...answers.value, [name]: value || undefined };
+        wrong.value = { ...wrong.value, [name]: "" };
+      },
+    };
+    return name === "time_step" ? html`<${NumberField} key=${name} ...${about} unit="s" min=${1e-6} max=${10} step=${0.005} />`
+      : html`<${Choice} key=${name} ...${about} options=${[["", "Choose"], ...choices.map((value) => [value, value])]} />`;
+  };
+  return html`<div ref=${place} onKeyDown=${entered} ...${more}>${fields.map(field)}
+    <${Button} onClick=${press} ...${button}>Read it so<//></div>`;
 };

@@ -1,43 +1,22 @@
 /** How strong: a factor on the motion, by slider and by number. */
-import { el } from "/app/dom.js";
-import { numberField, slider } from "/app/fields.js";
+import { html, useSignal } from "/parts/preact.js";
+import { NumberField, Slider } from "/parts/fields.js";
 
 const LEAST = 0.1;
 const MOST = 10;
 
-/** Returns a slider and a number that say the same factor. */
-export const scaleEditor = (onChange) => {
-  const bar = slider({
-    label: "Scale of the motion",
-    unit: "",
-    min: LEAST,
-    max: MOST,
-    value: 1,
-    log: true,
-    onInput: (value) => {
-      exact.value = value;
-      onChange(value);
-    },
-  });
-  const exact = numberField({
-    label: "Factor",
-    value: 1,
-    min: -1000,
-    max: 1000,
-    step: 0.05,
-    help: "A negative factor turns the motion round.",
-    onChange: (value) => {
-      if (value === 0) return exact.setError("Not 0: nothing would move.");
-      bar.value = within(Math.abs(value));
-      return onChange(value);
-    },
-  });
-  const element = el("div", { class: "motion-scale" }, bar, exact);
-  const show = (value) => {
-    exact.value = value;
-    if (bar.value !== value) bar.value = within(Math.abs(value));
+/** A slider and a number that say the same factor. */
+export const Scale = ({ value, on }) => {
+  const nought = useSignal(false);
+  const take = (next) => {
+    nought.value = next === 0;
+    if (next !== 0) on(next);
   };
-  return { element, show };
+  return html`
+    <div class="motion-scale">
+      <${Slider} label="Scale of the motion" min=${LEAST} max=${MOST} log
+        value=${Math.min(Math.max(Math.abs(value), LEAST), MOST)} on=${take} />
+      <${NumberField} label="Factor" value=${value} min=${-1000} max=${1000} step=${0.05} on=${take}
+        help="A negative factor turns the motion round." error=${nought.value && "Not 0: nothing would move."} />
+    </div>`;
 };
-
-const within = (value) => Math.min(Math.max(value, LEAST), MOST);

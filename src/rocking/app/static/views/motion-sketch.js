@@ -1,5 +1,5 @@
 /** Small drawings of the pulses: acceleration over time, without numbers. */
-import { svg } from "/app/dom.js";
+import { html } from "/parts/preact.js";
 
 const WIDE = 72;
 const TALL = 30;
@@ -32,18 +32,15 @@ export const SHAPES = {
   harmonic: (t) => Math.sin(4 * turn * t),
 };
 
-/** Returns a drawing of a pulse, or nothing if there is none of that name. */
-export const sketch = (name) => {
+/** A drawing of a pulse; nothing if there is none of that name. */
+export const Sketch = ({ name }) => {
   const shape = SHAPES[name];
   if (!shape) return null;
   const x = (t) => (3 + (WIDE - 6) * t).toFixed(1);
   const y = (a) => (0.5 * TALL - 0.42 * TALL * a).toFixed(1);
   const points = Array.from({ length: SAMPLES + 1 }, (_, k) => `${x(k / SAMPLES)},${y(shape(k / SAMPLES))}`);
-  const path = `M${x(0)},${y(0)}L${points.join("L")}L${x(1)},${y(0)}`;
-  return svg(
-    "svg",
-    { class: "pulse-sketch", viewBox: `0 0 ${WIDE} ${TALL}`, "aria-hidden": "true" },
-    svg("line", { x1: 0, x2: WIDE, y1: 0.5 * TALL, y2: 0.5 * TALL, class: "pulse-axis" }),
-    svg("path", { d: path, class: "pulse-line" }),
-  );
+  return html`
+    <svg class="pulse-sketch" viewBox=${`0 0 ${WIDE} ${TALL}`} aria-hidden="true">
+      <line x1="0" x2=${WIDE} y1=${0.5 * TALL} y2=${0.5 * TALL} class="pulse-axis" />
+      <path d=${`M${x(0)},${y(0)}L${points.join("L")}L${x(1)},${y(0)}`} class="pulse-line" /></svg>`;
 };

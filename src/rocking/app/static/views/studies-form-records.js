@@ -1,8 +1,7 @@
 /** The uploaded records, to be ticked for a study, told what they do not say, and deleted. */
-import { html, useEffect, useLayoutEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
-import { Made } from "/parts/made.js";
+import { html, useEffect, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { quantity } from "/app/format.js";
-import { allAnswered, answersOf, questionsOf } from "/views/motion-record-needs.js";
+import { Needs, nameOf } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
@@ -14,7 +13,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     const told = toldOf(record);
     const { format, units, time_step } = told;
     const seen = await app.call(`records/${record}`, { query: { format, units, time_step } }).then(
-      (found) => ({ found, told, missing: (found.needs ?? []).filter((one) => told[one.name || one] === undefined) }),
+      (found) => ({ found, told, missing: (found.needs ?? []).filter((one) => told[nameOf(one)] === undefined) }),
       (error) => ({ refused: error.message }),
     );
     looked.value = { ...looked.value, [record]: seen };
@@ -74,14 +73,12 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
   const answered = useRef(false);
   const { found, told, missing = [], refused } = seen;
   const open = missing.length > 0;
-  const questions = useMemo(() => (open ? questionsOf({ ...found, needs: missing }, app.info, told) : []), [seen]);
   useLayoutEffect(() => {
     if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
     answered.current = false;
   }, [seen]);
-  const take = () => {
-    if (!allAnswered(questions)) return;
-    rememberTold({ record, ...told, ...answersOf(questions) });
+  const take = (given) => {
+    rememberTold({ record, ...told, ...given });
     answered.current = true;
     look(record);
   };
@@ -102,9 +99,8 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
       <button type="button" class="button quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete</button>
       <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
-      ${open && html`<div class="record-asked">
-        ${questions.map(({ name: asked, field }) => html`<${Made} key=${asked} node=${field} />`)}
-        <button type="button" class="button" aria-label=${`Read ${name} so`} onClick=${take}>Read it so</button></div>`}
+      ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
+        take=${take} button=${{ "aria-label": `Read ${name} so` }} />`}
     </li>`;
 };
 
