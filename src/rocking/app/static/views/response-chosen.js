@@ -18,15 +18,6 @@ export const chosenOf = (labels) => labels.find((label) => curveKey(label) === w
 /** Looks at a model; null goes back to the main one. */
 export const look = (label) => (wanted.value = label === null ? null : curveKey(label));
 
-/** Calls back when another model is looked at. */
-export const onLook = (watcher) => {
-  let known = wanted.peek();
-  return wanted.subscribe((now) => {
-    if (now !== known) watcher();
-    known = now;
-  });
-};
-
 /** Returns the address of a file about the model that is looked at. */
 export const pathOfChosen = (path, table) => {
   const labels = labelsOf(table);

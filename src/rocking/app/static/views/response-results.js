@@ -1,13 +1,12 @@
 /** The verdict's cards, the impacts in a table, and files to take away. */
 import { html, useMemo } from "/parts/preact.js";
 import { number, quantity } from "/app/format.js";
-import { Made } from "/parts/made.js";
 import { Button, Card, Choice } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
 import { curveKey, Swatch, wordsOf } from "/views/response-labels.js";
 import { outcomeOf } from "/views/response-words.js";
-import { filmButton } from "/views/takeaway-film.js";
+import { Film } from "/views/takeaway-film.js";
 
 /** A card for every model; choosing one makes its model the one that is looked at. */
 export const Cards = ({ answers, lead }) => html`
@@ -74,14 +73,12 @@ const FILES = [
 
 /** Files of the response; what holds one model holds the one that is looked at, and says so. */
 export const TakeAway = ({ app, restitution }) => {
-  const film = useMemo(() => filmButton(app, { text: "Animation, GIF", label: "Animation, GIF" }), [app]);
   const save = ([, path, chosen]) =>
     app.download(chosen ? pathOfChosen(path, restitution) : path, app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);
   return html`<${Card} title="Take away">
     <div class="toolbar">${FILES.map((file) => html`<${Button} key=${file[0]} onClick=${() => save(file)}>${file[0]}<//>`)}
-      <${Made} node=${film.button} /></div>
-    <${Made} node=${film.progress} />
+      <${Film} app=${app}>Animation, GIF<//></div>
     <p class="field-help" data-testid="files-model">${labels.length > 1
       && `Pictures show all models; curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p><//>`;
 };

@@ -1,53 +1,44 @@
 /** The animation as a GIF: its frames take a while, so it says so, starts once, and can be stopped. */
+import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { saveBlob } from "/app/api.js";
-import { el, fill } from "/app/dom.js";
-import { button } from "/app/fields.js";
+import { Button } from "/parts/fields.js";
 import { pathOfChosen } from "/views/response-chosen.js";
 
 const NAME = "rocking-animation.gif";
 
-/** Returns a button and the place of its progress. */
-export const filmButton = (app, { text, label, testid }) => {
-  const words = el("span", { role: "status" });
-  const stop = button({ text: "Cancel", label: "Cancel the GIF", onClick: () => abort?.abort() });
-  const look = { class: "film-progress", hidden: true, "data-testid": "film-progress" };
-  const progress = el("div", look, words, stop);
-  let abort = null;
-
+/** A button, and below it how far the frames are. */
+export const Film = ({ app, children, ...more }) => {
+  const seconds = useSignal(null); // since they were begun; null while none are drawn
+  const [start, progress, abort] = [useRef(null), useRef(null), useRef(null)];
+  const running = seconds.value !== null;
   const draw = async () => {
-    if (app.faults?.any({ inputs: true })) return app.say(app.faults.sentence({ inputs: true }), "warning");
-    if (abort) return undefined;
-    abort = new AbortController();
+    if (app.faults.any({ inputs: true })) return app.say(app.faults.sentence({ inputs: true }), "warning");
+    if (running) return undefined;
+    abort.current = new AbortController();
     const started = performance.now();
-    const tell = () => {
-      const seconds = Math.round((performance.now() - started) / 1000);
-      fill(words, `The frames of the GIF are being drawn: ${seconds} s so far; half a minute is usual.`);
-    };
-    show(true);
+    const tell = () => (seconds.value = Math.round((performance.now() - started) / 1000));
     tell();
     const clock = setInterval(tell, 5000);
     try {
       const inputs = app.inputs.get();
-      await save(`/api/${pathOfChosen("animation.gif", inputs.restitution)}`, inputs, abort.signal);
+      await save(`/api/${pathOfChosen("animation.gif", inputs.restitution)}`, inputs, abort.current.signal);
       app.say("The GIF is saved.");
     } catch (error) {
       if (error.name === "AbortError") app.say("The GIF is cancelled.");
       else app.say(error.message, "error");
-    } finally {
-      clearInterval(clock);
-      abort = null;
-      const focused = progress.contains(document.activeElement);
-      show(false);
-      if (focused) start.focus();
     }
+    clearInterval(clock);
+    seconds.value = null;
     return undefined;
   };
-  const start = button({ text, label, testid, onClick: draw });
-  const show = (on) => {
-    progress.hidden = !on;
-    start.setAttribute("aria-disabled", String(on));
-  };
-  return { button: start, progress };
+  useLayoutEffect(() => {
+    if (!running && progress.current.contains(document.activeElement)) start.current.focus();
+  }, [running]);
+  return html`
+    <button ref=${start} type="button" class="button" aria-disabled=${String(running)} onClick=${draw} ...${more}>${children}</button>
+    <div ref=${progress} class="film-progress" hidden=${!running} data-testid="film-progress">
+      <span role="status">${running && `The frames of the GIF are being drawn: ${seconds.value} s so far; half a minute is usual.`}</span>
+      <${Button} aria-label="Cancel the GIF" onClick=${() => abort.current.abort()}>Cancel<//></div>`;
 };
 
 const save = async (path, inputs, signal) => {

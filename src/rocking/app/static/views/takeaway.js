@@ -1,9 +1,9 @@
 /** Take away: everything that belongs to the inputs, as files, as tables, and as a link. */
-import { el } from "/app/dom.js";
-import { button, card, selectField } from "/app/fields.js";
-import { chosenOf, labelsOf, look, onLook, pathOfChosen } from "/views/response-chosen.js";
+import { html, render, signal, useRef, useSignal } from "/parts/preact.js";
+import { Button, Card, Choice, Field } from "/parts/fields.js";
+import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
 import { wordsOf } from "/views/response-labels.js";
-import { filmButton } from "/views/takeaway-film.js";
+import { Film } from "/views/takeaway-film.js";
 
 const PICTURES = [
   ["body", "Body"],
@@ -22,17 +22,8 @@ const TABLES = [
   ["impacts", "Impacts", ["csv", "xlsx"], "response"],
 ];
 const NAMES = {
-  csv: "CSV",
-  xlsx: "Excel",
-  mat: "MATLAB",
-  nc: "netCDF",
-  png: "PNG",
-  svg: "SVG",
-  html: "Web page",
-  gif: "GIF",
-  toml: "TOML",
-  zip: "ZIP with the record",
-  pdf: "PDF",
+  csv: "CSV", xlsx: "Excel", mat: "MATLAB", nc: "netCDF", png: "PNG", svg: "SVG", html: "Web page", toml: "TOML",
+  zip: "ZIP with the record", pdf: "PDF",
 };
 
 /** Files that hold one model of several. */
@@ -40,199 +31,90 @@ const OF_ONE = /^\/api\/(table\/response\.|animation\.)/;
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
-  const needing = [];
-  const fileButton = (path, suffix, name, needs, testid) => {
-    const node = button({
-      text: NAMES[suffix] ?? suffix,
-      label: `${name} as ${NAMES[suffix] ?? suffix}`,
-      testid,
-      onClick: async () => {
-        if (node.getAttribute("aria-busy")) return;
-        node.setAttribute("aria-busy", "true");
-        const inputs = app.inputs.get();
-        const address = OF_ONE.test(path) ? pathOfChosen(path, inputs.restitution) : path;
-        await app.download(address, inputs, `rocking.${suffix}`);
-        node.removeAttribute("aria-busy");
-      },
-    });
-    if (needs) needing.push({ node, needs });
-    return node;
-  };
-  const film = filmButton(app, { text: "GIF", label: "Animation as GIF", testid: "animation-gif" });
-  needing.push({ node: film.button, needs: "response" });
-  const which = selectField({
-    label: "Model in files that hold one",
-    options: [],
-    help: "Animation, and response as CSV, MATLAB and netCDF; the name of the file says it.",
-    onChange: look,
-  });
-  const row = (name, ...buttons) =>
-    el("li", { class: "take-row" }, el("span", {}, name), el("div", { class: "toolbar" }, buttons));
+  const now = signal(null);
+  const refresh = () => (now.value = { inputs: app.inputs.get(), link: app.link() });
+  app.inputs.subscribe(refresh);
+  refresh();
+  render(html`<${TakeAway} app=${app} now=${now} />`, section);
+  return { shown: refresh };
+};
 
-  const link = el("input", {
-    type: "text",
-    id: "permanent-link",
-    readonly: true,
-    "data-testid": "permanent-link",
-    onfocus: () => link.select(),
-  });
-  const copied = async () => {
+const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
+  const chooser = useRef(null);
+  const moves = Boolean(inputs.motion) || inputs.response?.free != null;
+  const there = { motion: Boolean(inputs.motion), response: moves };
+  const file = (path, name, needs, testid) => html`<${File} key=${path} app=${app} path=${`/api/${path}`} name=${name}
+    testid=${testid ?? path.replace(/\W/g, "-")} disabled=${needs && !there[needs]} />`;
+  const row = (name, ...files) => html`<li key=${name} class="take-row"><span>${name}</span><div class="toolbar">${files}</div></li>`;
+  const labels = labelsOf(inputs.restitution);
+  return html`
+    <header class="view-head"><h1>Take away</h1>
+      <p class="lead">All of it as files, as tables and as a link: what was put in, and what came out.</p></header>
+    <div class="takeaway">
+      <div class="takeaway-part">
+        <${Link} app=${app} link=${link} />
+        <${Card} title="For the command line, and for colleagues">
+          <p class="quiet">The same numbers, to the last digit, with: rocking simulate response.toml</p>
+          <div class="toolbar">${file("inputs.toml", "Inputs", null, "take-toml")}${file("inputs.zip", "Inputs", null, "take-zip")}
+            <${Button} onClick=${() => chooser.current.click()}>${"Read a TOML or its ZIP \u2026"}<//></div><//>
+        <${Card} title="Report">
+          <p class="quiet">Body, coefficients against the measurements, motion, response and impacts, with where every number comes from.</p>
+          <div class="toolbar">${file("report.pdf", "Report", "response", "take-report")}</div><//>
+        <${Card} title="Pictures"><ul>
+          ${PICTURES.map(([what, name, needs]) => row(name, ["png", "svg"].map((kind) => file(`picture/${what}.${kind}`, name, needs))))}
+          ${row("Animation", file("animation.html", "Animation", "response"), html`<${Film} app=${app} aria-label="Animation as GIF"
+            data-testid="animation-gif" disabled=${!moves}>GIF<//>`)}</ul><//>
+      </div>
+      <div class="takeaway-part"><${Card} title="Tables">
+        <${Choice} label="Model in files that hold one" hidden=${labels.length < 2} value=${chosenOf(labels)} on=${look}
+          options=${labels.map((label) => [label, wordsOf(label)])}
+          help="Animation, and response as CSV, MATLAB and netCDF; the name of the file says it." />
+        <ul>${TABLES.map(([what, name, kinds, needs]) => row(name, kinds.map((kind) => file(`table/${what}.${kind}`, name, needs))))}</ul><//></div>
+    </div>
+    <input ref=${chooser} type="file" accept=".toml,.zip" hidden aria-label="File of inputs, TOML or ZIP" data-testid="read-toml"
+      onChange=${({ target }) => read(app, target)} />`;
+};
+
+const File = ({ app, path, name, testid, disabled }) => {
+  const busy = useSignal(false);
+  const kind = path.split(".").at(-1);
+  const save = async () => {
+    if (busy.value) return;
+    busy.value = true;
+    const inputs = app.inputs.get();
+    await app.download(OF_ONE.test(path) ? pathOfChosen(path, inputs.restitution) : path, inputs, `rocking.${kind}`);
+    busy.value = false;
+  };
+  return html`<${Button} aria-label=${`${name} as ${NAMES[kind]}`} aria-busy=${busy.value ? "true" : null} disabled=${disabled}
+    data-testid=${testid} onClick=${save}>${NAMES[kind]}<//>`;
+};
+
+const Link = ({ app, link }) => {
+  const copy = async () => {
     try {
-      await navigator.clipboard.writeText(link.value);
+      await navigator.clipboard.writeText(link);
       app.say("The link is on the clipboard.");
     } catch {
-      link.select();
+      document.getElementById("permanent-link").focus();
       app.say("Press Ctrl+C to copy the link.");
     }
   };
-  const refresh = () => {
-    const inputs = app.inputs.get();
-    link.value = app.inputs.link();
-    const labels = labelsOf(inputs.restitution);
-    which.hidden = labels.length < 2;
-    which.setOptions(labels.map((label) => ({ value: label, text: wordsOf(label) })));
-    which.value = chosenOf(labels);
-    const there = {
-      motion: Boolean(inputs.motion),
-      response: Boolean(inputs.motion) || inputs.response?.free != null,
-    };
-    for (const { node, needs } of needing) node.disabled = !there[needs];
-  };
+  return html`<${Card} title="Link">
+    <p class="quiet">It holds all inputs. Whoever runs rocking on a computer of their own sees the same with it; records travel by their hash, so send the file along, or take the ZIP.</p>
+    <${Field} id="permanent-link" label="Permanent link of the inputs" value=${link} readonly data-testid="permanent-link"
+      onFocus=${({ target }) => target.select()} />
+    <div class="toolbar"><${Button} kind="primary" onClick=${copy} data-testid="copy-link">Copy link<//></div><//>`;
+};
 
-  const words = el(
-    "div",
-    { class: "takeaway-part" },
-    card(
-      "Link",
-      el(
-        "p",
-        { class: "quiet" },
-        "It holds all inputs. Whoever runs rocking on a computer of their own sees the same with it; ",
-        "records travel by their hash, so send the file along, or take the ZIP.",
-      ),
-      el(
-        "div",
-        { class: "field" },
-        el("label", { for: "permanent-link" }, "Permanent link of the inputs"),
-        link,
-      ),
-      el(
-        "div",
-        { class: "toolbar" },
-        button({ text: "Copy link", kind: "primary", onClick: copied, testid: "copy-link" }),
-      ),
-    ),
-    card(
-      "For the command line, and for colleagues",
-      el(
-        "p",
-        { class: "quiet" },
-        "The same numbers, to the last digit, with: rocking simulate response.toml",
-      ),
-      el(
-        "div",
-        { class: "toolbar" },
-        fileButton("/api/inputs.toml", "toml", "Inputs", null, "take-toml"),
-        fileButton("/api/inputs.zip", "zip", "Inputs", null, "take-zip"),
-        button({ text: "Read a TOML or its ZIP \u2026", onClick: () => chooser.click() }),
-      ),
-    ),
-    card(
-      "Report",
-      el(
-        "p",
-        { class: "quiet" },
-        "Body, coefficients against the measurements, motion, response and impacts, ",
-        "with where every number comes from.",
-      ),
-      el(
-        "div",
-        { class: "toolbar" },
-        fileButton("/api/report.pdf", "pdf", "Report", "response", "take-report"),
-      ),
-    ),
-    card(
-      "Pictures",
-      el(
-        "ul",
-        {},
-        PICTURES.map(([what, name, needs]) =>
-          row(
-            name,
-            ["png", "svg"].map((suffix) =>
-              fileButton(
-                `/api/picture/${what}.${suffix}`,
-                suffix,
-                name,
-                needs,
-                `picture-${what}-${suffix}`,
-              ),
-            ),
-          ),
-        ),
-        row(
-          "Animation",
-          fileButton("/api/animation.html", "html", "Animation", "response", "animation-html"),
-          film.button,
-        ),
-      ),
-      film.progress,
-    ),
-  );
-  const tables = el(
-    "div",
-    { class: "takeaway-part" },
-    card(
-      "Tables",
-      which,
-      el(
-        "ul",
-        {},
-        TABLES.map(([what, name, suffixes, needs]) =>
-          row(
-            name,
-            suffixes.map((suffix) =>
-              fileButton(
-                `/api/table/${what}.${suffix}`,
-                suffix,
-                name,
-                needs,
-                `table-${what}-${suffix}`,
-              ),
-            ),
-          ),
-        ),
-      ),
-    ),
-  );
-  const lead = "All of it as files, as tables and as a link: what was put in, and what came out.";
-  section.append(
-    el("header", { class: "view-head" }, el("h1", {}, "Take away"), el("p", { class: "lead" }, lead)),
-    el("div", { class: "takeaway" }, words, tables),
-  );
-
-  const chooser = el("input", {
-    type: "file",
-    accept: ".toml,.zip",
-    hidden: true,
-    "aria-label": "File of inputs, TOML or ZIP",
-    "data-testid": "read-toml",
-  });
-  chooser.addEventListener("change", async () => {
-    const [file] = chooser.files;
-    chooser.value = "";
-    if (!file) return;
-    try {
-      const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-      app.inputs.lend(found.inputs ?? found, `what ${file.name} holds`);
-      app.say(`The inputs of ${file.name} are loaded.`);
-    } catch (error) {
-      app.say(error.message, "error");
-    }
-  });
-  section.append(chooser);
-  app.inputs.subscribe(refresh);
-  onLook(refresh);
-  refresh();
-  return { shown: refresh };
+const read = async (app, box) => {
+  const [file] = box.files;
+  box.value = "";
+  if (!file) return;
+  try {
+    const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
+    app.inputs.lend(found.inputs ?? found, `what ${file.name} holds`);
+    app.say(`The inputs of ${file.name} are loaded.`);
+  } catch (error) {
+    app.say(error.message, "error");
+  }
 };
