@@ -7,7 +7,6 @@ import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/form
 export {
   button, card, iconButton, note, segmented, selectField, switchField, toolbar,
 } from "/app/controls.js";
-export { tableOf } from "/app/table.js";
 
 /** A number with its unit; decimal commas and arrow keys work. Has `value`, `fault` and `setError`. */
 export const numberField = ({

@@ -1,7 +1,8 @@
 /** The same chart as a table, thinned for reading and whole for copying. */
 
-import { el, fill } from "/app/dom.js";
-import { tableOf } from "/app/table.js";
+import { html, render } from "/parts/preact.js";
+import { el } from "/app/dom.js";
+import { Table } from "/parts/table.js";
 
 const MOST = 60;
 
@@ -20,7 +21,7 @@ export const chartTable = ({ title, x, y, series }, dataOf) => {
     if (!element.open) return;
     const every = Math.max(1, Math.ceil(dataOf()[0].length / MOST));
     const caption = every > 1 ? `${title}: every ${every}th sample; copying takes them all` : title;
-    fill(place, tableOf(columns, rowsOf(every), { caption, copyRows: () => rowsOf(1) }));
+    render(html`<${Table} columns=${columns} rows=${rowsOf(every)} copied=${() => rowsOf(1)} caption=${caption} />`, place);
   };
   element.addEventListener("toggle", refresh);
   return { element, refresh };

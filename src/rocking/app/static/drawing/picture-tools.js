@@ -1,14 +1,12 @@
 /** Buttons that save a picture as the command line would draw it. */
 
-import { button, toolbar } from "/app/controls.js";
+import { html } from "/parts/preact.js";
+import { Button } from "/parts/fields.js";
 
 /** PNG and SVG of one of the pictures of the API; `query` says more, such as the foot. */
-export const pictureTools = (app, what, query = () => "") => {
-  const tools = toolbar(["png", "svg"].map((kind) =>
-    button({
-      text: kind.toUpperCase(), kind: "quiet", label: `Save the ${what} picture as ${kind.toUpperCase()}`,
-      onClick: () => app.download(`picture/${what}.${kind}${query()}`, app.inputs.get(), `${what}.${kind}`),
-    })));
-  tools.classList.add("picture-tools");
-  return tools;
+export const PictureTools = ({ app, what, query = "" }) => {
+  const save = (kind) => app.download(`picture/${what}.${kind}${query}`, app.inputs.get(), `${what}.${kind}`);
+  return html`<div class="toolbar picture-tools">${["png", "svg"].map((kind) => html`
+    <${Button} key=${kind} kind="quiet" aria-label=${`Save the ${what} picture as ${kind.toUpperCase()}`}
+      onClick=${() => save(kind)}>${kind.toUpperCase()}<//>`)}</div>`;
 };

@@ -3,8 +3,8 @@
 import { html, useRef } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 
-/** A place for files; `on` gets a list of them, one of them unless there may be many. */
-export const Drop = ({ label, name = label, accept, many = false, on, children, ...more }) => {
+/** A place for files; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box. */
+export const Drop = ({ label, name = label, accept, many = false, on, testid, children, ...more }) => {
   const [one, folder] = [useRef(null), useRef(null)];
   const mark = (over) => (event) => {
     event.preventDefault();
@@ -30,7 +30,8 @@ export const Drop = ({ label, name = label, accept, many = false, on, children, 
         ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
           <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory onChange=${chosen} />`}
       </div>
-      <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} onChange=${chosen} />
+      <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} data-testid=${testid}
+        onChange=${chosen} />
       ${children}
     </div>`;
 };

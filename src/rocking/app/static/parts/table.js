@@ -20,7 +20,7 @@ export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows
         ${csv && html`<${Button} kind="quiet" aria-label=${`Save ${caption || "the table"} as CSV`} onClick=${csv}>CSV<//>`}${actions}</div></div>
       <div class=${`table-scroll ${rows.length > LONG ? "long" : ""}`} tabindex="0" role="region" aria-labelledby=${id}>
         <table aria-labelledby=${id} data-testid=${testid}>
-          <thead><tr>${heads.map(({ label, unit, numeric }) => html`<th key=${label} scope="col" class=${numeric === false ? "text" : ""}>
+          <thead><tr>${heads.map(({ label, unit, numeric }, at) => html`<th key=${at} scope="col" class=${numeric === false ? "text" : ""}>
             ${label}${unit && unit !== "-" && html`<span class="unit">${` ${pretty(unit)}`}</span>`}</th>`)}</tr></thead>
           <tbody>${rows.map((row, k) => html`<tr key=${k}>${row.map((value, at) => html`
             <${Cell} key=${at} value=${value} ...${heads[at]} first=${at === 0} />`)}</tr>`)}</tbody>

@@ -1,10 +1,10 @@
 /** The Body view: choose, type, draw, paste or drop a body, and see at once what it is. */
 
-import { batch, html, render, signal, useLayoutEffect, useMemo } from "/parts/preact.js";
+import { batch, html, render, signal, useLayoutEffect } from "/parts/preact.js";
 import { bodyPicture } from "/drawing/body-picture.js";
-import { pictureTools } from "/drawing/picture-tools.js";
+import { PictureTools } from "/drawing/picture-tools.js";
 import { Card, Note } from "/parts/fields.js";
-import { Drawn, Made } from "/parts/made.js";
+import { Drawn } from "/parts/made.js";
 import { Editor, createEditor } from "/views/body-editor.js";
 import { Facts, Warnings } from "/views/body-facts.js";
 import { BodyFile } from "/views/body-file.js";
@@ -49,7 +49,6 @@ const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
 };
 
 const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, faulty: { value: faulty } }) => {
-  const tools = useMemo(() => pictureTools(app, "body"), []);
   const kind = refused || faulty ? "stale" : "";
   return html`
     <${Card} title="To scale" kind=${kind}>
@@ -58,7 +57,7 @@ const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, fa
         ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${OLDER}`} />`}</div>
       <${Drawn} draw=${drawn} of=${[facts]} />
       <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div>
-      <${Made} node=${tools} /><//>
+      <${PictureTools} app=${app} what="body" /><//>
     <${Card} title="Numbers" kind=${kind}>
       <div class="stack" data-testid="body-facts">${facts && html`<${Facts} app=${app} facts=${facts} />`}</div><//>`;
 };

@@ -4,7 +4,7 @@ import { html, render, signal, useMemo, useRef, useSignal } from "/parts/preact.
 import { chartFiles } from "/charts/save.js";
 import { stillOf } from "/charts/still.js";
 import { ledgerPicture } from "/drawing/ledger-picture.js";
-import { pictureTools } from "/drawing/picture-tools.js";
+import { PictureTools } from "/drawing/picture-tools.js";
 import { stagesPicture } from "/drawing/stages-picture.js";
 import { Card, Note, Segmented, sentence } from "/parts/fields.js";
 import { Drawn, Made } from "/parts/made.js";
@@ -56,23 +56,21 @@ const Results = ({ app, answer }) => {
   const feet = Object.keys(answer.coefficients);
   const foot = feet.includes(wanted.value) ? wanted.value : feet[0];
   const of = [answer, foot];
-  const tools = useMemo(() => Object.fromEntries(["coefficients", "stages"].map(
-    (what) => [what, pictureTools(app, what, () => `?onto=${foot}`)],
-  )), [foot]);
+  const tools = (what) => html`<${PictureTools} app=${app} what=${what} query=${`?onto=${foot}`} />`;
   return html`
     ${feet.length > 1 && html`<${Segmented} label="The body lands on its" options=${FEET} value=${foot}
       on=${(next) => (wanted.value = next)} />`}
     <${Card} title="Coefficient of restitution">
       <${Coefficients} app=${app} answer=${answer} foot=${foot} /><${Warnings} answer=${answer} foot=${foot} /><//>
     <${Card} title="Against the published measurements">
-      <${Evidence} answer=${answer} foot=${foot} /><${Made} node=${tools.coefficients} /><//>
+      <${Evidence} answer=${answer} foot=${foot} />${tools("coefficients")}<//>
     <div class="columns two">
       <${Pictured} title="Where the impulse acts" draw=${impulseRows} of=${of}
         lead="Along the base: 0 is below the centre of mass of a block, 1 is the foot." />
       <${Pictured} title="Where the energy goes, by KED" draw=${ledgerOf} of=${of}
         lead=${"Kinetic energy kept and lost (hatched), from 100\u202f%."} />
     </div>
-    <${Card} title="The three stages of KED"><${Drawn} draw=${stagesOf} of=${of} /><${Made} node=${tools.stages} /><//>
+    <${Card} title="The three stages of KED"><${Drawn} draw=${stagesOf} of=${of} />${tools("stages")}<//>
     <${Card} title="The contact bed">
       <p class="lead">An impact that takes its time, on springs and dashpots under a block as slender and wide as this body:
         what comes out of it, beside models of one instant.</p>

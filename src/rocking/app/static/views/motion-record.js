@@ -1,7 +1,8 @@
 /** A record file: dropped or chosen, with what it does not say asked for. */
-import { batch, html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
+import { batch, html, signal, useEffect, useLayoutEffect, useRef } from "/parts/preact.js";
 import { contentOf } from "/app/file-content.js";
-import { Button, Note } from "/parts/fields.js";
+import { Drop } from "/parts/drop.js";
+import { Note } from "/parts/fields.js";
 import { Components } from "/views/motion-components.js";
 import { Needs, blamedOf, nameOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
@@ -58,7 +59,6 @@ export const createRecord = (app, onChange) => {
     said.value = blamed.value ? null : why(message);
   };
   const take = (file) => {
-    if (!file) return undefined;
     held = { file, content: null, given: {} };
     [asked.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
@@ -71,62 +71,38 @@ export const createRecord = (app, onChange) => {
 /** The editor of a record; `lost`: the server no longer has the file. */
 export const Record = ({ app, record, motion, lost, onChange }) => {
   const { said, asked, blamed, answer } = record;
-  const [name, drop, place] = [useRef(null), useRef(null), useRef(null)];
-  const before = useRef(said.value);
+  const place = useRef(null);
+  const focus = (selector) => place.current.querySelector(selector)?.focus();
+  const before = useRef([said.value, asked.value]);
   useLayoutEffect(() => {
-    const { as } = said.value ?? {};
-    // the button that was pressed is gone
-    if (said.value !== before.current && document.activeElement === document.body) ({ read: name, unread: drop })[as]?.current.focus();
-    before.current = said.value;
-  }, [said.value]);
-  useLayoutEffect(() => void (asked.value && place.current.querySelector("input, select").focus()), [asked.value]);
+    const [words, form] = before.current;
+    before.current = [said.value, asked.value];
+    if (asked.value && asked.value !== form) return focus(".record-form :is(input, select)");
+    if (said.value === words || document.activeElement !== document.body) return undefined;
+    return focus({ read: ".record-name", unread: ".drop button" }[said.value?.as] ?? "none"); // what was pressed is gone
+  }, [said.value, asked.value]);
+  const formats = app.info.formats.map(({ name }) => name).join(", ");
   const known = answer.value?.record === motion?.record;
+  useEffect(() => void (motion && rememberTold(motion)), [motion]);
   useEffect(() => {
-    if (!motion) return;
-    rememberTold(motion);
+    if (known || !motion) return;
     // what a file holds that was sent before this page was loaded; a motion that is refused says so itself
-    if (!known) {
-      app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then((found) => (answer.value = found), () => {});
-    }
-  }, [motion]);
+    const learn = (found) => app.inputs.get().motion?.record === motion.record && (answer.value = found);
+    app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then(learn, () => {});
+  }, [motion?.record]);
   return html`
-    <div class="record-editor">
-      <${Drop} app=${app} chooser=${drop} take=${record.take} />
+    <div ref=${place} class="record-editor">
+      <${Drop} label="Drop a record here, or" name="Record file" on=${([file]) => record.take(file)} testid="record-file" data-testid="record-drop">
+        <p class="field-help">${`Formats: ${formats}. miniSEED must hold accelerations: counts need a StationXML, which is not read here.`}</p><//>
       <div aria-live="polite" data-testid="record-answer">
         ${said.value?.words && html`<${Note} ...${said.value} />`}
         ${lost && html`<${Note} kind="warning" words="The server no longer has this file: drop it once more." />`}</div>
-      <div ref=${place} data-testid="record-needs">
+      <div data-testid="record-needs">
         ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>
       <div class="record-held" data-testid="record-held">${motion && html`
-        <p ref=${name} class="record-name" tabindex="-1">${motion.file_name || `record ${motion.record.slice(0, 12)}`}</p>
+        <p class="record-name" tabindex="-1">${motion.file_name || `record ${motion.record.slice(0, 12)}`}</p>
         <${Components} names=${known ? (answer.value.components ?? []).map((one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
       </div>
-    </div>`;
-};
-
-const Drop = ({ app, chooser, take }) => {
-  const input = useRef(null);
-  const over = useSignal(false);
-  const mark = (on) => (event) => {
-    event.preventDefault();
-    over.value = on;
-  };
-  const chosen = ({ target }) => {
-    const [file] = target.files;
-    target.value = ""; // or the same file, mended, could not be chosen again
-    take(file);
-  };
-  const dropped = (event) => {
-    mark(false)(event);
-    take(event.dataTransfer.files[0]);
-  };
-  const formats = app.info.formats.map(({ name }) => name).join(", ");
-  return html`
-    <div class=${`drop ${over.value ? "over" : ""}`} data-testid="record-drop" onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${dropped}>
-      <p>Drop a record here, or</p>
-      <button ref=${chooser} type="button" class="button primary" onClick=${() => input.current.click()}>Choose a file</button>
-      <input ref=${input} class="visually-hidden" type="file" aria-label="Record file" data-testid="record-file" tabindex="-1" onChange=${chosen} />
-      <p class="field-help">${`Formats: ${formats}. miniSEED must hold accelerations: counts need a StationXML, which is not read here.`}</p>
     </div>`;
 };
