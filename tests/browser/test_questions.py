@@ -72,6 +72,32 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     expect(section.get_by_role("alert")).to_contain_text("riction", timeout=LONG)
 
 
+def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> None:
+    """What the page or the server refuses stands at its field, which has the keyboard, until it is changed."""
+    page = open_page(link("sine:amplitude=3.2,period=0.8"))
+    page.locator("#tab-decide").click()
+    section = page.locator("#view-decide")
+    ask = section.get_by_role("button", name="Ask", exact=True)
+    margin = section.get_by_label("Must hold")
+    for _ in range(2):
+        margin.fill("-1")
+        expect(margin).not_to_have_attribute("aria-invalid", "true")
+        ask.click()
+        expect(margin).to_have_attribute("aria-invalid", "true")
+        expect(margin).to_be_focused()
+        expect(margin).to_have_accessible_description("What it must hold is a number above 0.")
+    section.get_by_label("Question").select_option("predict")
+    friction = section.get_by_label("friction", exact=True)
+    friction.fill("-2")
+    ask.click()
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(friction).to_be_focused()
+    expect(friction).to_have_accessible_description("Friction must be in [0.01, 10], got -2.")
+    expect(section.locator("[aria-invalid=true]")).to_have_count(1)
+    friction.fill("0.5")
+    expect(friction).not_to_have_attribute("aria-invalid", "true")
+
+
 def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """One button recomputes the paper; its report can be taken away, and the command that makes it is told."""
     page = open_page(link())

@@ -1,7 +1,7 @@
 /** What forms are made of: fields with a label, a unit and a place for what is wrong with them; buttons, cards, notes.
  * `value` is a signal, or a plain value beside an `on` that hears of each change. */
 
-import { html, useLayoutEffect, useRef, useState } from "/parts/preact.js";
+import { createContext, html, useContext, useLayoutEffect, useRef, useState } from "/parts/preact.js";
 import { freshId } from "/app/dom.js";
 import { faults } from "/app/faults.js";
 import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
@@ -23,6 +23,16 @@ const useTyped = (now, written, says) => {
   return [held, type];
 };
 
+/** What was refused of a form: the `key` of the field that it is about, and `words`. */
+export const Refused = createContext({});
+
+// What was refused of a field, until it is changed.
+const useRefused = (name) => {
+  const refused = useContext(Refused);
+  const past = useRef(null);
+  return [name && refused.key === name && past.current !== refused ? refused.words : "", () => (past.current = refused)];
+};
+
 /** A box of one's own with the label and the words of a field. */
 export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
   <div class=${`field ${kind}`} hidden=${hidden}>
@@ -32,7 +42,7 @@ export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden,
   </div>`;
 
 // What every box says of itself: its name, its words, and whether it is wrong.
-const told = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
+const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
 
 /** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
  * optional one that was emptied null; what is wrong with one that is `aside` is no fault of the inputs. */
@@ -59,35 +69,41 @@ export const NumberField = ({
     take(editable(stepped(held.text, turns, { min: min ?? above, max, step })));
   };
   return html`<${Frame} id=${id} label=${label} unit=${unit} help=${decimalWords(held.text) || help} error=${wrong} kind=${kind} hidden=${hidden}>
-    <input ...${told(id, wrong)} ref=${box} type="text" inputmode="decimal" autocomplete="off" spellcheck=${false}
+    <input ...${saidOf(id, wrong)} ref=${box} type="text" inputmode="decimal" autocomplete="off" spellcheck=${false}
       value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
 };
 
 /** A line of text, or as `tag` says a "textarea"; `type` is that of its box. */
 export const Field = ({
-  label, id = useId("field"), unit, value, on, help, error, kind, hidden, tag = "input", type = "text", ...more
+  label, id = useId("field"), name, unit, value, on, help, error: told = "", kind, hidden, tag = "input", type = "text", ...more
 }) => {
   const [now, put] = bound(value, on);
+  const [refused, changed] = useRefused(name);
+  const error = told || refused;
   const [held, typed] = useTyped(now ?? "", String, saysText);
   const take = ({ target }) => {
+    changed();
     typed(target.value);
     put(target.value);
   };
   return html`<${Frame} id=${id} label=${label} unit=${unit} help=${help} error=${error} kind=${kind} hidden=${hidden}>
-    <${tag} ...${told(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
+    <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
 /** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen. */
-export const Choice = ({ label, value, on, chosen, options, help, error, hidden, ...more }) => {
+export const Choice = ({ label, name, value, on, chosen, options, help, error: told = "", hidden, ...more }) => {
   const id = useId("choice");
+  const [refused, changed] = useRefused(name);
+  const error = told || refused;
   const [now, put] = bound(value, on);
   const shown = String(chosen ?? now ?? "");
   const take = ({ target }) => {
+    changed();
     put(options[target.selectedIndex][0]);
     target.value = shown; // until what it belongs to has taken it
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
-    <select ...${told(id, error)} value=${shown} onChange=${take} ...${more}>
+    <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
       ${options.map(([key, words]) => html`<option key=${key} value=${String(key)}>${words}</option>`)}</select><//>`;
 };
 
@@ -119,7 +135,7 @@ export const Slider = ({ label, unit = "", value, on, min, max, step, log = fals
   const words = quantity(now, unit);
   const beside = html`<output for=${id} class="slider-value">${words}</output>`;
   return html`<${Frame} id=${id} label=${label} beside=${beside} help=${help} kind="field-slider" hidden=${hidden}>
-    <input ...${told(id)} type="range" min=${scale.low} max=${scale.high} step=${scale.step} value=${scale.from(now)}
+    <input ...${saidOf(id)} type="range" min=${scale.low} max=${scale.high} step=${scale.step} value=${scale.from(now)}
       aria-valuetext=${words} onInput=${({ target }) => put(scale.to(Number(target.value)))} /><//>`;
 };
 
@@ -129,11 +145,11 @@ const YES = { true: "yes", false: "no" };
 export const KeyField = ({ name, facts, ...more }) => {
   const label = name.replaceAll("_", " ");
   if (!facts.choices.length) {
-    return html`<${Field} label=${label} unit=${facts.unit.replace(/^-$/, "")} help=${sentence(facts.words)}
+    return html`<${Field} name=${name} label=${label} unit=${facts.unit.replace(/^-$/, "")} help=${sentence(facts.words)}
       placeholder=${facts.usual} ...${more} />`;
   }
   const others = facts.choices.filter((word) => word !== facts.usual).map((word) => [word, YES[word] ?? word]);
-  return html`<${Choice} label=${label} help=${sentence(facts.words)} ...${more}
+  return html`<${Choice} name=${name} label=${label} help=${sentence(facts.words)} ...${more}
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 

@@ -1,6 +1,7 @@
 /** The line of the open project: its name, whether it is saved, undo and redo. */
 
 import { html, render, useEffect, useRef } from "/parts/preact.js";
+import { Button } from "/parts/fields.js";
 import { ProjectDialog } from "/project/dialog.js";
 
 const SAVED = { saved: "saved", saving: "saving \u2026", unsaved: "not saved" };
@@ -39,7 +40,7 @@ const Bar = ({ projects, app }) => {
       ${SAVED[saving.value]}
     </span>
     ${saving.value === "unsaved" && !clash.value
-      && html`<button type="button" class="button" onClick=${projects.again}>Save again</button>`}
+      && html`<${Button} onClick=${projects.again}>Save again<//>`}
     <${Step} sign="\u21b6" label="Previous state of the project" on=${facts.can_undo} go=${projects.undo} />
     <${Step} sign="\u21b7" label="Next state of the project" on=${facts.can_redo} go=${projects.redo} />
     <${ProjectDialog} projects=${projects} app=${app} handle=${dialog} />
@@ -63,8 +64,8 @@ const Clash = ({ projects }) => {
         <h1 id="clash-title">This project was changed elsewhere</h1>
         <p>Another tab or browser has changed it since you did. Nothing is lost: choose what you go on with.</p>
         <div class="toolbar">
-          <button type="button" class="button primary" onClick=${settle(false)}>Show what is there</button>
-          <button type="button" class="button" onClick=${settle(true)}>Keep mine as a copy</button>
+          <${Button} kind="primary" onClick=${settle(false)}>Show what is there<//>
+          <${Button} onClick=${settle(true)}>Keep mine as a copy<//>
         </div>
       </div>
     </dialog>`;

@@ -1,6 +1,7 @@
 /** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
 
 import { html, signal, useRef } from "/parts/preact.js";
+import { Button } from "/parts/fields.js";
 
 const FEW = 12;
 
@@ -65,7 +66,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
       ${shown.value && html`<div class="card">
         <div class="project-head">
           <h1 id="projects-title">Projects</h1>
-          <button type="button" class="button" onClick=${() => dialog.current.close()}>Close</button>
+          <${Button} onClick=${() => dialog.current.close()}>Close<//>
         </div>
         <p>They are kept on this computer, with every state that they had.</p>
         <${NameForm} for="rename" label="Name of the open project" value=${here.name} text="Rename" onSubmit=${named} />
@@ -96,14 +97,14 @@ export const ProjectDialog = ({ projects, app, handle }) => {
               <p><span>${one.words}</span><span class="quiet">${when(one.time)}</span></p>
               ${one.here
                 ? html`<span class="project-open">now</span>`
-                : html`<button type="button" class="button" aria-label=${`Go back to state ${one.number}: ${one.words}`}
-                    onClick=${act(() => projects.restore(one.number))}>Go back to it</button>`}
+                : html`<${Button} aria-label=${`Go back to state ${one.number}: ${one.words}`}
+                    onClick=${act(() => projects.restore(one.number))}>Go back to it<//>`}
             </li>`)}
         </ul>
         ${lists.value.states.length > FEW && !all.value && html`
-          <button type="button" class="button" onClick=${() => (all.value = true)}>
+          <${Button} onClick=${() => (all.value = true)}>
             All ${lists.value.states.length} states
-          </button>`}
+          <//>`}
         ${lists.value.deleted.length > 0 && html`
           <h2>Deleted</h2>
           <ul class="project-list" aria-label="Deleted">
@@ -119,7 +120,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
 };
 
 const Act = ({ text, one, go }) => html`
-  <button type="button" class="button" aria-label=${`${text}: ${one.name}`} onClick=${go}>${text}</button>`;
+  <${Button} aria-label=${`${text}: ${one.name}`} onClick=${go}>${text}<//>`;
 
 const NameForm = ({ for: what, label, value, text, onSubmit }) => html`
   <form class="project-form" data-for=${what} onSubmit=${onSubmit}>
@@ -128,5 +129,5 @@ const NameForm = ({ for: what, label, value, text, onSubmit }) => html`
       <input id=${`project-${what}`} name="name" type="text" maxlength="200" autocomplete="off" defaultValue=${value}
         key=${value} />
     </div>
-    <button type="submit" class="button">${text}</button>
+    <${Button} type="submit">${text}<//>
   </form>`;

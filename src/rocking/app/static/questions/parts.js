@@ -1,10 +1,10 @@
 /** What every view of a question is made of: what is asked, its progress, its files, and earlier ones. */
 
-import { html, signal, useEffect, useRef, useSignal } from "/parts/preact.js";
+import { html, signal, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
 import { Drop } from "/parts/drop.js";
-import { Button, Note, sentence } from "/parts/fields.js";
+import { Button, Note, Refused, sentence, toWrong } from "/parts/fields.js";
 
 /** The fields of a form that outlasts a reload; `form.at(...path)` is a signal of one of them. */
 export const useForm = (key, first) => {
@@ -88,8 +88,7 @@ const Outcome = ({ questions, answer: Answer }) => {
   const heading = useRef(null);
   const done = question?.state === "done";
   useEffect(() => {
-    const typing = document.activeElement?.matches("input, textarea, select");
-    if (done && !typing) heading.current?.focus();
+    if (done && !isTyping()) heading.current?.focus();
   }, [done, question?.id]);
   if (!question) return null;
   return html`
@@ -150,17 +149,41 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
-/** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows. */
-export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => html`
-  <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>
-  <div class="columns narrow-wide">
-    <div class="asked">
-      <form class="card" onSubmit=${onSubmit} aria-label="What is asked">
-        ${children}
-        ${wrong && html`<${Note} kind="error" role="alert" words=${wrong} />`}
-        <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Ask<//>
-      </form>
-      <${Earlier} questions=${questions} />
-    </div>
-    <${Outcome} questions=${questions} answer=${answer} />
-  </div>`;
+/** A refusal of the server as fields know it: the key that it names, and its words. */
+export const refusedOf = (message) => ({
+  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1], words: sentence(message),
+});
+
+/** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
+ * asking, as words or as {key, words} of a field. */
+export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => {
+  const form = useRef(null);
+  const asked = useSignal(0);
+  const { value: question } = questions.shown;
+  const refused = useMemo(() => {
+    if (wrong) return typeof wrong === "string" ? { words: wrong } : wrong;
+    return question?.state === "refused" ? refusedOf(question.message) : {};
+  }, [asked.value, wrong, question?.id, question?.state]);
+  useEffect(() => {
+    if (refused.key && asked.value && (wrong || !isTyping())) toWrong(form.current);
+  }, [refused]);
+  const submit = (event) => {
+    asked.value += 1;
+    onSubmit(event);
+  };
+  return html`
+    <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>
+    <div class="columns narrow-wide">
+      <div class="asked">
+        <form ref=${form} class="card" onSubmit=${submit} aria-label="What is asked">
+          <${Refused.Provider} value=${refused}>${children}<//>
+          ${wrong && html`<${Note} kind="error" role="alert" words=${refused.words} />`}
+          <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Ask<//>
+        </form>
+        <${Earlier} questions=${questions} />
+      </div>
+      <${Outcome} questions=${questions} answer=${answer} />
+    </div>`;
+};
+
+const isTyping = () => document.activeElement?.matches("input, textarea, select");

@@ -1,7 +1,7 @@
 /** A body in space on the page: the picture, how to turn it, and what it shows in words. */
 
 import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
-import { Note } from "/parts/fields.js";
+import { Button, Note } from "/parts/fields.js";
 import { fetchFile } from "/app/api.js";
 import { freshId } from "/app/dom.js";
 import { onTheme } from "/charts/style.js";
@@ -74,8 +74,8 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
           nearer(event.deltaY < 0 ? CLOSER : 1 / CLOSER);
         }}></canvas>
       <div class="toolbar" role="group" aria-label="Look">
-        ${VIEWS.map(([name, to, times]) => html`<button type="button" class="button quiet" key=${name}
-          onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times))}>${name}</button>`)}
+        ${VIEWS.map(([name, to, times]) => html`<${Button} kind="quiet" key=${name}
+          onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times))}>${name}<//>`)}
       </div>
       <ul class="space-legend" aria-label="What is marked">
         ${legend.map(([kind, text]) => html`<li key=${kind}><span class=${`space-key ${kind}`} aria-hidden="true"></span>${text}</li>`)}

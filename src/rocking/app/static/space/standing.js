@@ -2,7 +2,7 @@
 
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
-import { Choice } from "/parts/fields.js";
+import { Button, Choice } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { Drawing } from "/questions/parts.js";
 import { calm } from "/scene/theme.js";
@@ -63,10 +63,10 @@ export const Standing = ({ question, answer, onPose, children }) => {
     </div>
     ${answer.rings.map((each) => html`<p key=${each.tilt_rad}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
       its axis ${number((each.tilt_rad * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.height_m)} mm high.</p>`)}
-    ${!question.name.endsWith(".toml") && html`<div class="toolbar"><button type="button" class="button" onClick=${() => {
+    ${!question.name.endsWith(".toml") && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
-    }}>Go on in pose ${shown}</button></div>`}
+    }}>Go on in pose ${shown}<//></div>`}
     ${children}
     <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, and its support polygon`} />
     <h3>What it takes to topple it, by direction</h3>

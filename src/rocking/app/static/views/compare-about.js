@@ -1,7 +1,7 @@
 /** What a model of the impact is: its source, assumptions, known defects, and what was measured. */
 
 import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
-import { Note } from "/parts/fields.js";
+import { Button, Note } from "/parts/fields.js";
 import { number } from "/app/format.js";
 import { wordsOf } from "/views/response-labels.js";
 
@@ -16,7 +16,7 @@ export const About = ({ app, label, onClose }) => {
   useEffect(() => void app.call("impact", { json: { body, ...(settings && { settings }) } })
     .then((found) => (impact.value = found)).catch(() => (impact.value = null)), [body, settings]);
   useEffect(() => heading.current?.focus(), [label]);
-  const close = html`<button type="button" class="button" onClick=${onClose}>Close</button>`;
+  const close = html`<${Button} onClick=${onClose}>Close<//>`;
   if (!model) return html`<section class="card"><h2 ref=${heading} tabindex="-1">${wordsOf(label)}</h2>
     <p>A number that was typed: it has no source here.</p><div class="toolbar">${close}</div></section>`;
   return html`
@@ -27,7 +27,7 @@ export const About = ({ app, label, onClose }) => {
       ${model.domain && html`<h3>Where it holds</h3><p>${model.domain}</p>`}
       <h3>Known defects</h3><${List} of=${model.known_defects} />
       <h3>Evidence</h3><${Evidence} found=${impact.value} name=${model.name} />
-      <div class="toolbar"><button type="button" class="button" onClick=${() => app.go("impact")}>Against the measurements</button>${close}</div>
+      <div class="toolbar"><${Button} onClick=${() => app.go("impact")}>Against the measurements<//>${close}</div>
     </section>`;
 };
 

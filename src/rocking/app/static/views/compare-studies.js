@@ -1,7 +1,7 @@
 /** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
 
 import { html, useEffect, useSignal } from "/parts/preact.js";
-import { Choice, Note } from "/parts/fields.js";
+import { Button, Choice, Note } from "/parts/fields.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
@@ -18,12 +18,12 @@ export const Studies = ({ app, asked }) => {
   useEffect(() => void (refused.value = ""), [chosen.value]);
   const study = all.value.find(({ id }) => id === chosen.value);
   const path = (kind, what) => `/api/studies/${study.id}/export.${kind}?what=${what}`;
-  const save = (kind, what, words) => html`<button type="button" class="button" aria-label=${`${words} as ${kind.toUpperCase()}`}
-    onClick=${() => app.download(path(kind, what), undefined, `${what}.${kind}`)}>${words}, ${kind.toUpperCase()}</button>`;
+  const save = (kind, what, words) => html`<${Button} aria-label=${`${words} as ${kind.toUpperCase()}`}
+    onClick=${() => app.download(path(kind, what), undefined, `${what}.${kind}`)}>${words}, ${kind.toUpperCase()}<//>`;
   return html`
     <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
-          <button type="button" class="button" onClick=${() => app.go("studies")}>Launch a study</button></p>` : html`
+          <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
         <${Choice} label="Study" value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value ? html`<${Note} data-testid="not-compared" words=${refused.value} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}

@@ -1,7 +1,7 @@
 /** Compare: does it stand, and does the model matter? Every model of the impact, side by side. */
 
 import { computed, html, render, signal, useEffect, useMemo, useSignal } from "/parts/preact.js";
-import { Note } from "/parts/fields.js";
+import { Button, Note } from "/parts/fields.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number } from "/app/format.js";
 import { createTime } from "/charts/figure.js";
@@ -83,7 +83,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
       <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
     ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
-      <button type="button" class="button" onClick=${() => app.go("motion")}>Choose a motion</button></p>`}
+      <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
       <${Banner} kind=${verdictKind(there)} sentences=${sentencesOf(found.value, there)} testid="compare-verdict" />
       <div class="compare">
@@ -99,7 +99,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
               <${Figures} kinds=${["rotation", "velocity", "lost", "ground"]} answers=${shown} lead=${lead} ticked=${shown}
                 part=${part.value} friction=${0.5} time=${time} /></div>
             <p class="field-help">${marksWords(shown, "each model in its colour")}</p>
-            ${part.value && html`<button type="button" class="button" onClick=${() => asked.look(null)}>Show all of the time</button>`}`
+            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show all of the time<//>`}`
           : html`<p class="field-help">No model is shown: tick one.</p>`}
         </section>
       </div>`}
@@ -173,7 +173,7 @@ const Margins = ({ app, margins }) => {
   const wrong = asked?.state === "refused" ? asked.message : "";
   return html`<div class="toolbar">
       ${asked && questions.busy.value ? html`<progress aria-label="The margins are being computed"></progress>`
-        : html`<button type="button" class="button" disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins</button>`}
+        : html`<${Button} disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins<//>`}
     </div>
     ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
     <p class="field-help">Margin: the least factor on this motion that overturns the body, of either way round; Decide keeps the whole answer.</p>`;

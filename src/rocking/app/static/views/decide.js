@@ -40,7 +40,7 @@ const Decide = ({ app, questions }) => {
     const factor = Number(margin.value.replace(",", "."));
     const predicts = what.value === "predict";
     const faulty = app.faults.sentence({ inputs: true }) || asked.missing
-      || (predicts || factor > 0 ? "" : "What it must hold is a number above 0.");
+      || (predicts || factor > 0 ? "" : { key: "margin", words: "What it must hold is a number above 0." });
     wrong.value = faulty || "";
     if (faulty) return;
     const name = inputs.body.name || app.project.here.value.name;
@@ -70,12 +70,12 @@ const Decide = ({ app, questions }) => {
           help="Several records at once; each is computed as it is." />
         <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)
-        && html`<${Field} label="Peak acceleration" unit="g" value=${pga} inputmode="decimal" />`}
+        && html`<${Field} label="Peak acceleration" name="pga" unit="g" value=${pga} inputmode="decimal" />`}
       ${what.value === "predict" ? html`
         <p class="field-help">What is not known of the body: one number, two as the ends of a range, or nothing for what is usual.</p>
         <div class="fields">${Object.entries(app.info.keys.predict).map(([name, facts]) => html`
           <${KeyField} key=${name} name=${name} facts=${facts} value=${unknown.at(name)} />`)}</div>` : html`
-      <${Field} label="Must hold" unit="times the motion" value=${margin} inputmode="decimal"
+      <${Field} label="Must hold" name="margin" unit="times the motion" value=${margin} inputmode="decimal"
         help="What is proposed holds this much." />
       <${Field} label="Signed by" value=${author} help="For the report." />
       <${Field} label="Date" value=${date} help="Today if empty." />`}`}
@@ -91,7 +91,7 @@ const motions = (inputs, shaken, files, { units, pga }) => {
   }
   if (shaken) {
     const level = Number(pga.replace(",", "."));
-    const missing = level > 0 ? "" : "How strong is the shaking? The peak acceleration is a number above 0.";
+    const missing = level > 0 ? "" : { key: "pga", words: "How strong is the shaking? The peak acceleration is a number above 0." };
     const motion = { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 };
     return { tables: { motions: [motion] }, files: {}, missing };
   }

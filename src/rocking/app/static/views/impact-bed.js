@@ -4,8 +4,8 @@ import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 import { createTime, Figure } from "/charts/figure.js";
-import { Choice, KeyField, sentence, Note } from "/parts/fields.js";
-import { filled, useForm } from "/questions/parts.js";
+import { Button, Choice, KeyField, Note, Refused, sentence, toWrong } from "/parts/fields.js";
+import { filled, refusedOf, useForm } from "/questions/parts.js";
 
 const VARIED = {
   slenderness: "slenderness", damping: "damping", modulus_over_thickness: "stiffness of a layer", friction: "friction",
@@ -21,16 +21,17 @@ export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;
   const form = useForm("rocking.bed", {});
   const varied = useSignal("slenderness");
-  const [found, wrong, busy] = [null, "", false].map(useSignal);
+  const [found, refused, busy] = [null, {}, false].map(useSignal);
   const compute = async (event) => {
     event.preventDefault();
     busy.value = true;
     try {
       const json = { ...body, ...filled(form.value, keys), varied: varied.value };
       found.value = await app.call("contact-bed", { json });
-      wrong.value = "";
+      refused.value = {};
     } catch (error) {
-      wrong.value = sentence(error.message);
+      refused.value = refusedOf(error.message);
+      toWrong(event.target);
     }
     busy.value = false;
   };
@@ -41,9 +42,9 @@ export const Laboratory = ({ app, body }) => {
     <form class="stack" onSubmit=${compute} aria-label="Contact bed">
       <${Choice} label="What changes" value=${varied} options=${Object.entries(VARIED)} />
       <details><summary>From where to where, and what the bed is</summary>
-        <div class="fields">${[...RANGE, ...others].map(field)}</div></details>
-      ${wrong.value && html`<${Note} kind="error" role="alert" words=${wrong.value} />`}
-      <div class="toolbar"><button type="submit" class="button" disabled=${busy.value}>Compute</button></div>
+        <div class="fields"><${Refused.Provider} value=${refused.value}>${[...RANGE, ...others].map(field)}<//></div></details>
+      ${refused.value.words && html`<${Note} kind="error" role="alert" words=${refused.value.words} />`}
+      <div class="toolbar"><${Button} type="submit" disabled=${busy.value}>Compute<//></div>
     </form>
     ${found.value && html`<${Emerged} found=${found.value} />`}</div>`;
 };

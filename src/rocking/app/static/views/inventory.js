@@ -35,8 +35,8 @@ const Inventory = ({ app, questions }) => {
     const strength = Number(level.value.replace(",", "."));
     const many = Number(count.value);
     wrong.value = !files.value.length ? "No list was sent yet."
-      : !(strength > 0) ? "How strong is the shaking? A number above 0 is needed."
-        : !(Number.isInteger(many) && many > 0) ? "The number of motions is a whole number above 0." : "";
+      : !(strength > 0) ? { key: "level", words: "How strong is the shaking? A number above 0 is needed." }
+        : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "The number of motions is a whole number above 0." } : "";
     if (wrong.value) return;
     const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
     if (!list) return;
@@ -63,11 +63,11 @@ const Inventory = ({ app, questions }) => {
         help="Columns such as name, width_cm, depth_cm, height_cm; count, base, weight and notes if there are." />
       <${Choice} label="How strong it is said by" value=${kind}
         options=${[["pga", "peak acceleration [g]"], ["pgv", "peak velocity [cm/s]"]]} />
-      <${Field} label="Strength" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
+      <${Field} label="Strength" name="level" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
       <${Choice} label="Motions" value=${family} options=${[
         ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
         ["pulse-like", "near a fault, pulse-like"]]} />
-      <${Field} label="How many motions" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
+      <${Field} label="How many motions" name="count" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
       <details><summary>How the list is read</summary>${["columns", "encoding"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.inventory[name]} value=${form.at(name)} />`)}</details>
       <${Corrections} answer=${answer} text=${text.value?.of === files.value[0] ? text.value : null} fixed=${fixed} />

@@ -3,7 +3,7 @@
 import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, Field, Note } from "/parts/fields.js";
+import { Button, Choice, Field, Note } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { Drawing, FileDrop, QuestionView } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
@@ -65,8 +65,8 @@ const Measure = ({ app, questions }) => {
         models against its 39 measurements; as a report. It takes about half a minute.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
-      <button type="button" class="button" aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
-        ${recording.value ? "End the recording" : "Record with the microphone"}</button>
+      <${Button} aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
+        ${recording.value ? "End the recording" : "Record with the microphone"}<//>
       <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
       <${Field} label="Column" value=${column} help="Of a table with several." />
       <${Field} label="Unit" value=${unit} help="Where the table states none." />

@@ -5,7 +5,7 @@ import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
-import { Choice, KeyField, Note, sentence } from "/parts/fields.js";
+import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
 
@@ -112,9 +112,9 @@ const Chain = ({ app, form, stations, faulty }) => {
       <h2 id=${heading}>Steps, in their order</h2>
       <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${`Step ${place + 1}, ${name}`}>
         <div class="toolbar"><strong>${name}</strong>
-          <button type="button" class="button quiet" aria-label=${`${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191</button>
-          <button type="button" class="button quiet" aria-label=${`${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193</button>
-          <button type="button" class="button quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out</button>
+          <${Button} kind="quiet" aria-label=${`${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
+          <${Button} kind="quiet" aria-label=${`${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
+          <${Button} kind="quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out<//>
         </div>
         <p class="field-help">${sentence(known[name].words)}</p>
         <div class="fields">
@@ -184,7 +184,7 @@ const Corrected = ({ answer, question, questions }) => {
     <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
     ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
-    <div class="toolbar"><button type="button" class="button primary" onClick=${() => use(questions, question)}>Use it as the motion</button></div>
+    <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use it as the motion<//></div>
     <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
       [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
     <h3>What was done</h3>

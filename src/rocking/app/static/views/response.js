@@ -1,6 +1,6 @@
 /** How the body rocks: one stage of verdict, animation and linked figures, for several restitution models at once. */
 import { html, render, signal, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
-import { Note } from "/parts/fields.js";
+import { Button, Note } from "/parts/fields.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Player } from "/scene/player.js";
@@ -89,7 +89,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
             <div class="figures" data-testid="response-charts">
               <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} part=${part.value} friction=${friction} time=${time} /></div>
             <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && FALL}</p>
-            ${part.value && html`<button type="button" class="button" onClick=${() => asked.look(null)}>Show all of the time</button>`}
+            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show all of the time<//>`}
           </div></section>`}
       </div>
       <${Controls} app=${app} inputs=${inputs.value} />
@@ -100,5 +100,5 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
 
 const NothingMoves = ({ app }) => html`
   <${Note} words="Nothing moves the body yet: choose a motion, or let it go from a lean." />
-  <div class="toolbar"><button type="button" class="button primary" onClick=${() => app.go("motion")}>Choose a motion</button>
-    <button type="button" class="button" onClick=${() => lean(app)}>Let it go from a lean</button></div>`;
+  <div class="toolbar"><${Button} kind="primary" onClick=${() => app.go("motion")}>Choose a motion<//>
+    <${Button} onClick=${() => lean(app)}>Let it go from a lean<//></div>`;

@@ -3,7 +3,7 @@
 import { html, render, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Choice, Field } from "/parts/fields.js";
+import { Button, Choice, Field } from "/parts/fields.js";
 import { Drawing, FileDrop, QuestionView, recordEndings } from "/questions/parts.js";
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
@@ -45,8 +45,8 @@ const Space = ({ app, questions }) => {
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
     const held = parseNumber(friction.value);
     const kept = parseNumber(coefficient.value);
-    wrong.value = body.missing || (!(held > 0) ? "The friction is a number above 0." : "")
-      || (moves && !law.value && !(kept >= 0 && kept <= 1) ? "The coefficient is a number from 0 to 1." : "") || motion.missing || "";
+    wrong.value = body.missing || (!(held > 0) && { key: "friction", words: "The friction is a number above 0." })
+      || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "The coefficient is a number from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
     const [scan] = files.value;
     const tables = {
@@ -66,11 +66,11 @@ const Space = ({ app, questions }) => {
       lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
       <${FileDrop} label="Drop a scan here, or" accept=${SCANS} files=${files} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
-      <${Choice} label="Unit of the file" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
+      <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
       ${pose.value ? html`<p class="space-pose">Stands in pose ${pose.value.number} of the last answer.
-          <button type="button" class="button quiet" onClick=${() => (pose.value = null)}>As in the file</button></p>`
+          <${Button} kind="quiet" onClick=${() => (pose.value = null)}>As in the file<//></p>`
         : html`<${Choice} label="Up" value=${up} options=${UP} help="It is let down from there until it rests." />`}
-      <${Field} label="Density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Concrete's if empty." />
+      <${Field} label="Density" name="density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Concrete's if empty." />
       <details><summary>What may be mended</summary>
         <${Choice} label="Mend" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and 0.5 % of the size for the centre." />
         <${Choice} label="Surface" value=${surface} options=${SURFACES} />
@@ -82,10 +82,10 @@ const Space = ({ app, questions }) => {
           ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} label=${`A record along ${axis}, or`}
             accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
           <${Field} label="Unit of the accelerations" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
-        <${Field} label="Motion" unit="times" value=${times} inputmode="decimal" />
-        <${Field} label="Friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
+        <${Field} label="Motion" name="times" unit="times" value=${times} inputmode="decimal" />
+        <${Field} label="Friction" name="friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
         <${Choice} label="Impacts" value=${law} options=${LAWS} />
-        ${!law.value && html`<${Field} label="Coefficient of restitution" value=${coefficient} inputmode="decimal" help="From 0 to 1." />`}`}
+        ${!law.value && html`<${Field} label="Coefficient of restitution" name="value" value=${coefficient} inputmode="decimal" help="From 0 to 1." />`}`}
     <//>`;
 };
 
@@ -93,9 +93,9 @@ const Space = ({ app, questions }) => {
 const bodyOf = (scan, said) => {
   if (!scan) return { missing: "No scan was sent yet." };
   const kind = scan.name.split(".").at(-1).toLowerCase();
-  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: `${kind.toUpperCase()} files do not say their unit: choose it.` };
+  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: `${kind.toUpperCase()} files do not say their unit: choose it.` } };
   const density = said.density ? parseNumber(said.density) : null;
-  if (said.density && !(density > 0)) return { missing: "The density is a number above 0." };
+  if (said.density && !(density > 0)) return { missing: { key: "density", words: "The density is a number above 0." } };
   const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
   return { table: { file: scan.name, ...Object.fromEntries(stated) } };
 };
@@ -103,7 +103,7 @@ const bodyOf = (scan, said) => {
 /** What shakes it along its axes, the files for that, and what is missing. */
 const shakenBy = (app, shaken, records, units, times) => {
   const scale = parseNumber(times);
-  if (scale === null || scale === 0) return { missing: "How many times the motion? A number is needed." };
+  if (scale === null || scale === 0) return { missing: { key: "times", words: "How many times the motion? A number is needed." } };
   if (shaken !== "records") {
     const motion = motionOf(app.inputs.get());
     const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion: choose one, or send records.");

@@ -1,5 +1,6 @@
 /** The uploaded records, to be ticked for a study, told what they do not say, and deleted. */
 import { html, useEffect, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
+import { Button } from "/parts/fields.js";
 import { quantity } from "/app/format.js";
 import { Needs, nameOf } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
@@ -97,7 +98,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     <li ref=${row} class="record-row">
       <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
-      <button type="button" class="button quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete</button>
+      <${Button} kind="quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete<//>
       <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
       ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
         take=${take} button=${{ "aria-label": `Read ${name} so` }} />`}
