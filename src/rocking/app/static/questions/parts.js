@@ -74,7 +74,7 @@ export const FileDrop = ({ files, many = false, questions, app, help, ...more })
       <p class="field-help">${help}</p>
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
-        ${files.value.map((one) => html`<li key=${one.sha}>${one.name}
+        ${files.value.map((one) => html`<li key=${one.sha}><span translate=${false}>${one.name}</span>
           <${Button} kind="quiet" aria-label=${`Leave out ${one.name}`}
             onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out<//></li>`)}
       </ul>`}<//>`;

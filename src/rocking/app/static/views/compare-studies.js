@@ -24,7 +24,7 @@ export const Studies = ({ app, asked }) => {
     <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
           <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
-        <${Choice} label="Study" value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
+        <${Choice} label="Study" translate=${false} value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value ? html`<${Note} data-testid="not-compared" words=${refused.value} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
           <img key=${chosen.value} class="drawing" onLoad=${() => (drawn.value = chosen.value)} src=${path("svg", "differences")} alt=${`${study.name}: its models side by side, and what the choice changes`}
