@@ -418,3 +418,59 @@ def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKING_MODELS", str(tmp_path / "own.py"))
     asked = desk.ask("minimum", tables, {})
     assert ended(desk, asked.id).state == "done", desk.get(asked.id).message
+
+
+def waits(process):
+    """Wait until a process has loaded what it can, and waits for a question."""
+    import psutil
+
+    known, still = psutil.Process(process.pid), 0
+    while still < 10:
+        used = sum(known.cpu_times()[:2])
+        time.sleep(0.05)
+        still = still + 1 if sum(known.cpu_times()[:2]) == used > 0.3 else 0
+
+
+def test_a_process_is_ready_before_it_is_asked(desk, monkeypatch):
+    """It answers the next question, alone; other surroundings get another; without a server or questions it ends."""
+    desk.prepare()
+    first = desk._ahead[0]
+    desk.prepare()
+    assert desk._ahead[0] is first
+    monkeypatch.setenv("ROCKING_MODELS", "")
+    desk.prepare()
+    second = desk._ahead[0]
+    assert (first.poll() is None, second is first) == (False, False)
+    second.kill()
+    second.wait()
+    desk.prepare()
+    third = desk._ahead[0]
+    assert ended(desk, desk.ask("predict", TABLES, {}).id).state == "done"
+    assert (third.poll(), desk._ahead) == (0, None)
+    left = desk._start()
+    left.stdin.close()
+    assert left.wait(30.0) == 0
+    desk.prepare()
+    fourth = desk._ahead[0]
+    monkeypatch.setattr("rocking.app.questions.desk._IDLE", 0.1)
+    with desk._changed:
+        desk._changed.notify_all()
+    deadline = time.monotonic() + 30.0
+    while fourth.poll() is None:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    desk.prepare()
+    desk.close()
+    assert desk._ahead is None
+
+
+@pytest.mark.timed
+def test_a_question_about_a_record_is_quick(desk):
+    """Half of the time of a processor goes into what was loaded ahead: what is left takes less than 1.5 s."""
+    sha = desk.store.add(SHAKEN.encode(), "hall.txt").record
+    desk.prepare()
+    waits(desk._ahead[0])
+    begun = time.monotonic()
+    tables = {"motion": {"record": "hall.txt", "process": ["mean", "taper"]}}
+    assert ended(desk, desk.ask("convert", tables, {"hall.txt": sha}).id).state == "done"
+    assert time.monotonic() - begun < 1.5

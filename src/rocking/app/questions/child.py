@@ -1,12 +1,17 @@
-"""A command that a server runs: `python -m rocking.app.questions.child FOLDER COMMAND WORDS ...`.
+"""A command that a server runs: `python -m rocking.app.questions.child`.
 
-It runs `rocking COMMAND WORDS ...` in a folder, with limits, and opens nothing that was not sent there. It ends when
-the server does: its standard input is a pipe.
+It loads what most questions need, until a line of its standard input tells it a folder and the words of a command:
+then it runs `rocking COMMAND WORDS ...` there, with limits, and opens nothing that was not sent there. It ends when the
+server does: its standard input is a pipe.
 """
 
+import json
 import os
 import sys
+import tempfile
 import threading
+from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from runpy import run_module
 from typing import Any
@@ -15,13 +20,47 @@ _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], t
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/mime.types")
 
 
-def main(arguments: list[str]) -> None:
-    """Run a command."""
+# so many modules take a second, which is most of what a question takes
+_AHEAD = (
+    "rocking.cli.convert", "rocking.cli.predict", "rocking.spec.construction", "rocking.bodies.formats",
+    "rocking.restitution.from_file", "rocking.plots.style", "scipy.signal", "matplotlib.backends.backend_svg",
+    "matplotlib.backends.backend_pdf", "rocking.reports", "rocking.quantities", "trimesh",
+)  # fmt: skip
+
+
+def main() -> None:
+    """Run the command that is told."""
     from rocking.app.studies.child import end_with_the_server
 
-    folder = Path(arguments[0]).resolve()
-    threading.Thread(target=end_with_the_server, daemon=True).start()
+    told, question = threading.Event(), b""
+
+    def listen() -> None:
+        nonlocal question
+        while not question.endswith(b"\n"):
+            if not (part := os.read(0, 1)):
+                os._exit(0)  # the server has ended, and nothing was asked
+            question += part
+        told.set()
+        end_with_the_server()
+
+    threading.Thread(target=listen, daemon=True).start()
     _limit()
+    for name in _AHEAD:
+        if not told.is_set():
+            with suppress(ImportError):
+                import_module(name)
+    told.wait()
+    _answer(**json.loads(question))
+
+
+def _answer(folder: str, answer: str, log: str, own: str, words: list[str]) -> None:
+    """Run a command in a folder; its answer, what it says, and what libraries write go to files of these names."""
+    os.chdir(folder)
+    for number, name in ((1, answer), (2, log)):
+        file = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        os.dup2(file, number)
+        os.close(file)
+    os.environ["TMPDIR"] = tempfile.tempdir = str(Path(own).resolve())
     from rocking.errors import RockingError
     from rocking.evidence.store import store
     from rocking.restitution.from_file import register_own
@@ -30,9 +69,8 @@ def main(arguments: list[str]) -> None:
         register_own()  # the owner's own models, which lie outside
     except RockingError as error:
         sys.exit(f"rocking: {error}")
-    os.chdir(folder)
-    keep_inside(folder, store(), Path(os.environ["MPLCONFIGDIR"]))
-    sys.argv[1:] = arguments[1:]
+    keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]))
+    sys.argv[1:] = words
     run_module("rocking", run_name="__main__")
 
 
@@ -69,4 +107,4 @@ def _limit() -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

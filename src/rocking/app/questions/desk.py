@@ -46,6 +46,7 @@ WITHOUT_FILE = "paper"  # the command that takes none, and writes a folder
 FOLDER = "records"  # of a question, in which the files of a set are
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
 _SECONDS = 1800.0  # longest time of a question [s]
+_IDLE = 900.0  # so long a process waits for the next question [s]
 _ROOM = 32 << 20  # that a question may need on the disk [bytes]
 _MOST_STARTS = 3  # so often it is begun anew where the server ended beneath it
 QUESTION, _NOTE, _ANSWER, _LOG = "question.toml", "state.json", "answer.json", "log.txt"
@@ -85,6 +86,7 @@ class QuestionDesk:
         self._questions = {each.id: each for each in self._kept()}
         self._line = [each.id for each in sorted(self._questions.values(), key=_age) if each.state == "waiting"]
         self._process: tuple[str, subprocess.Popen[bytes]] | None = None
+        self._ahead: tuple[subprocess.Popen[bytes], dict[str, str]] | None = None  # of the next one, and around it
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="questions", daemon=True)
         self._thread.start()
@@ -185,6 +187,7 @@ class QuestionDesk:
             self._closed = True
             if self._process is not None:
                 _kill(self._process[1])
+            self._let_go()
             self._changed.notify_all()
         self._thread.join(10.0)
 
@@ -237,7 +240,8 @@ class QuestionDesk:
         while True:
             with self._changed:
                 while not self._line and not self._closed:
-                    self._changed.wait()
+                    if not self._changed.wait(_IDLE):
+                        self._let_go()
                 if self._closed:
                     return
                 known = self._questions.get(self._line.pop(0))
@@ -251,29 +255,55 @@ class QuestionDesk:
                 _LOG_OF_SERVER.exception("question %s could not be run", question.id)
                 self._fail(question)
 
+    def prepare(self) -> None:
+        """Start the process of the next question before it is asked: to load what it needs takes longer than to run."""
+        with self._changed, suppress(OSError):
+            if self._closed or (self._ahead and self._ahead[0].poll() is None and self._ahead[1] == os.environ):
+                return
+            self._let_go()
+            self._ahead = self._start(), dict(os.environ)
+
+    def _let_go(self) -> None:
+        with self._changed:
+            if self._ahead is not None:
+                _end(self._ahead[0])
+            self._ahead = None
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        cache = self.folder.with_name("cache")  # for what libraries write
+        cache.mkdir(mode=0o700, exist_ok=True)
+        nothing = subprocess.DEVNULL
+        return subprocess.Popen(
+            [sys.executable, "-P", "-m", "rocking.app.questions.child"],
+            stdin=subprocess.PIPE, stdout=nothing, stderr=nothing, start_new_session=True,
+            env={**os.environ, "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"},
+        )  # fmt: skip
+
     def _run(self, question: HostedQuestion) -> None:
         place, begun = self.folder / question.id, datetime.now(UTC)
-        own, cache = place / ".own", self.folder.with_name("cache")  # for what libraries write
-        for each in (own, cache):
-            each.mkdir(mode=0o700, exist_ok=True)
-        environment = {**os.environ, "TMPDIR": str(own), "MPLCONFIGDIR": str(cache), "PYTHONUNBUFFERED": "1"}
-        words = [sys.executable, "-P", "-m", "rocking.app.questions.child", str(place), *_command(question)]
-        with (place / _ANSWER).open("wb") as answer, (place / _LOG).open("wb") as log:
-            process = subprocess.Popen(
-                words, stdin=subprocess.PIPE, stdout=answer, stderr=log, start_new_session=True, env=environment
-            )
-            with self._changed:
-                self._process = (question.id, process)
-                if self._closed or self._state(question.id) == "stopped":
-                    _kill(process)
-            try:
-                code = process.wait(_SECONDS)
-            except subprocess.TimeoutExpired:
+        own = place / ".own"
+        own.mkdir(mode=0o700, exist_ok=True)
+        told = {
+            "folder": str(place), "answer": _ANSWER, "log": _LOG, "own": own.name, "words": _command(question)
+        }  # fmt: skip
+        for name in (_ANSWER, _LOG):
+            (place / name).write_bytes(b"")
+        with self._changed:
+            self.prepare()
+            ahead, self._ahead = self._ahead, None
+            process = self._start() if ahead is None else ahead[0]
+            self._process = (question.id, process)
+            if self._closed or self._state(question.id) == "stopped":
                 _kill(process)
-                code = None
-            finally:
-                if process.stdin:
-                    process.stdin.close()
+        try:
+            with suppress(OSError):  # it has ended: its code says so
+                process.stdin.write(json.dumps(told).encode() + b"\n")  # type: ignore[union-attr]
+                process.stdin.flush()  # type: ignore[union-attr]
+            code = process.wait(_SECONDS)
+        except subprocess.TimeoutExpired:
+            code = None
+        finally:
+            _end(process)
         shutil.rmtree(own, ignore_errors=True)
         with self._changed:
             self._process = None
@@ -356,6 +386,14 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
             process.kill()
         elif process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a process, and close what it was told through."""
+    _kill(process)
+    process.wait()
+    with suppress(OSError):
+        process.stdin.close()  # type: ignore[union-attr]
 
 
 def _age(question: HostedQuestion) -> tuple[str, str]:

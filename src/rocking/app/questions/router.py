@@ -103,7 +103,8 @@ async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
 
 @router.get("/questions", summary="All questions", responses=answered(Questions, "The questions."))
 async def list_questions(request: Request) -> JsonAnswer:
-    """Return all questions, the last one first."""
+    """Return all questions, the last one first; whoever looks at them will ask one."""
+    await run_in_threadpool(_desk(request).prepare)
     return JsonAnswer({"questions": [*map(_facts, _desk(request).all())]})
 
 

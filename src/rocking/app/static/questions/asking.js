@@ -2,7 +2,7 @@
 
 import { computed, signal } from "/parts/preact.js";
 
-const EVERY = 500; // a look at a question that is being answered [ms]
+const [SOON, EVERY] = [100, 500]; // between looks at a question that is being answered, the first and the last [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
 /** The questions of some commands in the open project; what is asked is of the first if nothing else is said. */
@@ -18,7 +18,7 @@ export const createQuestions = (app, ...commands) => {
     const { questions } = await app.call("questions");
     all.value = questions.filter((each) => commands.includes(each.command) && each.project === here());
   };
-  const follow = async (id, mine = (ticket += 1)) => {
+  const follow = async (id, mine = (ticket += 1), pause = SOON) => {
     clearTimeout(timer);
     const question = await app.call(`questions/${id}`).catch((error) => {
       if (error.kind !== "offline") throw error;
@@ -27,7 +27,7 @@ export const createQuestions = (app, ...commands) => {
     if (mine !== ticket) return; // another one is shown by now
     if (question) shown.value = question;
     if (question && ENDED.has(question.state)) await look();
-    else timer = setTimeout(() => follow(id, mine).catch(tell), EVERY);
+    else timer = setTimeout(() => follow(id, mine, Math.min(EVERY, 1.5 * pause)).catch(tell), pause);
   };
   const tell = (error) => app.say(error.message, "error");
   const safely = (work) => (...given) => work(...given).catch(tell);
