@@ -16,7 +16,7 @@ from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendati
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
-from rocking.spec.construction import any_body_of
+from rocking.spec.construction import body_moved
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
@@ -78,7 +78,7 @@ def cor(
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
-    subject, gravity = named_body(arguments, quiet=as_json)
+    subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
     if isinstance(subject, Solid):
         from rocking.cli.solids import SolidAnswer
@@ -91,8 +91,6 @@ def cor(
             )
         found = recommended(subject, models=restitution) if recommend else None
         answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
-    elif "space" in exports.names:
-        raise InvalidValueError("--out with .glb is of a body in space, and this one is plane")
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
@@ -109,30 +107,33 @@ def _model(text: str) -> Any:
     return model_in_file(text) if file_of(text) else model(text)
 
 
-def named_body(arguments: Arguments, *, quiet: bool) -> tuple[Any, float]:
-    """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream."""
+def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> tuple[Any, float]:
+    """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream.
+
+    In space: a plane body of known depth is one in space.
+    """
     word, sets = arguments.options["body"], arguments.sets
     beside = ("onto", "restitution", "identities", "least_barrier")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         with located(word):
-            made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent))
+            made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)
         note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
         print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)
         return made
     with hinted(word, None):
-        return body_of(arguments, word)
+        return body_of(arguments, word, in_space)
 
 
-def body_of(arguments: Arguments, word: str | None) -> tuple[Any, float]:
+def body_of(arguments: Arguments, word: str | None, in_space: bool = False) -> tuple[Any, float]:
     """Return the body of a file or of sizes, and the gravity that is set [m/s2]."""
     tables = {"body": arguments.body_table(word), "settings": arguments.sets.get("settings", {})}
-    return _made(tables, CommandFiles(Path()))
+    return _made(tables, CommandFiles(Path()), in_space)
 
 
-def _made(tables: dict[str, Any], files: InputFiles) -> tuple[Any, float]:
+def _made(tables: dict[str, Any], files: InputFiles, in_space: bool) -> tuple[Any, float]:
     document = checked(BodyDocument, tables)
     with located("body"):
-        return any_body_of(document.body, files), document.settings.gravity or g
+        return body_moved(document.body, files, turned=in_space), document.settings.gravity or g
 
 
 @dataclass(frozen=True)

@@ -92,12 +92,13 @@ def simulate(
     from rocking.cli.responses import answer_of
 
     exports = Exports.of(out, EXPORTS)
+    in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
     length: str | None = None
     acceleration: str | None = None
     if file := document_file(context, body, ("response",), has="has a table [response] and "):
         with located(str(file)):
             tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
-            problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent))
+            problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent), in_space=in_space)
     else:
         arguments = Arguments(context, *_TABLES)
         length, acceleration = arguments.length, arguments.acceleration
@@ -108,16 +109,16 @@ def simulate(
                 )
             deliver(_each(arguments, words, quiet=as_json), as_json=as_json)
             return
-        problem = _problem(arguments)
+        problem = _problem(arguments, in_space)
     if problem.free is not None and isinstance(problem.body, Body):
         _check_share(problem.body, problem.free, "response.free" if file else "--free")
-    if problem.mechanics != "space with friction" and any(path.suffix.lower() == ".glb" for _, path in exports.files):
+    if in_space and problem.mechanics != "space with friction":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
     deliver(answer, exports, as_json=as_json)
 
 
-def _problem(arguments: Arguments) -> "ResponseProblem":
+def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
     names = ("free", "friction", "bounce")
     response = arguments.table("response", {name: arguments.options[name] for name in names})
@@ -144,7 +145,7 @@ def _problem(arguments: Arguments) -> "ResponseProblem":
             motion = arguments.of_body(motions)
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
-        return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()))
+        return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()), in_space=in_space)
 
 
 def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAnswer":

@@ -162,7 +162,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
 
 
 def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
-    """Return the body of a table; turned: it moves along y too, where a plane body of known depth is one in space."""
+    """Return the body of a table; turned: it moves in space, where a plane body of known depth is one in space."""
     body = any_body_of(table, inputs)
     if not turned or isinstance(body, Solid):
         return body

@@ -124,11 +124,11 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
         raise InvalidValueError(f"{reason}, so it takes no {', '.join(stated)}")
 
 
-def response_problem(document: "ResponseDocument", files: InputFiles) -> ResponseProblem:
-    r"""Return the problem that a file describes; files: those that it may name."""
+def response_problem(document: "ResponseDocument", files: InputFiles, *, in_space: bool = False) -> ResponseProblem:
+    r"""Return the problem that a file describes; files: those that it may name; in space: of a plane body too."""
     table = document.motion
     with located("body"):
-        body = body_moved(document.body, files, turned=table is not None and table.y is not None)
+        body = body_moved(document.body, files, turned=in_space or (table is not None and table.y is not None))
     motion: Any = None
     with located("motion"):
         if table is not None:
