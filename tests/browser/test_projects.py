@@ -94,6 +94,46 @@ def test_another_project_waits_until_this_one_is_saved(open_page: Callable[..., 
     expect(page.get_by_label("Width")).to_have_value("0.93")
 
 
+def test_what_is_asked_belongs_to_the_project(open_page: Callable[..., Any], served: Any, tmp_path: Path) -> None:
+    """Typed in Decide, chosen in Inventory and Measure: so it is elsewhere, after undo, and from the file."""
+    page = open_page(view="decide")
+    decide = page.locator("#view-decide")
+    typed(page, "Signed by", "A. Person")
+    decide.get_by_label("Question").select_option("predict")
+    decide.get_by_label("friction", exact=True).fill("0.4")
+    page.locator("#tab-inventory").click()
+    rows = {"name": "list.csv", "mimeType": "text/csv", "buffer": b"name,width_cm,height_cm\nvase,20,100\n"}
+    page.get_by_label("Drop a list here, or").set_input_files(rows)
+    expect(page.locator("#view-inventory").get_by_role("list", name="Files")).to_contain_text("list.csv")
+    page.locator("#tab-measure").click()
+    page.locator("#view-measure").get_by_label("Column").fill("rotation")
+    page.wait_for_timeout(450)
+    saved(page)
+    other = open_page(view="decide")
+    expect(other.locator("#view-decide").get_by_label("friction", exact=True)).to_have_value("0.4")
+    other.locator("#tab-inventory").click()
+    expect(other.locator("#view-inventory").get_by_role("list", name="Files")).to_contain_text("list.csv")
+    other.locator("#tab-measure").click()
+    column = other.locator("#view-measure").get_by_label("Column")
+    expect(column).to_have_value("rotation")
+    other.get_by_role("button", name="Previous state").click()
+    expect(column).to_have_value("")
+    other.get_by_role("button", name="Next state").click()
+    expect(column).to_have_value("rotation")
+    (project,) = served.api("projects", method="GET")["projects"]
+    states = served.api(f"projects/{project['id']}/history", method="GET")["states"]
+    assert "Measure" in states[0]["words"]
+    dialog = opened_dialog(other)
+    with other.expect_download() as told:
+        dialog.get_by_role("button", name=f"Take away: {project['name']}").click()
+    told.value.save_as(tmp_path / "project.zip")
+    dialog.get_by_label("Name of a new project").fill("Hall 4")
+    dialog.get_by_role("button", name="Begin").click()
+    expect(column).to_have_value("")
+    dialog.get_by_label("A project from its file").set_input_files(tmp_path / "project.zip")
+    expect(column).to_have_value("rotation")
+
+
 def test_undo_and_redo(open_page: Callable[..., Any]) -> None:
     """By buttons and by keys, not while a field is typed in, whose own undo that is; and after a reload."""
     page = open_page()

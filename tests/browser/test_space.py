@@ -38,6 +38,7 @@ def test_a_scan_stands_and_settles(
     mended = outcome.get_by_role("list", name="What was mended").inner_text()
     assert "Closed 1 hole" in mended
     assert "% of the volume" in mended
+    expect(outcome.get_by_role("list", name="What is marked")).to_contain_text("closed by the repair")
     question = served.api("questions", method="GET")["questions"][0]
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
     words = outcome.get_by_test_id("space-words")
@@ -115,6 +116,34 @@ def test_it_moves_and_falls(
     shot(page, "space-moves")
     page.emulate_media(reduced_motion="reduce")
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+
+
+def test_the_body_of_the_project_is_asked_in_space(
+    open_page: Callable[..., Any], shot: Callable[..., Any], served: Any, tmp_path: Path
+) -> None:
+    """A block over its depth stands, and rocks; scans that were sent stay in the project and can be chosen again."""
+    block = {"units": "m", "width": 0.5, "height": 2.0, "depth": 0.4}
+    page = open_page(link("sine:amplitude=4,period=0.8", body=block))
+    page.locator("#tab-space").click()
+    section = page.locator("#view-space")
+    section.get_by_label("Drop a scan here, or").set_input_files(scan(tmp_path))
+    sent(section, "leaning-block.stl")
+    body = section.get_by_label("Body", exact=True)
+    expect(body.locator("option:checked")).to_have_text("leaning-block.stl")
+    body.select_option(label="the body of this project")
+    expect(section.get_by_label("Unit of the file")).to_have_count(0)
+    said = {"equilibria": "It can stand in", "cor": "What is left of its speed", "simulate": "impact"}
+    for what, verdict in said.items():
+        outcome = asked(page, what)
+        expect(outcome.get_by_test_id("verdict")).to_contain_text(verdict)
+        question = served.api("questions", method="GET")["questions"][0]
+        answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
+        assert answer["body"]["size_m"] == pytest.approx([0.5, 0.4, 2.0])
+        shot(page, f"space-own-{what}")
+    expect(page.get_by_test_id("project-saved")).to_have_text("saved")
+    other = open_page(view="space").locator("#view-space").get_by_label("Body", exact=True)
+    expect(other.locator("option")).to_have_text(["leaning-block.stl", "the body of this project"])
+    expect(other.locator("option:checked")).to_have_text("the body of this project")
 
 
 def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_path: Path) -> None:

@@ -171,7 +171,8 @@ def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool
     if not isinstance(body, (Block, Section)) or not any("depth" in each for each in (tables, *inner)):
         raise InvalidValueError(
             "a plane body has one horizontal motion, along x, and a vertical one, along z; a block or section whose "
-            "depth is given (--depth, or depth in its table) moves along y too, as a body in space"
+            "depth is given (--depth, or depth in its table) moves along y too, as a body in space, of which .glb "
+            "files are"
         )
     return Solid.from_section(body)
 

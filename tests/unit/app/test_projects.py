@@ -235,7 +235,10 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     content = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(wave)).encode()
     record = client.post("/api/records", params={"name": "a.txt", "units": "g"}, content=content, headers=OCTETS)
     sha = record.json()["record"]
-    document = {"inputs": {"motion": {"record": sha, "units": "g"}}}
+    sent = client.post("/api/files", params={"name": "vase.stl"}, content=b"solid vase", headers=OCTETS)
+    scan = sent.json()["record"]
+    forms = {"space": {"files": [{"name": "vase.stl", "sha": scan}]}}
+    document = {"inputs": {"motion": {"record": sha, "units": "g"}}, "forms": forms}
     project = client.post("/api/projects", json={"name": "Hall 3", "document": document}).json()
     job = {
         "campaign": {"name": "s", "kind": "histories"},
@@ -250,7 +253,7 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     data = client.get(f"/api/projects/{project['id']}/file").content
     again = client.get(f"/api/projects/{project['id']}/file").content
     assert data == again
-    assert ZipFile(BytesIO(data)).namelist() == ["project.json", f"{sha[:12]}-a.txt"]
+    assert ZipFile(BytesIO(data)).namelist() == ["project.json", f"{sha[:12]}-a.txt", f"{scan[:12]}-vase.stl"]
 
     elsewhere = type(settings)(folder=tmp_path / "elsewhere")
     elsewhere.folder.mkdir()
@@ -258,7 +261,7 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     state = app.state.rocking
     other = project_from_file(state, data)
     assert (other.name, state.projects.document(other.id)) == ("Hall 3", document)
-    assert state.records.content(sha) == content
+    assert (state.records.content(sha), state.files.content(scan)) == (content, b"solid vase")
     assert state.studies.of_project(other.id) == [("scaled", job)]
     assert project_file(state, other) == data
     twelve = ZipFile(BytesIO(data))
@@ -266,11 +269,12 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     whole["studies"] *= 12
     with ZipFile(many := BytesIO(), "w") as archive:
         archive.writestr("project.json", json.dumps(whole))
-        archive.writestr(twelve.namelist()[1], content)
+        for name in twelve.namelist()[1:]:
+            archive.writestr(name, twelve.read(name))
     brought = project_from_file(state, many.getvalue())
     assert len(state.studies.of_project(brought.id)) == 12 > state.settings.limits.studies_waiting
     monkeypatch.setattr("rocking.app.projects.one_file.MOST_FILES", 1)
-    with pytest.raises(TooLarge, match="1 records"):
+    with pytest.raises(TooLarge, match="2 records"):
         project_file(state, other)
     state.studies.close()
     state.projects.close()

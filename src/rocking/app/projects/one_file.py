@@ -1,11 +1,12 @@
-"""A project as one file: what it holds, the records that it names, and its studies as they were asked."""
+"""A project as one file: what it holds, the records and files that it names, and its studies as they were asked."""
 
 import io
 import json
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal
 from zipfile import ZipFile
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from rocking.app.api.records import record_facts
 from rocking.app.downloads.archive import Archive, add_file
@@ -45,27 +46,27 @@ class _ProjectFile(BaseModel):
     document: dict[str, Any]
     records: dict[str, str]
     studies: list[_Study]
+    files: dict[str, str] = Field(default_factory=dict)
 
 
 def project_file(state: "AppState", project: Project) -> bytes:
     """Return a project as an archive; the same bytes as long as nothing changes."""
     document = state.projects.document(project.id)
     studies = [{"name": name, "job": job} for name, job in state.studies.of_project(project.id)]
-    contents, names = dict[str, bytes](), dict[str, str]()
+    contents, records, files = dict[str, bytes](), dict[str, str](), dict[str, str]()
     for sha in _hashes([document, studies]):
-        try:
-            names[sha], contents[sha] = state.records.get(sha).file_name, state.records.content(sha)
-        except NotFound:
-            continue  # it was deleted, and the project says so where it is used
+        for store, names in ((state.records, records), (state.files, files)):
+            with suppress(NotFound):  # it was deleted, and the project says so where it is used
+                names[sha], contents[sha] = store.get(sha).file_name, store.content(sha)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:
         whole = {
-            "format": _FORMAT, "version": __version__, "name": project.name, "document": document, "records": names,
-            "studies": studies,
+            "format": _FORMAT, "version": __version__, "name": project.name, "document": document, "records": records,
+            "studies": studies, **({"files": files} if files else {}),
         }  # fmt: skip
         add_file(archive, _WHAT, json.dumps(whole, indent=1, ensure_ascii=False).encode())
         for sha, content in contents.items():
-            add_file(archive, f"{sha[:12]}-{record_file_name(names[sha])}", content)
+            add_file(archive, f"{sha[:12]}-{record_file_name({**files, **records}[sha])}", content)
     data, most = stream.getvalue(), state.settings.limits.project_bytes
     if len(data) > most or len(contents) >= MOST_FILES:
         raise TooLarge(
@@ -94,12 +95,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         raise TooLarge(f"a file may bring {MOST_STUDIES} studies, this has {len(whole.studies)}")
     for study in whole.studies:
         JobDocument.of(study.job)  # before anything is kept
-    for sha, name in whole.records.items():
-        content = archive.content(_entry(archive, sha), state.records.largest)
-        state.records.check_upload(content)
-        record_facts(content, name, {"format": None, "units": None, "time_step": None})
-        if state.records.add(content, name).record != sha:
-            raise RecordError(f"{record_file_name(name)} in the archive is not the file that was put into it")
+    _keep_files(state, archive, whole)
     project = state.projects.create(whole.name, whole.document, "from a file")
     try:
         for study in whole.studies:
@@ -108,6 +104,17 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         state.projects.delete(project.id)
         raise
     return project
+
+
+def _keep_files(state: "AppState", archive: Archive, whole: _ProjectFile) -> None:
+    for store, names in ((state.records, whole.records), (state.files, whole.files)):
+        for sha, name in names.items():
+            content = archive.content(_entry(archive, sha), store.largest)
+            store.check_upload(content)
+            if store is state.records:
+                record_facts(content, name, {"format": None, "units": None, "time_step": None})
+            if store.add(content, name).record != sha:
+                raise RecordError(f"{record_file_name(name)} in the archive is not the file that was put into it")
 
 
 def _entry(archive: Archive, sha: str) -> str:

@@ -7,6 +7,7 @@ import { copyTable } from "/app/copy.js";
 import { createBodyFacts } from "/app/facts.js";
 import { faults } from "/app/faults.js";
 import { FIRST, createInputs, decode, encode, kept } from "/app/inputs.js";
+import { createForms } from "/app/forms.js";
 import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { learnModels } from "/app/palette.js";
 import { whenBack } from "/app/offline.js";
@@ -41,7 +42,7 @@ const start = async () => {
 };
 
 const createApp = (inputs, info) => {
-  const app = { inputs: createInputs(inputs), info, language, superseded, copyTable, say, faults };
+  const app = { inputs: createInputs(inputs), forms: createForms(), info, language, superseded, copyTable, say, faults };
   const plainly = (ask) => (...given) => ask(...given).catch((error) => {
     if (error.kind) inPlainWords(error, app.inputs.get().body);
     throw error;
@@ -69,7 +70,7 @@ const createApp = (inputs, info) => {
 
 const inPlainWords = (error, body) => {
   error.field = fieldOf(error.message);
-  error.place = placeOf(error.message);
+  error.place = placeOf(error.message, body);
   error.message = plainWords(error.message, body);
 };
 

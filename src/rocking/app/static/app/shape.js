@@ -12,6 +12,10 @@ export const inputsOf = (document) => {
   return motion ? { ...inputs, motion: withoutNulls(motion) } : inputs;
 };
 
+/** What is typed in views, of a document from outside; what cannot be that is left out. */
+export const formsOf = (forms) => (!isTable(forms) ? {} : Object.fromEntries(Object.entries(forms).filter(([, form]) => isTable(form)
+  && maybe(isList((file) => isTable(file) && eachOf(file, ["name", "sha"], isText)))(form.files))));
+
 const isTable = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 const isText = (value) => typeof value === "string";

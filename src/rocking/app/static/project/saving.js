@@ -1,12 +1,13 @@
 /** The project that is open: saved by itself, with undo and redo, in agreement with other tabs. */
 
 import { signal } from "/parts/preact.js";
-import { inputsOf } from "/app/shape.js";
+import { formsOf, inputsOf } from "/app/shape.js";
 
 const OPEN = "rocking.project";
 const PAUSE = 400; // after the last change, before it is saved [ms]
 const WORDS = {
-  body: "body", motion: "motion", restitution: "restitution", response: "start", settings: "gravity",
+  body: "body", motion: "motion", restitution: "restitution", response: "start", settings: "gravity", decide: "Decide",
+  inventory: "Inventory", measure: "Measure", records: "Records", space: "In space", bed: "contact bed",
 };
 
 /** The keeper of the open project; `first` is what a new one holds. */
@@ -24,7 +25,8 @@ export const createProjects = (app, first) => {
   // What is lent from elsewhere is on the screen, and not in the project.
   const own = () => {
     const aside = app.inputs.aside();
-    return { inputs: aside?.mine ? aside.inputs : app.inputs.get() };
+    const forms = app.forms.get();
+    return { inputs: aside?.mine ? aside.inputs : app.inputs.get(), ...(Object.keys(forms).length ? { forms } : {}) };
   };
   const known = (facts) => {
     const { document, ...rest } = facts;
@@ -38,6 +40,7 @@ export const createProjects = (app, first) => {
   const show = (document) => {
     taking = true;
     app.inputs.take(inputsOf(document?.inputs) ?? first);
+    app.forms.take(document?.forms);
     taking = false;
     changed.clear();
     last = own();
@@ -120,8 +123,10 @@ export const createProjects = (app, first) => {
   };
   const open = (id) => change(() => app.call(`projects/${id}`));
 
-  app.inputs.subscribe((_, keys) => {
-    if (taking || !here.value || app.inputs.aside()?.mine) return;
+  app.inputs.subscribe((_, keys) => !app.inputs.aside()?.mine && touched(keys));
+  app.forms.subscribe((view) => touched([view]));
+  const touched = (keys) => {
+    if (taking || !here.value) return;
     // To ask again for what is shown changes nothing.
     if (!changed.size && same(own(), last)) return;
     for (const key of keys) changed.add(key);
@@ -130,7 +135,7 @@ export const createProjects = (app, first) => {
     saving.value = "saving";
     clearTimeout(timer);
     timer = setTimeout(save, PAUSE);
-  });
+  };
   channel?.addEventListener("message", async ({ data }) => {
     if (!here.value || data.id !== here.value.id || data.version <= here.value.version) return;
     if (changed.size) await save();
@@ -218,7 +223,7 @@ export const createProjects = (app, first) => {
 
 // The order of keys says nothing.
 const same = (one, other) => {
-  const [first, second] = [one, other].map((each) => JSON.stringify(inputsOf(each?.inputs)));
+  const [first, second] = [one, other].map((each) => JSON.stringify([inputsOf(each?.inputs), formsOf(each?.forms)]));
   return first === second;
 };
 

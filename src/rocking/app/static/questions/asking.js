@@ -61,14 +61,20 @@ export const createQuestions = (app, ...commands) => {
       if (shown.value?.id === id) shown.value = null;
       await look();
     }),
-    /** Send a file; resolves to its hash, the plain name that tables call it, and itself. */
+    /** Send a file; resolves to its hash, and the plain name that tables call it. */
     send: async (file) => {
       const kept = await app.call("files", { method: "POST", body: await file.arrayBuffer(), query: { name: file.name } });
-      return { name: apart(kept.file_name, kept.record), sha: kept.record, file };
+      atHand.set(kept.record, file);
+      return { name: apart(kept.file_name, kept.record), sha: kept.record };
     },
     take: (name) => app.download(`questions/${shown.value.id}/${name}`, undefined, name),
   };
 };
+
+const atHand = new Map();
+
+/** A file that this tab has sent, by its hash; undefined of any other. */
+export const fileAtHand = (sha) => atHand.get(sha);
 
 // Names that answers have.
 const TAKEN = /^(inventory|table|report|picture|space|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;

@@ -1,27 +1,12 @@
 /** What every view of a question is made of: what is asked, its progress, its files, and earlier ones. */
 
-import { html, signal, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
+import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
-import { changedAt, keep, stored } from "/app/inputs.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong } from "/parts/fields.js";
 
-/** The fields of a form that outlasts a reload; `form.at(...path)` is a signal of one of them. */
-export const useForm = (key, first) => {
-  const form = useRef(null);
-  if (!form.current) {
-    const all = signal({ ...first, ...stored(key) });
-    all.at = (...path) => ({
-      get value() { return path.reduce((tree, name) => tree?.[name], all.value) ?? ""; },
-      set value(next) {
-        all.value = changedAt(all.value, path, next);
-        keep(key, all.value);
-      },
-    });
-    form.current = all;
-  }
-  return form.current;
-};
+/** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them. */
+export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).current;
 
 /** The keys that were filled in, as a table has them; what is no number is left for the server to refuse. */
 export const filled = (texts, known) => Object.fromEntries(Object.entries(texts).filter(([, text]) => text.trim()).map(

@@ -8,6 +8,7 @@ import { Drawing } from "/questions/parts.js";
 import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 
+const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a question about a file that has no axes of its own
 const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
 const FEW = 12; // poses that are listed
 const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
@@ -63,7 +64,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
     </div>
     ${answer.rings.map((each) => html`<p key=${each.tilt_rad}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
       its axis ${number((each.tilt_rad * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.height_m)} mm high.</p>`)}
-    ${!question.name.endsWith(".toml") && html`<div class="toolbar"><${Button} onClick=${() => {
+    ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
     }}>Go on in pose ${shown}<//></div>`}

@@ -12,6 +12,8 @@ const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
   ["soft-ground", "20 synthetic motions, soft ground"],
 ];
+const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", what: "assess" };
+
 /** Build the view inside its section. */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "assess", "predict", "minimum");
@@ -20,15 +22,10 @@ export const mount = (section, app) => {
 };
 
 const Decide = ({ app, questions }) => {
-  const shaken = useSignal("");
-  const files = useSignal([]);
-  const units = useSignal("");
-  const margin = useSignal("1");
-  const [author, date, pga] = [useSignal(""), useSignal(""), useSignal("0.3")];
+  const form = useForm(app, "decide", FIRST);
+  const [shaken, files, units, margin, author, date, pga, what] = Object.keys(FIRST).map((name) => form.at(name));
+  const [range, unknown] = ["range", "unknown"].map((name) => ({ get value() { return form.at(name).value || {}; }, at: (key) => form.at(name, key) }));
   const wrong = useSignal("");
-  const what = useSignal("assess");
-  const range = useForm("rocking.crossings", {});
-  const unknown = useForm("rocking.unknown", {});
   const ask = (event) => {
     event.preventDefault();
     if (what.value === "minimum") {

@@ -19,7 +19,7 @@ const BED = { label: "contact bed", colour: "--accent", points: true };
 /** What is asked of the bed and what comes out of it; `body` has the slenderness and the width. */
 export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;
-  const form = useForm("rocking.bed", {});
+  const form = useForm(app, "bed", {});
   const varied = useSignal("slenderness");
   const [found, refused, busy] = [null, {}, false].map(useSignal);
   const compute = async (event) => {

@@ -2,11 +2,12 @@
 
 import { html, render, useEffect, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
-import { createQuestions } from "/questions/asking.js";
+import { createQuestions, fileAtHand } from "/questions/asking.js";
 import { Choice, Field, KeyField } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileDrop, QuestionView, filled, useForm } from "/questions/parts.js";
 
+const FIRST = { files: [], kind: "pga", level: "0.3", family: "firm-ground", count: "200" };
 const LIGHTS = { red: "bad", amber: "fair", green: "good" };
 
 /** Build the view inside its section. */
@@ -17,14 +18,13 @@ export const mount = (section, app) => {
 };
 
 const Inventory = ({ app, questions }) => {
-  const files = useSignal([]);
-  const [kind, level, family, count] = ["pga", "0.3", "firm-ground", "200"].map(useSignal);
-  const form = useForm("rocking.list", {});
+  const form = useForm(app, "inventory", FIRST);
+  const [files, kind, level, family, count] = Object.keys(FIRST).map((name) => form.at(name));
   const wrong = useSignal("");
   const text = useSignal(null); // the lines of the list, and the question that was asked of them
   const fixed = useSignal({}); // lines that were corrected, by their number
   const corrected = async (list) => {
-    if (text.value?.of !== list || !Object.keys(fixed.value).length) return list;
+    if (text.value?.of.sha !== list.sha || !Object.keys(fixed.value).length) return list;
     const lines = text.value.lines.map((line, k) => fixed.value[k + 1] ?? line);
     const sent = await questions.send(new File([lines.join("\n")], list.name));
     form.at("encoding").value = "";
@@ -40,12 +40,12 @@ const Inventory = ({ app, questions }) => {
     if (wrong.value) return;
     const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
     if (!list) return;
-    if (list !== files.value[0]) files.value = [list];
+    if (list.sha !== files.value[0].sha) files.value = [list];
     fixed.value = {};
     const shaking = { [kind.value]: kind.value === "pga" ? `${strength}g` : `${strength}cm/s` };
     const tables = {
       campaign: { name: list.name, kind: "inventory" },
-      inventory: { ...filled(form.value, app.info.keys.inventory), objects: list.name, ...shaking },
+      inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
     await questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
@@ -53,7 +53,7 @@ const Inventory = ({ app, questions }) => {
   };
   const answer = questions.shown.value?.id === text.value?.id ? questions.shown.value?.answer : null;
   useEffect(() => {
-    if (answer) linesOf(text.value.of.file, answer.inventory).then((lines) => (text.value = { ...text.value, lines }));
+    if (answer) linesOf(text.value.of, answer.inventory).then((lines) => (text.value = { ...text.value, lines }));
   }, [text.value?.id, Boolean(answer)]);
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Ranking}
@@ -68,21 +68,24 @@ const Inventory = ({ app, questions }) => {
         ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
         ["pulse-like", "near a fault, pulse-like"]]} />
       <${Field} label="How many motions" name="count" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
-      <details><summary>How the list is read</summary>${["columns", "encoding"].map((name) => html`
+      <details><summary>How the list is read</summary>${READ.map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.inventory[name]} value=${form.at(name)} />`)}</details>
-      <${Corrections} answer=${answer} text=${text.value?.of === files.value[0] ? text.value : null} fixed=${fixed} />
+      <${Corrections} answer=${answer} text=${text.value?.of.sha === files.value[0]?.sha ? text.value : null} fixed=${fixed} />
     <//>`;
 };
+
+const READ = ["columns", "encoding"];
+const listed = (typed) => Object.fromEntries(READ.map((name) => [name, typed[name] ?? ""]));
 
 const MOST = 20; // rows that are corrected at a time
 
 // Lines of a list that is text, in the encoding that the answer tells; null of a workbook, corrected where it was made.
-const linesOf = async (file, source) => {
-  if (/\.(xlsx|ods)$/i.test(file.name)) return null;
+const linesOf = async ({ name, sha }, source) => {
+  if (/\.(xlsx|ods)$/i.test(name)) return null;
   const told = / \(([\w-]+)\)$/.exec(source)?.[1] ?? "utf-8";
   try {
     const reader = new TextDecoder(NAMES[told] ?? told, { fatal: true });
-    return reader.decode(await file.arrayBuffer()).split(/\r\n|\r|\n/);
+    return reader.decode(await fileAtHand(sha).arrayBuffer()).split(/\r\n|\r|\n/);
   } catch {
     return null;
   }

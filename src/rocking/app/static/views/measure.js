@@ -5,13 +5,15 @@ import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, Field, Note } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
-import { Drawing, FileDrop, QuestionView } from "/questions/parts.js";
+import { Drawing, FileDrop, QuestionView, useForm } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
 
 const KINDS = [
   ["", "what the file says"], ["times", "times of the impacts"], ["rotation", "rotation"], ["displacement", "displacement"],
   ["angular velocity", "angular velocity"], ["acceleration", "acceleration"],
 ];
+
+const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "identify" };
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
@@ -21,10 +23,9 @@ export const mount = (section, app) => {
 };
 
 const Measure = ({ app, questions }) => {
-  const files = useSignal([]);
-  const [kind, column, unit, known] = ["", "", "", "yes"].map(useSignal);
+  const form = useForm(app, "measure", FIRST);
+  const [files, kind, column, unit, known, what] = Object.keys(FIRST).map((name) => form.at(name));
   const wrong = useSignal("");
-  const what = useSignal("identify");
   const recording = useSignal(null);
   const listen = async () => {
     if (recording.value) {

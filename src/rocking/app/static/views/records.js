@@ -21,7 +21,7 @@ export const mount = (section, app) => {
 };
 
 const Records = ({ app, questions }) => {
-  const form = useForm(`rocking.records.${app.project.here.value.id}`, FIRST);
+  const form = useForm(app, "records", FIRST);
   const wrong = useSignal("");
   const { files, curve, steps } = form.value;
   const records = files.filter((one) => !isStations(one));

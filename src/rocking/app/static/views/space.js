@@ -4,7 +4,7 @@ import { html, render, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
 import { Button, Choice, Field } from "/parts/fields.js";
-import { Drawing, FileDrop, QuestionView, recordEndings } from "/questions/parts.js";
+import { Drawing, FileDrop, QuestionView, recordEndings, useForm } from "/questions/parts.js";
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
 import { Standing } from "/space/standing.js";
@@ -20,6 +20,17 @@ const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
 const LAWS = [["ked-3d", "kinetic energy distribution (ked-3d)"], ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"]];
 
+const OWN = "project"; // chosen in place of a scan
+const FIRST = {
+  files: [], chosen: "", asked: "equilibria", units: "", up: "", repair: "", surface: "", density: "", pose: null,
+  shaken: "x", friction: "0.4", law: "ked-3d", coefficient: "0.8", times: "1", recordUnits: "", along_x: [], along_y: [], along_z: [],
+};
+const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "density"];
+const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
+
+/** The scan that is asked about: the chosen one, or the last; none where the body of the project is. */
+const scanOf = ({ files, chosen }) => (chosen === OWN ? undefined : files.find(({ sha }) => sha === chosen) ?? files.at(-1));
+
 /** Build the view inside its section. */
 export const mount = (section, app) => {
   const questions = createQuestions(app, ...Object.keys(TITLES));
@@ -28,16 +39,25 @@ export const mount = (section, app) => {
 };
 
 const Space = ({ app, questions }) => {
-  const files = useSignal([]);
-  const [asked, units, up, repair, surface, density] = ["equilibria", "", "", "", "", ""].map(useSignal);
-  const [shaken, friction, law, coefficient, times] = ["x", "0.4", "ked-3d", "0.8", "1"].map(useSignal);
-  const records = { x: useSignal([]), y: useSignal([]), z: useSignal([]) };
-  const recordUnits = useSignal("");
-  const pose = useSignal(null); // {number, up}: which way up it shall stand, in the axes of the file
+  const form = useForm(app, "space", FIRST);
+  const [files, chosen, asked, units, up, repair, surface, density] = BODY.map((name) => form.at(name));
+  const [shaken, friction, law, coefficient, times, recordUnits] = MOVES.map((name) => form.at(name));
+  const records = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, form.at(`along_${axis}`)]));
+  const pose = form.at("pose"); // {number, up}: which way up it shall stand, in the axes of the file
   const wrong = useSignal("");
+  const scan = scanOf(form.value);
+  const scans = {
+    get value() { return files.value; },
+    set value(next) {
+      const added = next.filter(({ sha }) => files.value.every((one) => one.sha !== sha));
+      files.value = next;
+      if (added.length) chosen.value = added.at(-1).sha;
+    },
+  };
   const ask = (event) => {
     event.preventDefault();
-    const body = bodyOf(files.value[0], {
+    const inputs = app.inputs.get();
+    const body = chosen.value === OWN ? { table: inputs.body, missing: app.faults.sentence({ inputs: true }) } : bodyOf(scan, {
       units: units.value, up: pose.value?.up ?? AXES[up.value] ?? up.value, repair: repair.value, surface: surface.value,
       density: density.value.trim(),
     });
@@ -48,12 +68,14 @@ const Space = ({ app, questions }) => {
     wrong.value = body.missing || (!(held > 0) && { key: "friction", words: "The friction is a number above 0." })
       || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "The coefficient is a number from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
-    const [scan] = files.value;
+    const name = scan?.name ?? (inputs.body.name || app.project.here.value.name);
     const tables = {
       body: body.table, response: { friction: held }, ...motion.tables,
       ...(moves ? { restitution: law.value ? { model: law.value } : { value: kept } } : {}),
+      ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
-    questions.ask(tables, { [scan.name]: scan.sha, ...motion.files }, `${TITLES[asked.value]}: ${scan.name}`, { command: asked.value });
+    const sent = scan ? { [scan.name]: scan.sha } : {};
+    questions.ask(tables, { ...sent, ...motion.files }, `${TITLES[asked.value]}: ${name}`, { command: asked.value });
   };
   const goOn = (number_, direction) => {
     pose.value = { number: number_, up: direction };
@@ -64,8 +86,11 @@ const Space = ({ app, questions }) => {
       answer=${({ answer, question }) => html`<${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`}
       title="What does a scan do?"
       lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
-      <${FileDrop} label="Drop a scan here, or" accept=${SCANS} files=${files} questions=${questions} app=${app}
+      <${FileDrop} label="Drop a scan here, or" many accept=${SCANS} files=${scans} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
+      <${Choice} label="Body" value=${chosen} chosen=${scan?.sha ?? chosen.value} options=${[
+        ...(files.value.length ? files.value.map(({ name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
+      ${chosen.value === OWN ? html`<p class="field-help">A block or a section, over its depth.</p>` : html`
       <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
       ${pose.value ? html`<p class="space-pose">Stands in pose ${pose.value.number} of the last answer.
           <${Button} kind="quiet" onClick=${() => (pose.value = null)}>As in the file<//></p>`
@@ -74,7 +99,7 @@ const Space = ({ app, questions }) => {
       <details><summary>What may be mended</summary>
         <${Choice} label="Mend" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and 0.5 % of the size for the centre." />
         <${Choice} label="Surface" value=${surface} options=${SURFACES} />
-      </details>
+      </details>`}
       <${Choice} label="Asked is" value=${asked} options=${ASKED} />
       ${asked.value === "simulate" && html`
         <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
@@ -119,7 +144,7 @@ const shakenBy = (app, shaken, records, units, times) => {
 };
 
 const Answer = ({ answer, question, onPose }) => {
-  const scan = html`<${Scan} body=${answer.body} repairs=${answer.repairs} />`;
+  const scan = html`<${Taken} body=${answer.body} repairs=${answer.repairs} own=${!/^file = /m.test(question.toml)} />`;
   if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
   if (question.command === "cor") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
   return html`
@@ -131,8 +156,8 @@ const Answer = ({ answer, question, onPose }) => {
     ${scan}`;
 };
 
-const Scan = ({ body, repairs }) => html`
-  <h3>The scan, as it was taken</h3>
+const Taken = ({ body, repairs, own }) => html`
+  <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
   <p>${body.size_m.map((each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(body.mass_kg, 4)} kg,
     centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.</p>
   <ul class="space-repairs" aria-label="What was mended">

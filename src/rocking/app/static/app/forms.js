@@ -1,0 +1,46 @@
+/** What is typed in the views of questions: it belongs to the project, as the inputs do. */
+
+import { signal } from "/parts/preact.js";
+import { changedAt, keep, stored } from "/app/inputs.js";
+import { formsOf } from "/app/shape.js";
+
+const KEPT = "rocking.forms";
+
+/** The store of the forms, by view: get, take, subscribe, and one of them. */
+export const createForms = () => {
+  const all = signal(formsOf(stored(KEPT)));
+  const watchers = new Set();
+  const become = (next) => {
+    all.value = next;
+    keep(KEPT, next);
+  };
+  return {
+    get: () => all.peek(),
+    /** Show what a project holds. */
+    take: (forms) => become(formsOf(forms)),
+    subscribe: (watcher) => watchers.add(watcher),
+    /** The form of a view; `first` is what it holds before anything was typed, `at(...path)` is a signal of one field. */
+    of: (view, first) => {
+      const form = () => {
+        const typed = Object.entries(all.value[view] ?? {}).filter(([name, value]) => alike(value, first[name]));
+        return { ...first, ...Object.fromEntries(typed) };
+      };
+      return {
+        get value() { return form(); },
+        at: (...path) => ({
+          get value() { return path.reduce((tree, name) => tree?.[name], form()) ?? ""; },
+          set value(next) {
+            const changed = changedAt(all.peek(), [view, ...path], next);
+            if (JSON.stringify(changed) === JSON.stringify(all.peek())) return;
+            become(changed);
+            watchers.forEach((watcher) => watcher(view));
+          },
+        }),
+      };
+    },
+  };
+};
+
+// A file from elsewhere may hold anything: what is of another kind was not typed here.
+const alike = (value, first) => first === undefined || first === null
+  || (typeof value === typeof first && Array.isArray(value) === Array.isArray(first));
