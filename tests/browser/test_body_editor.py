@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from browser_pages import number, settled
+from browser_pages import link, number, settled
 from playwright.sync_api import expect
 
 BOARD = ".board"
@@ -274,6 +274,23 @@ def test_an_error_stands_at_its_place(page: Any, shot: Callable[..., Any]) -> No
     page.get_by_label("Right foot").fill("0.4")
     mark.locator("circle").wait_for(state="attached")
     assert middle(mark.locator("circle")) == pytest.approx(pixel(page, -3.0, 0.0), abs=0.5)
+
+
+def test_feet_stand_on_the_ground_wherever_that_is(open_page: Callable[..., Any]) -> None:
+    """Of a section on a ground of y = 1 its feet are marked there, and so is one that is off the base."""
+    section = {"ground": 1.0, "region": [{"outline": [[0, 1], [2, 1], [2, 4], [0, 4]], "density": 2400}]}
+    fragment = link(body={"units": "m", "section": section}).replace("view=response", "view=body")
+    page = open_page(fragment)
+    marks = page.locator(".board-facts path.accent-fill")
+    expect(marks).to_have_count(2)
+    for k, x in enumerate((0.0, 2.0)):
+        box = marks.nth(k).bounding_box()
+        assert (box["x"] + box["width"] / 2, box["y"]) == pytest.approx(pixel(page, x, 1.0), abs=1.0)
+    page.get_by_label("Left foot").fill("-3")
+    page.get_by_label("Right foot").fill("0.4")
+    mark = page.get_by_test_id("board-refusal").locator("circle")
+    mark.wait_for(state="attached")
+    assert middle(mark) == pytest.approx(pixel(page, -3.0, 1.0), abs=0.5)
 
 
 def test_dimensions_are_typed(page: Any) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 
 from rocking.bodies.equilibria import Equilibria, StablePose
 from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
-from rocking.bodies.solid.surfaces import TriangleSurface
+from rocking.bodies.solid.polyhedron import Polyhedron
+from rocking.bodies.solid.surfaces import TriangleSurface, placed_points
 from rocking.conventions import FloatArray
 from rocking.dynamics.hull.response import HullResponse
 from rocking.plots.animation_hull import HullScene
@@ -44,6 +45,8 @@ class GltfFile:
         self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(place[2])]})
         corners = _corners(solid) - place
         self.extras: dict[str, Any] = {"height": float(place[2]), "base": corners.tolist()}
+        if len(mended := _mended(solid)):
+            self.extras["mended"] = self._add((mended - place).reshape(-1, 3).astype(np.float32))
 
     def stands(self, found: Equilibria, pose: StablePose) -> None:
         """Add the poses, what lies between them, and how high its centre is where each point of it is the lowest."""
@@ -135,6 +138,14 @@ def _triangles(solid: Solid) -> FloatArray:
             cells = surface.split(cells)
         pieces.append(cells)
     return np.concatenate(pieces)
+
+
+def _mended(solid: Solid) -> FloatArray:
+    """Return the triangles that closed holes, in place."""
+    return np.concatenate([
+        placed_points(part.shape.mended, part.rotation, part.translation)
+        for part in solid.local_parts if isinstance(part.shape, Polyhedron)
+    ] or [np.empty((0, 3, 3))])  # fmt: skip
 
 
 def _corners(solid: Solid) -> FloatArray:

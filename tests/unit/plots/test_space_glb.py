@@ -65,6 +65,32 @@ def test_another_program_reads_the_same_body(solid, tmp_path):
     assert abs(wrong.centre[2] - wrong.ground - height) > 0.1
 
 
+@pytest.mark.parametrize("up", ["z", (-1.0, 0.0, 0.0)])
+def test_faces_that_close_holes_are_told(tmp_path, up):
+    """Of a block without half of its top, and of one without its bottom: area and plane of what was closed; of a whole
+    one nothing."""
+    box = trimesh.creation.box((0.4, 0.3, 1.2))
+    for gone, count, height in (
+        (box.face_normals[:, 2] > 0.9, 1, 0.6),
+        (box.face_normals[:, 2] < -0.9, 2, -0.6),
+        ([], 0, 0),
+    ):
+        faces = np.delete(box.faces, np.flatnonzero(gone)[:count], axis=0)
+        path = tmp_path / f"scan-{count}.stl"
+        trimesh.Trimesh(box.vertices, faces, process=False).export(path)
+        solid = rk.read_body(path, units="m", up=up, repair="all")
+        GltfFile(solid).write(tmp_path / "scan.glb")
+        _, extras, array = opened(tmp_path / "scan.glb")
+        assert ("mended" in extras) == (count > 0)
+        if count == 0:
+            continue
+        mended = array(extras["mended"]).reshape(-1, 3, 3)
+        arms = np.cross(mended[:, 1] - mended[:, 0], mended[:, 2] - mended[:, 0])
+        assert 0.5 * np.linalg.norm(arms, axis=1).sum() == pytest.approx(0.06 * count, rel=1e-6)
+        where = mended @ solid.turn[:, 2]  # the axis of the file, in that of the body
+        assert where == pytest.approx(np.full_like(where, height), abs=1e-6)
+
+
 def test_the_file_stands_again_in_each_pose(solid, scan, tmp_path):
     """Read with the direction that a pose names as up, it stands as high as that pose; turns set down."""
     found = solid.equilibria()
@@ -131,5 +157,5 @@ def test_plane_bodies_are_refused(tmp_path, capsys):
         with pytest.raises(SystemExit) as ended:
             main([*words, "--out", target])
         assert ended.value.code == 2
-        assert ".glb is of a body in space" in capsys.readouterr().err
+        assert "a body in space, of which .glb files are" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -36,6 +36,7 @@ class Changes:
     allowed: Repair = "safe"
     place: Callable[[FloatArray], str] = in_words  # a place from the middle of the box [m], in the user's words
     made: list[tuple[str, float, FloatArray | None]] = field(default_factory=list)  # sentence, volume [m3], where [m]
+    mended: list[FloatArray] = field(default_factory=list)  # faces that closed holes, (m, 3, 3) each [m]
 
     def __post_init__(self) -> None:
         if self.allowed not in REPAIRS:

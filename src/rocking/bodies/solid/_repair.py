@@ -75,6 +75,7 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         if _is_bottom(points, faces, ring):
             points, level = _levelled(points, ring, changes)
             added.append(level)
+            changes.mended.append(points[level])
             continue
         patch = _patch(points[ring], _normal(points[ring]))
         added.append(ring[patch])
@@ -85,6 +86,7 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         # as much as a dome of half the width over the hole would hold
         bound, where = bound + area * width / 3.0, where + area * width / 3.0 * points[ring].mean(axis=0)
         patches.append(ring)
+        changes.mended.append(points[ring[patch]])
     if slits:
         changes.say(f"closed {slits} slit(s) without area, where vertices lay within the edges of other faces")
     if patches:
@@ -225,7 +227,7 @@ def repaired(
         points, faces = hollowed(
             points, faces, checks.within("wall", wall, 0.0, 0.5 * size, unit="m", open_low=True), changes
         )
-    shape = Polyhedron(*_used(points, faces), simple=True)
+    shape = Polyhedron(*_used(points, faces), simple=True, mended=changes.mended)
     _check_hull(shape)
     return Repaired(shape, middle, changes.sentences(shape.moments(), float(np.ptp(shape.vertices, axis=0).max())))
 

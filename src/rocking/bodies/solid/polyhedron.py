@@ -1,5 +1,6 @@
 """A closed surface of triangles, and what encloses a volume with it."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -19,14 +20,17 @@ class Polyhedron(Shape):
     """The volume inside a closed surface of triangles.
 
     Faces name the corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look
-    inward. A `simple` surface is known not to pass through itself, and is not tried for it.
+    inward. A `simple` surface is known not to pass through itself, and is not tried for it; `mended` are the triangles
+    by which holes of a scan were closed.
 
     >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     >>> round(Polyhedron(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]).moments().mass, 12)
     0.166666666667
     """
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, simple: bool = False) -> None:
+    def __init__(
+        self, vertices: ArrayLike, faces: ArrayLike, *, simple: bool = False, mended: Sequence[FloatArray] = ()
+    ) -> None:
         self.vertices = _vertices(vertices)
         self.faces = _faces(faces, len(self.vertices))
         if count := len(open_edges(self.faces)):
@@ -34,6 +38,7 @@ class Polyhedron(Shape):
                 f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
                 "are there holes, flipped faces, or vertices that were not merged?"
             )
+        self.mended: FloatArray = np.concatenate([np.empty((0, 3, 3)), *mended])
         if not simple:
             check_crossings(self.corners)
         self._check_volume()
@@ -86,10 +91,12 @@ class Polyhedron(Shape):
         return inside(points, self.corners)
 
     def scaled(self, size: float) -> "Polyhedron":
-        return Polyhedron(self.vertices * checks.positive("size", size), self.faces, simple=True)
+        vertices = self.vertices * checks.positive("size", size)
+        return Polyhedron(vertices, self.faces, simple=True, mended=[self.mended * size])
 
     def mirrored(self) -> "Polyhedron":
-        return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1], simple=True)
+        mirror = np.array([-1.0, 1.0, 1.0])
+        return Polyhedron(self.vertices * mirror, self.faces[:, ::-1], simple=True, mended=[self.mended * mirror])
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
         """Return tetrahedra between the faces and the centre, if the whole surface is seen from there."""

@@ -21,12 +21,12 @@ export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z_]+
   ?? (/ foot must lie /.test(message) ? "feet" : / centre of mass .*must lie /.test(message) ? "centre" : null);
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index. */
-export const placeOf = (message) => {
+export const placeOf = (message, body) => {
   if (!message.startsWith("body")) return null;
   const found = (pattern) => message.match(pattern)?.slice(1).map(Number);
   const [x, y] = found(/ x = (\S+) m, y = (\S+?) m\b/) ?? [
     found(/ foot must lie on the base, .*, got (\S+)$/)?.[0],
-    found(/ lowest point is y = (\S+) m/)?.[0] ?? (/ foot must lie on the base/.test(message) ? 0 : undefined),
+    found(/ lowest point is y = (\S+) m/)?.[0] ?? (/ foot must lie on the base/.test(message) ? METRES[body?.units] * (body?.section?.ground ?? 0) : undefined),
   ];
   const regions = found(/\bregions (\d+) and (\d+)\b/) ?? found(/section\.region\[(\d+)\]/) ?? [];
   const hole = found(/ hole (\d+)\b/)?.[0];

@@ -27,7 +27,7 @@ export const bodyPicture = (body, { width = 208, height = 360, plain = false } =
 };
 
 /** The height on which the feet stand [m]. */
-export const groundOf = (body) => body.base?.ground ?? 0;
+export const groundOf = (body) => body.ground ?? 0;
 
 const everything = (body) => [
   ...pointsOf(body.outline), ...(body.points ?? []), body.centre_m, ...body.feet_m.map(

@@ -15,10 +15,10 @@ export const readGlb = (buffer) => {
   };
   const [{ attributes, indices }] = told.meshes[0].primitives;
   const [turns, places] = told.animations?.[0].samplers ?? [];
-  const { tilt, hull, ...extras } = told.extras.rocking;
+  const { tilt, hull, mended, ...extras } = told.extras.rocking;
   return {
     ...extras,
-    points: array(attributes.POSITION), faces: array(indices), colours: array(attributes.COLOR_0), hull: array(hull),
+    points: array(attributes.POSITION), faces: array(indices), colours: array(attributes.COLOR_0), hull: array(hull), mended: array(mended),
     motion: turns ? {
       time: array(turns.input), turn: array(turns.output), place: array(places.output), tilt: array(tilt),
     } : null,

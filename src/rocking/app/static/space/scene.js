@@ -78,6 +78,7 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
           onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times))}>${name}<//>`)}
       </div>
       <ul class="space-legend" aria-label="What is marked">
+        ${stage.value?.model.mended && html`<li><span class="space-key mended" aria-hidden="true"></span>closed by the repair</li>`}
         ${legend.map(([kind, text]) => html`<li key=${kind}><span class=${`space-key ${kind}`} aria-hidden="true"></span>${text}</li>`)}
       </ul>
     </div>

@@ -39,6 +39,7 @@ export class Stage {
     this.size = skin.boundingSphere.center.length() + skin.boundingSphere.radius;
     this.skin = this.painted(new three.MeshLambertMaterial({ flatShading: true, side: three.DoubleSide }), "--space-body");
     body.add(new three.Mesh(skin, this.skin));
+    if (model.mended) this.patch(model.mended);
     this.frame();
     this.lay();
     const sun = new three.DirectionalLight(0xffffff, 2.2);
@@ -51,6 +52,15 @@ export class Stage {
     this.dots([[0, 0, 0]], "dot", "--space-plumb");
     this.touching = ["--space-holds", "--space-slides"].map((paint) => this.contacts(paint));
     this.place(null, [0, 0, model.height]);
+  }
+
+  /** Faces that closed holes: a colour of their own, and their edges. */
+  patch(corners) {
+    const { three, body } = this;
+    const faces = new three.BufferGeometry().setAttribute("position", new three.BufferAttribute(corners, 3));
+    const nearer = { side: three.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 };
+    body.add(new three.Mesh(faces, this.painted(new three.MeshBasicMaterial(nearer), "--space-mended")));
+    body.add(new three.LineSegments(new three.WireframeGeometry(faces), this.painted(new three.LineBasicMaterial(), "--surface")));
   }
 
   /** Where the picture looks: the middle of all places of the centre, and how far it must see. */

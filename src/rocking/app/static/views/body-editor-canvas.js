@@ -3,6 +3,7 @@
 import { el, fill, svg } from "/app/dom.js";
 import { number, tidy } from "/app/format.js";
 import * as model from "/views/body-editor-model.js";
+import { groundOf } from "/drawing/body-picture.js";
 import { pathOf, regionPaths } from "/drawing/outline.js";
 import { centreMark, footMark, words } from "/drawing/symbols.js";
 import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/viewport.js";
@@ -239,7 +240,7 @@ const statics = (editor, view) => {
   if (!facts) return null;
   const metres = editor.metres();
   return svg("g", { class: "board-facts", "aria-hidden": "true" },
-    facts.feet_m.map((foot) => footMark(view.x(foot / metres), view.y(0))),
+    facts.feet_m.map((foot) => footMark(view.x(foot / metres), view.y(groundOf(facts) / metres))),
     centreMark(view.x(facts.centre_m[0] / metres), view.y(facts.centre_m[1] / metres)));
 };
 
