@@ -40,10 +40,10 @@ export const createQuestions = (app, ...commands) => {
       await look();
       if (!shown.value && all.value.length) await follow(all.value[0].id);
     }),
-    ask: safely(async (tables, files, name, { command = commands[0], format = "" } = {}) => {
+    ask: safely(async (tables, files, name, { command = commands[0], format = "", project = here() } = {}) => {
       await app.project.save();
       shown.value = null;
-      const json = { command, tables, files, name, format, project: here() };
+      const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
       shown.value = { ...question, answer: null };
       await follow(question.id);

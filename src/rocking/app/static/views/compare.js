@@ -50,7 +50,14 @@ const createMargins = (app) => {
   const keyOf = ({ body, motion, settings }) => JSON.stringify([body, motion, settings]);
   const [now, of] = [signal(keyOf(app.inputs.get())), signal("")];
   app.inputs.subscribe((inputs) => (now.value = keyOf(inputs)));
-  const question = computed(() => (now.value === of.value ? questions.shown.value : null));
+  const ended = signal(null);
+  // It is no question of Decide: what was found is kept here, and it is gone from the server.
+  questions.shown.subscribe((asked) => {
+    if (!["done", "refused", "stopped"].includes(asked?.state)) return;
+    ended.value = asked;
+    questions.remove(asked.id);
+  });
+  const question = computed(() => (now.value === of.value ? questions.shown.value ?? ended.value : null));
   return {
     questions,
     question,
@@ -58,9 +65,9 @@ const createMargins = (app) => {
     ask: () => {
       const inputs = app.inputs.get();
       const { tables, files } = motionOf(inputs);
-      of.value = keyOf(inputs);
+      [of.value, ended.value] = [keyOf(inputs), null];
       const name = `Margins of ${inputs.body.name || app.project.here.value.name}`;
-      return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name);
+      return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name, { project: "" });
     },
   };
 };
@@ -176,5 +183,5 @@ const Margins = ({ app, margins }) => {
         : html`<${Button} disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins<//>`}
     </div>
     ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
-    <p class="field-help">Margin: the least factor on this motion that overturns the body, of either way round; Decide keeps the whole answer.</p>`;
+    <p class="field-help">Margin: the least factor on this motion that overturns the body, of either way round; Decide tells more.</p>`;
 };
