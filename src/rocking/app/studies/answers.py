@@ -157,18 +157,25 @@ ColumnAnswer: Any = shape(
 Share: Any = shape(
     "Share", "How many histories end in one way.", mode=(int, _MODE), meaning=str, count=int, share=(float, "[-]")
 )
+Packed: Any = shape(
+    "Packed",
+    "Many numbers as bytes: by restitution, then rows along y, the last dimension the quickest.",
+    kind=Literal["uint8", "int8", "uint16", "int16", "int32", "float32"],
+    shape=tuple[int, int, int],
+    base64=(str, "little-endian; NaN where a number was not computed"),
+)
 MapResult: Any = shape(
     "MapResult",
-    "An overturning map.",
+    "An overturning map; its tables are packed from 100,000 values on, in single precision.",
     Result,
     kind=Literal["overturning-map"],
     x=Coordinate,
     y=Coordinate,
-    outcome=(Counts, _OUTCOME),
-    mode=(Counts, _MODE),
+    outcome=(Counts | Packed, _OUTCOME),
+    mode=(Counts | Packed, _MODE),
     mode_words=dict[str, str],
-    peak=(list[list[list[Number]]], f"{_PEAK} [-]; null if it was not computed"),
-    impacts=Counts,
+    peak=(list[list[list[Number]]] | Packed, f"{_PEAK} [-]; null if it was not computed"),
+    impacts=Counts | Packed,
     shares=list[list[Share]],
     contours=(list[list[list[tuple[float, float]]]], "lines x, y around what overturns, in units"),
     body=str,

@@ -1,5 +1,6 @@
 """What the browser is told of a finished study, by its kind."""
 
+import base64
 import math
 import warnings
 from collections.abc import Callable
@@ -22,6 +23,8 @@ MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "
 
 NAME = f"result-{__version__}.json"  # another version may tell other things
 _LARGEST = 20_000
+_PACKED = 100_000  # values from which on a table of a map is told as bytes
+_WHOLE = ("uint8", "int8", "uint16", "int16", "int32")
 _FINE = 120
 _WIDE = 0.01
 
@@ -38,6 +41,22 @@ def plain(value: Any) -> Any:
                 return value.tolist()
             return np.where(np.isfinite(value), value, np.array(None, dtype=object)).tolist()
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def packed(values: np.ndarray) -> Any:
+    """Return a large array as bytes in base64, in the smallest kind of whole number or single precision; others plain.
+
+    >>> packed(np.array([[2, 300]]))
+    [[2, 300]]
+    """
+    if values.size < _PACKED:
+        return plain(values)
+    kind = "float32"
+    if values.dtype.kind != "f":
+        ends = np.array([values.min(), values.max()])
+        kind = next(each for each in _WHOLE if (ends == ends.astype(each)).all())
+    data = base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+    return {"kind": kind, "shape": values.shape, "base64": data}
 
 
 def meaning(mode: int) -> str:
@@ -158,11 +177,11 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
     modes, about = by_restitution(study, "mode"), study.job.study.attributes
     return {
         **axes,
-        "outcome": by_restitution(study, "outcome"),
-        "mode": modes,
+        "outcome": packed(by_restitution(study, "outcome")),
+        "mode": packed(modes),
         "mode_words": {mode: meaning(mode) for mode in np.unique(modes).tolist()},
-        "peak": by_restitution(study, "peak_ratio"),
-        "impacts": by_restitution(study, "impacts"),
+        "peak": packed(by_restitution(study, "peak_ratio")),
+        "impacts": packed(by_restitution(study, "impacts")),
         "shares": [shares(each) for each in modes],
         "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),

@@ -1,5 +1,6 @@
 """What finished studies tell of their results, against the Python calls of the same."""
 
+import base64
 import json
 import re
 
@@ -10,8 +11,9 @@ import rocking as rk
 from rocking.app.answers import JsonAnswer
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.app.studies.answers import MapResult
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.results import contours_of, plain, result_of
+from rocking.app.studies.results import contours_of, packed, plain, result_of
 from rocking.app.work import Remembered
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
 from rocking.studies.fragility import multiple_stripe_analysis
@@ -48,6 +50,32 @@ def test_a_map_is_the_map_of_python(result):
             assert answer[key][place] == plain(expected[name].values)
         assert sum(each["count"] for each in answer["shares"][place]) == 64
     assert answer["mode"][0] != answer["mode"][1]
+
+
+def unpacked(table):
+    """Return the numbers of a packed table."""
+    values = np.frombuffer(base64.b64decode(table["base64"]), np.dtype(table["kind"]).newbyteorder("<"))
+    return values.reshape(table["shape"])
+
+
+def test_large_maps_come_as_bytes(result, monkeypatch):
+    """The same numbers, peaks in single precision, in fewer letters; what is small is told as it was."""
+    plainly = result(count=8)
+    monkeypatch.setattr("rocking.app.studies.results._PACKED", 100)
+    answer = result(count=8)
+    whole = {"id": "", "name": "", "kind": "overturning-map", **answer}
+    MapResult.model_validate_json(json.dumps(whole))
+    for key in ("outcome", "mode", "impacts"):
+        assert unpacked(answer[key]).tolist() == plainly[key]
+        assert answer[key]["kind"] in {"uint8", "int8"}
+    peak = np.array(plainly["peak"], dtype=float)
+    assert unpacked(answer["peak"]) == pytest.approx(peak, rel=1e-7, nan_ok=True)
+    assert {key: answer[key] for key in ("x", "y", "shares")} == {key: plainly[key] for key in ("x", "y", "shares")}
+    for values, kind in (([0, 255], "uint8"), ([-3, 127], "int8"), ([-3, 200], "int16"), ([0, 300], "uint16"),
+                         ([-3, 1_000_000], "int32")):  # fmt: skip
+        table = packed(np.resize(values, (1, 10, 10)))
+        assert table["kind"] == kind
+        assert np.unique(unpacked(table)).tolist() == values
 
 
 def test_maps_over_other_axes(result):

@@ -21,7 +21,7 @@ const verdictOf = (outcome, impacts) => {
   return 5;
 };
 
-const ramp = (share) => RAMP[Math.min(RAMP.length - 1, Math.max(0, Math.floor(share * RAMP.length)))];
+const ramp = (share) => RAMP[Math.min(RAMP.length - 1, Math.max(0, Math.floor((share || 0) * RAMP.length)))];
 
 /** The layers of one result: {value, text, paint(ix, iy), legend}. */
 export const layersOf = (found, k, other) => {

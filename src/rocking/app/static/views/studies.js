@@ -1,5 +1,6 @@
 /** Studies: many histories at once, launched as campaigns; their progress, and their results. */
 import { computed, html, render, signal, useLayoutEffect, useRef } from "/parts/preact.js";
+import { unpacked } from "/app/packed.js";
 import { Switch } from "/parts/fields.js";
 import { StudyForm } from "/views/studies-form.js";
 import { StudyList, actsOf, stateWords } from "/views/studies-list.js";
@@ -24,7 +25,7 @@ export const mount = (section, app) => {
     const told = (more) => open.value?.shown === study && (open.value = { shown: study, ...more });
     open.value = { shown: study };
     await app.call(`studies/${study.id}/result`).then(
-      (found) => told({ found, chosen: { restitution: 0 } }), (error) => told({ refused: error.message }),
+      (found) => told({ found: unpacked(found), chosen: { restitution: 0 } }), (error) => told({ refused: error.message }),
     );
   };
   studies.subscribe((now) => {
