@@ -74,9 +74,9 @@ def bodies() -> list[rk.Block]:
 
 def fragility(records: list[rk.GroundMotion]) -> list[Any]:
     """50 blocks, 500 records, 40 stripes: a million histories, 50 curves with their bands."""
-    from rocking.studies.fragility import multiple_stripe_analysis
+    from rocking.studies.fragility import fragility_analysis
 
-    return [multiple_stripe_analysis(body, records, LEVELS, "ked").fits["overturned"] for body in bodies()]
+    return [fragility_analysis(body, records, LEVELS, "ked").fits["overturned"] for body in bodies()]
 
 
 def stripes(seed: int = 2) -> Histories:

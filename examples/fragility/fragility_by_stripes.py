@@ -10,7 +10,7 @@ import numpy as np
 import rocking as rk
 from rocking import conventions
 from rocking.plots import fragility_picture, write
-from rocking.studies import SyntheticSet, multiple_stripe_analysis
+from rocking.studies import SyntheticSet, fragility_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
 
 # %%
@@ -20,7 +20,7 @@ from rocking.studies.fragility import model_of, to_csv, to_nrml
 cabinet = rk.Block(width=0.3, height=1.5)
 motions = SyntheticSet("point-source", count=60, seed=1)
 levels = np.linspace(0.15, 0.9, 11) * conventions.g
-found = multiple_stripe_analysis(cabinet, list(motions), levels, "ked", states=(0.2, 0.5))
+found = fragility_analysis(cabinet, list(motions), levels, "ked", states=(0.2, 0.5))
 
 print(f"{found.trials.sum()} histories; {found.uplift.verdict}")
 assert found.uplift.contradictions == 0

@@ -12,7 +12,7 @@ import numpy as np
 import rocking as rk
 from rocking import conventions
 from rocking.plots import incremental_dynamic_analysis_picture, write
-from rocking.studies import SyntheticSet, incremental_dynamic_analysis
+from rocking.studies import SyntheticSet, fragility_analysis
 
 # %%
 # First where it is known in closed form: a full sine of three times the frequency parameter, `r = 0.9`,
@@ -21,7 +21,7 @@ from rocking.studies import SyntheticSet, incremental_dynamic_analysis
 block = rk.Block(width=0.4, height=1.6)
 sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
 unit = conventions.g * block.slenderness_angle
-one = incremental_dynamic_analysis(block, sine, np.linspace(1.0, 4.0, 31) * unit, 0.9, linear=True)
+one = fragility_analysis(block, sine, np.linspace(1.0, 4.0, 31) * unit, 0.9, linear=True, analysis="incremental")
 for interval in one.intervals:
     print(f"one sine overturns from {interval.start / unit:.6f} to {interval.end / unit:.6f} times g alpha")
 first, second = one.intervals
@@ -32,8 +32,8 @@ assert abs(second.start / unit / 3.6311498724447945014 - 1.0) < 1e-7
 # Then thirty synthetic motions, each at forty levels.
 
 motions = list(SyntheticSet("point-source", count=30, seed=2))
-found = incremental_dynamic_analysis(
-    rk.Block(width=0.3, height=1.5), motions, np.geomspace(0.15, 1.5, 40) * conventions.g, 0.9
+found = fragility_analysis(
+    rk.Block(width=0.3, height=1.5), motions, np.geomspace(0.15, 1.5, 40) * conventions.g, 0.9, analysis="incremental"
 )
 for name, words in found.definitions.items():
     fit = found.fits["overturned"] if name == "fraction" else found.first_crossing_fit

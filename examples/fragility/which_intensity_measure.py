@@ -14,7 +14,7 @@ import rocking as rk
 from rocking import conventions
 from rocking.motions import scaled_to
 from rocking.plots import measures_picture, write
-from rocking.studies import SyntheticSet, cloud, compare_measures
+from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
 # %%
 # Far earthquakes, each brought to a peak from 1.1 to 2.5 times what lifts the body: all of them rock it. Magnitude
@@ -35,7 +35,9 @@ measures = ["pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(1.0)", "arias", 
 
 ranked = {}
 for height in (0.5, 4.0):
-    found = cloud(rk.Block(width=0.2 * height, height=height), motions, "ked")
+    found = fragility_analysis(
+        rk.Block(width=0.2 * height, height=height), motions, restitution="ked", analysis="cloud"
+    )
     ranked[height] = compare_measures(found, measures, metadata)
     print(f"height {height} m: {ranked[height].scores[0].rocked} of {len(motions)} rocked and stayed standing")
     for score in ranked[height].scores:

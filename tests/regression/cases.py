@@ -220,13 +220,15 @@ def _evidence() -> Any:
 
 
 def _fragility() -> Any:
-    from rocking.studies import SyntheticSet, cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+    from rocking.studies import SyntheticSet, fragility_analysis
 
     motions = list(SyntheticSet("point-source", count=20, seed=1))
     g = conventions.g
-    stripes = multiple_stripe_analysis(BLOCK, motions, np.linspace(0.2, 1.2, 8) * g, "ked", states=(0.3,))
-    other = cloud(BLOCK, [motion.scaled(6.0) for motion in motions], "ked", measure="pgv")
-    growing = incremental_dynamic_analysis(BLOCK, motions[:7], np.linspace(0.2, 1.6, 12) * g, "housner")
+    stripes = fragility_analysis(BLOCK, motions, np.linspace(0.2, 1.2, 8) * g, "ked", states=(0.3,))
+    other = fragility_analysis(
+        BLOCK, [motion.scaled(6.0) for motion in motions], restitution="ked", measure="pgv", analysis="cloud"
+    )
+    growing = fragility_analysis(BLOCK, motions[:7], np.linspace(0.2, 1.6, 12) * g, "housner", analysis="incremental")
     return {
         "stripes": {
             state: [fit.median, fit.dispersion, fit.interval("median", method="bootstrap")]

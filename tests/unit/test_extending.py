@@ -16,7 +16,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import Measure, Pulse, intensity, intensity_measures, measure, measures, pulses, scaled_to
 from rocking.plots.labels import axis_label, short_name
 from rocking.studies import SyntheticSet
-from rocking.studies.fragility import cloud, compare_measures
+from rocking.studies.fragility import compare_measures, fragility_analysis
 
 PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
@@ -93,7 +93,9 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path)
     assert short_name("rms") == "RMS"
     assert {"name": "rms", "words": rms.words, "unit": "m/s2"} in listed_measures()
     shaken = [pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
-    found = cloud(rk.Block(width=0.4, height=1.6), shaken, 0.9, "rms")
+    found = fragility_analysis(
+        rk.Block(width=0.4, height=1.6), shaken, restitution=0.9, measure="rms", analysis="cloud"
+    )
     assert {score.measure for score in compare_measures(found, ["rms", "pga"]).scores} == {"rms", "pga"}
 
 

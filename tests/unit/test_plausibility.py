@@ -17,7 +17,7 @@ from rocking.errors import PlausibilityWarning
 from rocking.evidence import all_measurements
 from rocking.reports.body_facts import body_facts
 from rocking.restitution import model
-from rocking.studies.fragility import multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 
 pytestmark = pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 BLOCK = rk.Block(width=0.5, height=2.0, density=500.0)
@@ -48,7 +48,7 @@ DOUBTFUL = {
     "scale of a spectrum": (lambda: rk.rocking_spectrum(PULSE, [0.2], [2.0], 0.9, scale=20.0), "60 m/s2.*scale"),
     "scale of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("scale", [1.0, 9000.0]), HEIGHTS), "2.7e[+]04 m/s2"),
     "pga of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("pga", [1.0, 300.0]), HEIGHTS), "300 m/s2"),
-    "levels": (lambda: multiple_stripe_analysis(BLOCK, [PULSE, SLOW], [2.0, 3000.0], 0.9), "3000 m/s2.*unit"),
+    "levels": (lambda: fragility_analysis(BLOCK, [PULSE, SLOW], [2.0, 3000.0], 0.9), "3000 m/s2.*unit"),
     "upwards": (lambda: rk.simulate_many(BLOCK, rk.GroundMotion([0, 1], 0.01, vertical=[0, 9]), scale=5.0), "45 m/s2"),
     "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*cm/s2"),
     "gravity in g": (
@@ -95,7 +95,7 @@ MEANT = {
     "bodies that identities try": lambda: rk.restitution.identity_report(TOWER, rk.restitution.Ked()),
     "feet that never slide": lambda: rk.simulate(BLOCK, PULSE, None, friction=1e6),
     "on the Moon": lambda: rk.simulate(BLOCK, PULSE.scaled(0.1), gravity=1.62),
-    "levels of a study": lambda: multiple_stripe_analysis(BLOCK, [PULSE, SLOW], [2.0, 20.0], 0.9),
+    "levels of a study": lambda: fragility_analysis(BLOCK, [PULSE, SLOW], [2.0, 20.0], 0.9),
     "ratios of a map": lambda: rk.overturning_map(BLOCK, PULSE, ("amplitude_ratio", [1.0, 30.0]), HEIGHTS),
     "several scales": lambda: rk.simulate_many(BLOCK, PULSE, "ked", scale=[0.5, 2.0]),
 }

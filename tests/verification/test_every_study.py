@@ -12,7 +12,7 @@ from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.motions.components import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
-from rocking.studies.fragility import incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 from rocking.studies.inventory import InventoryObject, assess
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
@@ -35,7 +35,7 @@ def test_upright_components_of_plane_bodies():
     def answers(motion):
         spectrum = rocking_spectrum(motion, [0.25], [1.5, 2.5], 0.9)
         least = minimum_overturning_acceleration(BLOCK, motion, 0.9, points=12, levels=0)
-        stripes = multiple_stripe_analysis(BLOCK, [motion, motion], [4.0, 9.0], 0.9, friction=0.5)
+        stripes = fragility_analysis(BLOCK, [motion, motion], [4.0, 9.0], 0.9, friction=0.5)
         found = overturning_map(BLOCK, motion, *axes, 0.9)
         peaks = [each.peak_rotation.values for each in (found, spectrum)]
         return [*peaks, stripes.responses.rotation, least.acceleration]
@@ -116,9 +116,9 @@ def test_an_incremental_campaign_of_a_solid(files):
     folder.run(workers=1)
     (found,) = analyses(folder).values()
     body, pair = Solid(Part(box(0.5, 0.6, 1.4), 2000.0)), {"x": X, "y": Y}
-    python = incremental_dynamic_analysis(body, [pair], [4.0, 8.0], 0.9, friction=0.6)
+    python = fragility_analysis(body, [pair], [4.0, 8.0], 0.9, friction=0.6, analysis="incremental")
     assert np.array_equal(found.responses.rotation, python.responses.rotation)
-    smooth = incremental_dynamic_analysis(body, [pair], [4.0, 8.0], 0.9, friction=0.2)
+    smooth = fragility_analysis(body, [pair], [4.0, 8.0], 0.9, friction=0.2, analysis="incremental")
     assert not np.array_equal(found.responses.rotation, smooth.responses.rotation)
 
 

@@ -14,7 +14,7 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
-from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies import fragility_analysis
 from rocking.studies.fragility import model_of, to_nrml
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -59,8 +59,16 @@ def test_first_crossings_are_the_closed_boundaries(engine, agreement):
     pulses = [pulse(rk.pulses.half_sine, omega, BLOCK) for omega in HALF_SINE]
     # the reference engine is slow, and shows the same with a coarser start and search
     levels, tolerance = (np.linspace(1.05, 6.0, 40), 0.0) if engine == "fast" else ([1.2, 3.0, 6.0], 1e-9)
-    found = incremental_dynamic_analysis(
-        BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, tolerance=tolerance, linear=True, engine=engine
+    found = fragility_analysis(
+        BLOCK,
+        pulses,
+        levels,
+        restitution=0.9,
+        measure=NORMALISED,
+        tolerance=tolerance,
+        linear=True,
+        engine=engine,
+        analysis="incremental",
     )
     errors = found.first_crossings / np.array(list(HALF_SINE.values())) - 1.0
     agreement(np.abs(errors).max(), 1e-11 if engine == "fast" else 1e-8)
@@ -71,8 +79,14 @@ def test_first_crossings_are_the_closed_boundaries(engine, agreement):
 @pytest.mark.verifies("negative control", "Housner's sqrt(1 + Omega^2)", doi="10.1785/BSSA0530020403")
 def test_the_reported_formula_is_unconservative():
     """Negative control: Housner's sqrt(1 + Omega^2) for half sines is rejected by the same comparison."""
-    found = incremental_dynamic_analysis(
-        BLOCK, pulse(rk.pulses.half_sine, 2.0, BLOCK), [1.5, 3.0], restitution=0.9, measure=NORMALISED, linear=True
+    found = fragility_analysis(
+        BLOCK,
+        pulse(rk.pulses.half_sine, 2.0, BLOCK),
+        [1.5, 3.0],
+        restitution=0.9,
+        measure=NORMALISED,
+        linear=True,
+        analysis="incremental",
     )
     assert abs(found.first_crossings[0] / math.sqrt(5.0) - 1.0) > 0.1
 
@@ -80,9 +94,9 @@ def test_the_reported_formula_is_unconservative():
 @pytest.mark.verifies("closed form", "modes I and II of Zhang and Makris 2001, 18 digits", within="1e-11")
 def test_resurrection_of_the_full_sine():
     """REF: overturning by one impact from 1.4036 to 3.4847, survival up to 3.6311, overturning without impact above."""
-    found = incremental_dynamic_analysis(
+    found = fragility_analysis(
         BLOCK, pulse(rk.pulses.sine, 3.0, BLOCK), np.linspace(1.0, 5.0, 41), restitution=0.9, measure=NORMALISED,
-        linear=True, tolerance=0.0,
+        linear=True, tolerance=0.0, analysis="incremental",
     )  # fmt: skip
     first, second = found.intervals
     for value, expected in ((first.start, LOWER), (first.end, UPPER), (second.start, NO_IMPACT)):
@@ -105,9 +119,9 @@ def test_resurrection_of_the_full_sine():
 def test_resurrection_of_the_nonlinear_full_sine():
     """REF: tan(alpha) = 1/3, r = 0.85, Omega = 3: overturned from 1.43079 to 3.46980, safe up to 3.68568."""
     block = rk.Block(width=0.5, height=1.5)
-    found = incremental_dynamic_analysis(
+    found = fragility_analysis(
         block, pulse(rk.pulses.sine, 3.0, block), np.linspace(1.0, 5.0, 41), restitution=0.85, measure=NORMALISED,
-        tolerance=0.0,
+        tolerance=0.0, analysis="incremental",
     )  # fmt: skip
     ends = [found.intervals[0].start, found.intervals[0].end, found.intervals[1].start]
     assert ends[0] == pytest.approx(1.43078991141167367, rel=1e-10, abs=0.0)
@@ -118,8 +132,8 @@ def test_resurrection_of_the_nonlinear_full_sine():
 def test_larger_blocks_under_slower_motions():
     """Size: a block s times as large under the record at sqrt(s) times the step has the same fragility in PGA."""
     levels, size = np.linspace(2.0, 9.0, 8), 4.0
-    small = multiple_stripe_analysis(BLOCK, records(40), levels, restitution=0.9)
-    large = multiple_stripe_analysis(
+    small = fragility_analysis(BLOCK, records(40), levels, restitution=0.9)
+    large = fragility_analysis(
         rk.Block(width=0.4 * size, height=1.6 * size), records(40, step=0.02 * math.sqrt(size)), levels, restitution=0.9
     )
     same = small.responses.outcome == large.responses.outcome
@@ -134,7 +148,7 @@ def test_dimensionless_measures_know_the_size():
     size, medians = 4.0, {}
     for measure, levels in (("p pgv/(g tan alpha)", np.linspace(0.2, 2.5, 8)), ("pgv", np.linspace(0.1, 2.0, 8))):
         both = [
-            multiple_stripe_analysis(
+            fragility_analysis(
                 rk.Block(width=0.4 * s, height=1.6 * s), records(30, step=0.02 * math.sqrt(s)), levels,
                 restitution=0.9, measure=measure,
             ).fits["overturned"].median
@@ -160,7 +174,7 @@ def test_bodies_of_equal_parameters_are_one_body():
     )  # fmt: skip
     assert points.frequency_parameter == pytest.approx(BLOCK.frequency_parameter, rel=1e-13, abs=0.0)
     levels = np.linspace(2.0, 9.0, 8)
-    found = [multiple_stripe_analysis(body, records(40), levels, restitution=0.9) for body in (BLOCK, points)]
+    found = [fragility_analysis(body, records(40), levels, restitution=0.9) for body in (BLOCK, points)]
     assert found[0].responses.outcome.tolist() == found[1].responses.outcome.tolist()
     assert found[0].counts["overturned"].sum() > 20
 
@@ -170,7 +184,10 @@ def test_mirrored_motions():
     """Turned round, all motions give the same counts, crossings and fits."""
     levels, motions = np.linspace(2.0, 9.0, 8), records(30)
     mirrored = [m.scaled(-1.0) for m in motions]
-    found = [incremental_dynamic_analysis(BLOCK, given, levels, restitution=0.9) for given in (motions, mirrored)]
+    found = [
+        fragility_analysis(BLOCK, given, levels, restitution=0.9, analysis="incremental")
+        for given in (motions, mirrored)
+    ]
     np.testing.assert_array_equal(found[0].curves, found[1].curves)
     np.testing.assert_array_equal(found[0].first_crossings, found[1].first_crossings)
     assert found[0].fits["overturned"].median == found[1].fits["overturned"].median
@@ -181,7 +198,7 @@ def test_scaled_records():
     """Records times c: the median in PGA stays, and the factor on the records at the first crossing is divided by c."""
     levels, motions, c = np.linspace(2.0, 12.0, 21), records(30), 3.7
     plain, scaled = (
-        incremental_dynamic_analysis(BLOCK, given, levels, restitution=0.9, tolerance=1e-9)
+        fragility_analysis(BLOCK, given, levels, restitution=0.9, tolerance=1e-9, analysis="incremental")
         for given in (motions, [m.scaled(c) for m in motions])
     )
     assert plain.counts["overturned"].tolist() == scaled.counts["overturned"].tolist()
@@ -196,8 +213,8 @@ def test_scaled_records():
 def test_gravity():
     """Gravity and motions times c, times divided by sqrt(c): the same fragility over g tan(alpha)."""
     c, levels = 2.5, np.linspace(1.1, 4.0, 8)
-    plain = multiple_stripe_analysis(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
-    heavy = multiple_stripe_analysis(
+    plain = fragility_analysis(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
+    heavy = fragility_analysis(
         BLOCK, records(30, step=0.02 / math.sqrt(c)), levels, restitution=0.9, measure=NORMALISED,
         gravity=c * conventions.g,
     )  # fmt: skip
@@ -209,13 +226,11 @@ def test_uplift_is_certain_given_pga():
     """P(no rocking) is a step at g tan(alpha): 600 histories just below and above it, none of which disagrees."""
     threshold = conventions.g * 0.25
     levels = threshold * np.array([0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.1])
-    found = multiple_stripe_analysis(BLOCK, records(150), levels, restitution=0.9)
+    found = fragility_analysis(BLOCK, records(150), levels, restitution=0.9)
     assert found.counts["rocking"].tolist() == [0, 0, 150, 150]
     assert (found.uplift.checked, found.uplift.contradictions) == (600, 0)
     # linear equations lift at g alpha instead
-    linear = multiple_stripe_analysis(
-        BLOCK, records(20), [conventions.g * math.atan(0.25)], restitution=0.9, linear=True
-    )
+    linear = fragility_analysis(BLOCK, records(20), [conventions.g * math.atan(0.25)], restitution=0.9, linear=True)
     assert linear.uplift.threshold == pytest.approx(conventions.g * math.atan(0.25), rel=1e-15, abs=0.0)
 
 
@@ -225,7 +240,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
     boundary = HALF_SINE[2] * conventions.g * math.atan(0.25)
     unit = pulse(rk.pulses.half_sine, 2.0, BLOCK)
     pulses = [unit.scaled(boundary * f) for f in (0.8, 0.9, 1.0 - 1e-9, 1.0 + 1e-9, 1.1, 1.2)]
-    found = cloud(BLOCK, pulses, restitution=0.9, states=(), linear=True)
+    found = fragility_analysis(BLOCK, pulses, restitution=0.9, states=(), linear=True, analysis="cloud")
     assert found.responses.overturned.tolist() == [False] * 3 + [True] * 3
     low, high = found.fits["overturned"].median_interval
     assert low < boundary < high
@@ -240,7 +255,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
 )
 def test_nrml_reproduces_the_curve(tmp_path, agreement):
     """Read by a parser of its own and evaluated by mpmath as OpenQuake does, the file gives P(im) to 1e-12."""
-    found = multiple_stripe_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
+    found = fragility_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
     made = model_of(found, "block <1>")
     with pytest.raises(InvalidValueError, match="curves must not cross, but at"):
         to_nrml(made, tmp_path / "fragility.xml")
@@ -275,8 +290,8 @@ def test_both_definitions_on_one_set():
     """Sines of many periods: the definitions differ where motions come back, by what the intervals say."""
     pulses = [pulse(rk.pulses.sine, omega, BLOCK) for omega in np.linspace(2.0, 6.0, 41)]
     levels = np.linspace(1.05, 8.0, 140)
-    found = incremental_dynamic_analysis(
-        BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, linear=True, tolerance=1e-9
+    found = fragility_analysis(
+        BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, linear=True, tolerance=1e-9, analysis="incremental"
     )
     by_intervals = np.array([sum(i.start <= level < i.end for i in found.intervals) / len(pulses) for level in levels])
     np.testing.assert_allclose(found.fractions, by_intervals, rtol=0.0, atol=1e-15)

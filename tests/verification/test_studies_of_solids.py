@@ -19,7 +19,7 @@ from rocking.dynamics.settings import NEVER_SLIDES, Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED, Outcome, Status
 from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
-from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 from rocking.studies.motion_sets import MotionList
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
@@ -278,16 +278,19 @@ def test_fragilities():
     """Stripes, cloud and incremental analysis count the verdicts of `simulate_many`, of motions of two components."""
     motions = [{"x": rk.pulses.sine(1.0, period), "y": rk.pulses.sine(0.6, 1.3 * period)} for period in (0.4, 0.7, 1.0)]
     levels = [2.0, 5.0, 8.0]
-    found = multiple_stripe_analysis(STATUE, motions, levels, friction=0.7)
+    found = fragility_analysis(STATUE, motions, levels, friction=0.7)
     many = rk.simulate_many(STATUE, motions, friction=0.7, scale=levels)
     fell = many.overturned.values[0, :, :, 0, 0, 0]
     assert np.array_equal(found.responses.overturned.reshape(fell.shape), fell)
     assert 0 < fell.sum() < fell.size
     assert found.uplift.threshold is None
-    assert cloud(STATUE, motions, factor=5.0, friction=0.7).responses.overturned.sum() == fell[:, 1].sum()
-    smooth = multiple_stripe_analysis(STATUE, motions, levels, friction=0.05)
+    assert (
+        fragility_analysis(STATUE, motions, factor=5.0, friction=0.7, analysis="cloud").responses.overturned.sum()
+        == fell[:, 1].sum()
+    )
+    smooth = fragility_analysis(STATUE, motions, levels, friction=0.05)
     assert not (smooth.responses.overturned > 0.0).any()
-    ida = incremental_dynamic_analysis(STATUE, motions[:2], levels, friction=0.7)
+    ida = fragility_analysis(STATUE, motions[:2], levels, friction=0.7, analysis="incremental")
     assert np.array_equal(ida.responses.overturned.reshape(2, 3), fell[:2])
 
 
@@ -335,7 +338,7 @@ def test_the_name_of_histories_knows_the_body():
         (lambda: overturning_map(PLANE, BOTH, ("scale", [1.0]), ("period", [0.5])), "along x and z, got y too"),
         (lambda: minimum_overturning_acceleration(BASE_ALONE, PULSE, "housner", friction=0.3), "base is known alone"),
         (lambda: minimum_overturning_acceleration(SHORT, PULSE, None, friction=0.3), "restitution"),
-        (lambda: multiple_stripe_analysis(PLANE, [BOTH, BOTH], [1.0]), "along x and z, got y too"),
+        (lambda: fragility_analysis(PLANE, [BOTH, BOTH], [1.0]), "along x and z, got y too"),
         (lambda: rocking_spectrum(SHORT, [0.2], [1.0]), "must be ground motions or pulses, got Solid"),
         (lambda: rocking_spectrum(BOTH, [0.2], [1.0]), "along x and z, got y too"),
     ],
@@ -429,7 +432,7 @@ def test_fragilities_of_components_in_files_and_commands(records, capsys):
     pairs = [{axis: motion[axis] for axis in "xy"} for motion in motions]
     levels, how = [3.0, 6.0, 9.0], ("--friction", "0.7", "--levels", "3,6,9")
     told = _asked(capsys, "fragility", folder / "statue.toml", *words, *how)
-    found = multiple_stripe_analysis(STATUE, pairs, levels, friction=0.7)
+    found = fragility_analysis(STATUE, pairs, levels, friction=0.7)
     assert told["motions"]["names"] == ["x0, y0, none", "x1, y1, none"]
     fell = found.responses.overturned.sum(axis=0).ravel().tolist()
     assert told["results"][0]["reached"]["overturned"] == fell

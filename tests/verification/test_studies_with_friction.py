@@ -16,7 +16,7 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
-from rocking.studies.fragility import multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 from rocking.studies.histories import results_of
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.sensitivity import SampledRestitution
@@ -128,7 +128,7 @@ def test_one_word_and_one_range_at_every_door():
     with pytest.raises(InvalidValueError, match="needs friction"):
         rk.simulate(BODY, PULSE, None)
     hops = noise_motion(5, 400, 0.01, 0.5, vertical=14.0)
-    flat = multiple_stripe_analysis(BLOCK, MotionList([hops] * 2), [0.5], friction=5.0)
+    flat = fragility_analysis(BLOCK, MotionList([hops] * 2), [0.5], friction=5.0)
     assert not flat.responses.rocked.any() or (flat.responses.rotation[flat.responses.rocked] > 0.0).all()
 
 
@@ -142,7 +142,7 @@ def test_every_study():
     assert held == pytest.approx(pure, rel=1e-6)
     assert free is None or free > held
     motions = MotionList([noise_motion(k, 600, 0.01, 3.0) for k in range(6)])
-    rough, smooth = (multiple_stripe_analysis(BLOCK, motions, [3.0, 5.0, 7.0], friction=mu) for mu in (0.6, 0.3))
+    rough, smooth = (fragility_analysis(BLOCK, motions, [3.0, 5.0, 7.0], friction=mu) for mu in (0.6, 0.3))
     assert rough.uplift.contradictions == 0
     assert rough.uplift.checked == 18
     assert smooth.uplift.threshold is None

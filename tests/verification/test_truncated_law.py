@@ -25,7 +25,7 @@ from rocking.evidence import Calibration, calibrate, restitution_distribution
 from rocking.evidence.likelihood import scatter
 from rocking.motions import Segments
 from rocking.restitution import ShiftedImpulse, coefficient_of_restitution
-from rocking.studies import SampledRestitution, multiple_stripe_analysis
+from rocking.studies import SampledRestitution, fragility_analysis
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
@@ -378,7 +378,7 @@ def test_studies_take_asymmetric_bodies(law: Any) -> None:
     labels = [str(each["restitution"].values[0]) for each in (found, both)]
     for told in (*labels, plane.attrs["restitution"]):
         assert "onto right cut off, where impacts would create energy" in told
-    stripes = multiple_stripe_analysis(body, [pulse], [1.0, 2.0], restitution=made)
+    stripes = fragility_analysis(body, [pulse], [1.0, 2.0], restitution=made)
     assert stripes.failed == 0
 
 

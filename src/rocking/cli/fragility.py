@@ -22,9 +22,6 @@ ANALYSES = ("stripes", "cloud", "incremental")
 MOST_HISTORIES = 10_000_000
 """A larger analysis is a campaign."""
 
-_REACH = (0.9, 9.0, 16)
-"""Levels of PGA that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
-
 COUNT, SEED = 100, 1  # what serves where nobody says otherwise
 MOST_MOTIONS = 5000  # all of them are held in memory
 MOST_IN_PICTURE = 6  # restitutions that can be told apart in a picture
@@ -151,7 +148,7 @@ def fragility(
 
 def _histories(problem: "StudyProblem") -> int:
     """Return how many histories there are at least, refusing too many."""
-    levels = (problem.document.fragility or FragilityTable()).levels
+    levels = problem.fragility_table.levels
     total = len(problem.motions) * (1 if levels is None else levels.numbers().size) * len(problem.restitutions)
     if total > MOST_HISTORIES:
         raise InvalidValueError(
@@ -218,15 +215,11 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
 
 
 def _usual_levels(problem: "StudyProblem") -> list[float]:
-    import numpy as np
+    from rocking.spec.study import fragility_question
+    from rocking.studies.fragility.question import default_levels
 
-    from rocking.studies.fragility.subject import Subject
-
-    table = problem.document.fragility or FragilityTable()
-    subject = Subject.of(problem.bodies[0], problem.motions, problem.restitution, table.measure, problem.stated)
-    lifts = 1.0 if subject.measure.uplift is None else subject.measure.uplift(subject.scale)
-    low, high, count = _REACH
-    return [float(level) for level in np.geomspace(low * lifts, high * lifts, count)]
+    levels: list[float] = default_levels(fragility_question(problem, problem.restitution).subject).tolist()
+    return levels
 
 
 def _check(problem: "StudyProblem", exports: Exports) -> None:
@@ -241,4 +234,4 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     if "nrml" in exports.names:
         from rocking.studies.fragility.export import intensity_type
 
-        intensity_type((problem.document.fragility or FragilityTable()).measure)
+        intensity_type(problem.fragility_table.measure)

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
-from rocking.spec.document import FragilityTable
 from rocking.statistics.maximum_likelihood import Separation
-from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
+from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
@@ -44,11 +43,6 @@ class FragilityAnswer:
     def first(self) -> Any:
         """The analysis with the first restitution."""
         return next(iter(self.results.values()))
-
-    @property
-    def table(self) -> FragilityTable:
-        """What was asked."""
-        return self.problem.document.fragility or FragilityTable()
 
     @property
     def kind(self) -> str:
@@ -132,7 +126,7 @@ class FragilityAnswer:
             "analysis": self.kind,
             "measure": first.subject.measure.name,
             "unit": first.subject.measure.unit,
-            "states": list(self.table.states),
+            "states": list(self.problem.fragility_table.states),
             "uplift_threshold": first.subject.uplift_threshold,
             "levels": first.levels,
             "results": [_result_facts(one) for one in self.results.values()],

@@ -362,7 +362,7 @@ class IntensityMeasure:
         if self.power == 0:
             raise InvalidValueError(
                 f"measure must be one that grows with the motion, got {self.name!r}, which no factor changes; "
-                "cloud() takes it"
+                'analysis="cloud" takes it'
             )
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:

@@ -51,12 +51,13 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud_analysis import cloud
+    >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]
-    >>> cloud_picture(cloud(rk.Block(width=0.4, height=1.6), pulses)).axes[1].get_xlabel()
+    >>> cloud = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, analysis="cloud")
+    >>> cloud_picture(cloud).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'
     """
-    checks.of_kind("analysis", analysis, CloudAnalysis, "of cloud")
+    checks.of_kind("analysis", analysis, CloudAnalysis, "of a cloud")
     if not analysis.fits["overturned"].exists:
         raise InvalidValueError(f"there is no curve of overturning to draw: {analysis.fits['overturned'].verdict}")
     figure, (upper, lower) = new_figure(SINGLE, 4.0, rows=2, sharex=True, height_ratios=[1.5, 1.0])
@@ -148,10 +149,10 @@ def measures_picture(found: MeasureComparison) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud_analysis import cloud
-    >>> from rocking.studies.fragility.measure_comparison import compare_measures
+    >>> from rocking.studies.fragility import compare_measures, fragility_analysis
     >>> pulses = [rk.pulses.sine(a, t) for a in (2.6, 3.0, 3.4) for t in (0.3, 0.4, 0.5)]
-    >>> found = compare_measures(cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9), ["pga", "pgv"])
+    >>> cloud = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9, analysis="cloud")
+    >>> found = compare_measures(cloud, ["pga", "pgv"])
     >>> sorted(label.get_text() for label in measures_picture(found).axes[0].get_yticklabels())
     ['PGA', 'PGV']
     """

@@ -25,7 +25,7 @@ from rocking.plots.style import (
     patch,
     stroke,
 )
-from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
+from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,9 +73,9 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+    >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
-    >>> found = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
+    >>> found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
     >>> fragility_picture(found).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'
     """
@@ -253,7 +253,7 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     Parameters
     ----------
     analysis : IncrementalDynamicAnalysis
-        As of `incremental_dynamic_analysis`.
+        As of `fragility_analysis`.
 
     Returns
     -------
@@ -268,9 +268,10 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
+    >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    >>> found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
+    >>> block, levels = rk.Block(width=0.4, height=1.6), [3.0, 6.0, 9.0]
+    >>> found = fragility_analysis(block, pulses, levels, restitution=0.9, analysis="incremental")
     >>> len(incremental_dynamic_analysis_picture(found).axes)
     2
     """

@@ -15,7 +15,8 @@ from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument, MapTable
+    from rocking.spec.document import CampaignDocument, FragilityTable, MapTable
+    from rocking.studies.fragility.question import FragilityQuestion
     from rocking.studies.inventory import Inventory, Thresholds
     from rocking.studies.inventory.hazard import Hazard
 
@@ -68,6 +69,13 @@ class StudyProblem:
     def stated(self) -> dict[str, Any]:
         """Settings that the document states, and engine."""
         return {**self.document.settings.stated(), "engine": self.document.settings.engine}
+
+    @property
+    def fragility_table(self) -> "FragilityTable":
+        """What is asked of fragility; the usual where nothing is."""
+        from rocking.spec.document import FragilityTable
+
+        return self.document.fragility or FragilityTable()
 
     @property
     def restitution(self) -> Any:
@@ -136,29 +144,38 @@ def _spectrum(problem: StudyProblem, options: dict[str, Any]) -> Any:
 
 
 def _fragility(problem: StudyProblem, options: dict[str, Any]) -> Any:
-    from rocking.spec.document import FragilityTable
-    from rocking.studies import fragility
     from rocking.studies.sensitivity import fragility_sensitivity
 
-    table, kind = problem.document.fragility or FragilityTable(), problem.document.campaign.kind
-    options = {**options, "measure": table.measure, "states": tuple(table.states)}
+    table, kind = problem.fragility_table, problem.document.campaign.kind
     motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])  # made once, for every level
-    subject = (problem.only("bodies"), motions)
-    if kind == "cloud":
-        factor = 1.0 if table.factor is None else table.factor
-        return fragility.cloud(*subject, problem.only("restitutions"), factor=factor, **options)
-    assert table.levels is not None  # the document refuses to be without
-    levels = table.levels.numbers()
-    if len(problem.restitutions) > 1:
+    body = problem.only("bodies")
+    if kind != "cloud" and len(problem.restitutions) > 1:
         if kind != "stripes":
             raise InvalidValueError(f"several restitutions are compared by stripes, not by {kind}")
-        return fragility_sensitivity(*subject, levels, problem.restitutions, **options)
-    if kind == "incremental" and "tolerance" in options:
+        assert table.levels is not None  # the document refuses to be without
+        options = {**options, "measure": table.measure, "states": tuple(table.states)}
+        return fragility_sensitivity(body, motions, table.levels.numbers(), problem.restitutions, **options)
+    question = fragility_question(problem, problem.only("restitutions"), motions)
+    return question.computed(options["threads"], options["progress"])
+
+
+def fragility_question(
+    problem: StudyProblem, restitution: Any, motions: MotionSet | None = None
+) -> "FragilityQuestion":
+    """Return what is asked of the fragility of the body with one restitution; motions: the same ones, kept."""
+    from rocking.studies.fragility.question import FragilityQuestion
+    from rocking.studies.fragility.subject import Subject
+
+    table, kind = problem.fragility_table, problem.document.campaign.kind
+    # what is in [fragility] is the search's; that of [settings] is the engine's
+    if kind == "incremental" and "tolerance" in problem.document.settings.stated():
         raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
-    if table.tolerance is not None:
-        options["tolerance"] = table.tolerance
-    study = fragility.multiple_stripe_analysis if kind == "stripes" else fragility.incremental_dynamic_analysis
-    return study(*subject, levels, problem.restitution, **options)
+    shaken = problem.motions if motions is None else motions
+    return FragilityQuestion.of(
+        Subject.of(problem.bodies[0], shaken, restitution, table.measure, problem.options),
+        kind, None if table.levels is None else table.levels.numbers(), tuple(table.states),
+        factor=table.factor, tolerance=table.tolerance,
+    )  # fmt: skip
 
 
 def inventory_of(

@@ -11,12 +11,7 @@ if TYPE_CHECKING:
     from rocking.studies.axis import axes
     from rocking.studies.boundaries import boundary
     from rocking.studies.code_methods import compare_code_methods
-    from rocking.studies.fragility import (
-        cloud,
-        compare_measures,
-        incremental_dynamic_analysis,
-        multiple_stripe_analysis,
-    )
+    from rocking.studies.fragility import compare_measures, fragility_analysis
     from rocking.studies.histories import Histories, HistoryTable, Product
     from rocking.studies.islands import safe_beyond_overturning, safe_islands
     from rocking.studies.minimum_acceleration import (
@@ -43,15 +38,13 @@ __all__ = [
     "SyntheticSet",
     "axes",
     "boundary",
-    "cloud",
     "compare_code_methods",
     "compare_measures",
+    "fragility_analysis",
     "fragility_sensitivity",
-    "incremental_dynamic_analysis",
     "map_sensitivity",
     "minimum_overturning_acceleration",
     "minimum_overturning_accelerations",
-    "multiple_stripe_analysis",
     "overturning_map",
     "refined_map",
     "rocking_spectrum",
@@ -69,7 +62,7 @@ _HOMES = {
     "axis": ("axes",),
     "boundaries": ("boundary",),
     "code_methods": ("compare_code_methods",),
-    "fragility": ("cloud", "compare_measures", "incremental_dynamic_analysis", "multiple_stripe_analysis"),
+    "fragility": ("compare_measures", "fragility_analysis"),
     "minimum_acceleration": ("minimum_overturning_acceleration", "minimum_overturning_accelerations"),
     "_overturning_map": ("overturning_map",),
     "adaptive_grid": ("refined_map",),

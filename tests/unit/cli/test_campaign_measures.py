@@ -7,7 +7,7 @@ import math
 import pytest
 
 import rocking as rk
-from rocking.studies import SyntheticSet, cloud, compare_measures
+from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
 HEAD = '[campaign]\nname = "a cloud"\nkind = "cloud"\n[body]\nunits = "m"\nwidth = 0.4\nheight = 2.0\n'
 MOTIONS = '[motions]\nsynthetic = "point-source"\ncount = 30\nseed = 1\n[restitution]\nmodels = {models}\n'
@@ -40,7 +40,9 @@ def test_export(run, tmp_path):
         "magnitude": [float(motion.metadata["magnitude"]) for motion in motions],
         "ln distance_km": [math.log(float(motion.metadata["distance_km"])) for motion in motions],
     }
-    found = cloud(rk.Block(width=0.4, height=2.0), motions, "ked", factor=2.0)
+    found = fragility_analysis(
+        rk.Block(width=0.4, height=2.0), motions, restitution="ked", factor=2.0, analysis="cloud"
+    )
     wanted = compare_measures(found, ["pga", "pgv", "arias"], metadata)
     assert [row["measure"] for row in rows] == [score.measure for score in wanted.scores]
     for name in ("efficiency", "slope"):

@@ -10,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking.studies import SyntheticSet
-from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 
 COMMAND = "fragility"
 
@@ -44,7 +44,9 @@ def test_motions_follow_the_body(answered, tmp_path):
 def test_json_is_the_python_call(answered, motions):
     """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
     answer = answered(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")
-    found = multiple_stripe_analysis(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", "pga", (0.2, 0.5))
+    found = fragility_analysis(
+        BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", measure="pga", states=(0.2, 0.5)
+    )
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}
@@ -99,7 +101,7 @@ def test_incremental(run, answered):
     words = ("--width", "0.4", "--height", "1.6", *SINES, "--levels", "3,6,9", "--restitution", "0.9")
     (result,) = answered(*words, "--analysis", "incremental")["results"]
     pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9)
+    found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9, analysis="incremental")
     ends = [(one["start"], one["end"]) for one in result["overturning_intervals"]]
     assert ends == [(i.start, i.end if math.isfinite(i.end) else None) for i in found.intervals]
     assert None in [end for _, end in ends]
@@ -133,7 +135,7 @@ def test_resurrection_is_said(run, answered):
 def test_cloud(run, answered, motions):
     """A cloud takes the motions as they are, times a factor; its line is the study's."""
     answer = answered(*SIZE, *FAMILY, "--analysis", "cloud", "--factor", "4", "--measure", "pgv")
-    found = cloud(BLOCK, motions, measure="pgv", factor=4.0)
+    found = fragility_analysis(BLOCK, motions, measure="pgv", factor=4.0, analysis="cloud")
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert sum(result["trials"]) == 16

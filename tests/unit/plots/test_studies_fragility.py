@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.plots import fragility_picture, incremental_dynamic_analysis_picture, measures_picture, sensitivity_picture
 from rocking.plots.fragility import caption, gathered, state_colors, symbol
 from rocking.plots.style import PALE
-from rocking.studies.fragility import cloud, compare_measures, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import compare_measures, fragility_analysis
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity
 
 G = 9.80665
@@ -26,7 +26,7 @@ LEVELS = np.arange(1.5, 9.1, 1.5)
 @pytest.fixture(scope="module")
 def stripes():
     """24 pulses at six levels."""
-    return multiple_stripe_analysis(BLOCK, PULSES, LEVELS, 0.9)
+    return fragility_analysis(BLOCK, PULSES, LEVELS, 0.9)
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def picture(stripes):
 @pytest.fixture(scope="module")
 def raised():
     """The same pulses, raised level by level."""
-    return incremental_dynamic_analysis(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9)
+    return fragility_analysis(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9, analysis="incremental")
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def clouded():
     """Pulses of many amplitudes and periods, each at its own level."""
     draw = np.random.default_rng(5)
     pulses = [rk.pulses.sine(a, t) for a, t in zip(draw.uniform(2.0, 8.0, 80), draw.uniform(0.3, 1.2, 80), strict=True)]
-    return cloud(BLOCK, pulses, 0.9)
+    return fragility_analysis(BLOCK, pulses, restitution=0.9, analysis="cloud")
 
 
 def _bars(axes):
@@ -119,14 +119,14 @@ def test_words_do_not_overlap(picture):
 
 def test_separation_is_said():
     """Outcomes that form a step get no band, and the caption says that there is no likeliest curve."""
-    found = multiple_stripe_analysis(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
+    found = fragility_analysis(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
     figure = fragility_picture(found)
     told = figure.get_supxlabel()
     assert "separation" in told
     assert "no likeliest curve" in told.replace("\n", " ")
     assert told == "" or len(max(told.split("\n"), key=len)) <= 84
     # negative control: outcomes that overlap have no caption
-    assert caption(multiple_stripe_analysis(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
+    assert caption(fragility_analysis(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
 
 
 def test_cloud_is_gathered(clouded):
@@ -176,7 +176,9 @@ def test_incremental_curves(raised):
 
 def test_incremental_without_overturning():
     """Levels that overturn nothing give a picture without crosses and without warnings."""
-    figure = incremental_dynamic_analysis_picture(incremental_dynamic_analysis(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
+    figure = incremental_dynamic_analysis_picture(
+        fragility_analysis(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9, analysis="incremental")
+    )
     FigureCanvasAgg(figure).draw()
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("stands again" in word for word in words)
@@ -221,7 +223,7 @@ def _shaded(axes):
 
 def test_what_cannot_be_lifted_is_shaded():
     """The shade ends at g b / h = g / 4 and holds no motion that rocked; it is named."""
-    found = multiple_stripe_analysis(BLOCK, TWELVE, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
+    found = fragility_analysis(BLOCK, TWELVE, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
     upper = fragility_picture(found).axes[0]
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() == pytest.approx(0.25 * G, rel=1e-12, abs=0.0)
@@ -232,8 +234,8 @@ def test_what_cannot_be_lifted_is_shaded():
 
 def test_nothing_is_shaded_where_nothing_is_certain():
     """Levels that all lift the body, and a measure that decides nothing, give no shade."""
-    above = multiple_stripe_analysis(BLOCK, TWELVE, [3.0, 4.0, 5.0, 6.0], 0.9)
-    velocity = multiple_stripe_analysis(BLOCK, TWELVE, [0.1, 0.4, 0.8], 0.9, "pgv")
+    above = fragility_analysis(BLOCK, TWELVE, [3.0, 4.0, 5.0, 6.0], 0.9)
+    velocity = fragility_analysis(BLOCK, TWELVE, [0.1, 0.4, 0.8], 0.9, measure="pgv")
     for found in (above, velocity):
         upper = fragility_picture(found).axes[0]
         assert _shaded(upper) == []
@@ -242,7 +244,7 @@ def test_nothing_is_shaded_where_nothing_is_certain():
 
 def test_levels_below_uplift_alone():
     """Where no level lifts the body all is shaded, there is no curve, and the words say why."""
-    figure = fragility_picture(multiple_stripe_analysis(BLOCK, TWELVE, [0.5, 1.0, 2.0], 0.9))
+    figure = fragility_picture(fragility_analysis(BLOCK, TWELVE, [0.5, 1.0, 2.0], 0.9))
     upper = figure.axes[0]
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() > upper.get_xlim()[1]
@@ -253,7 +255,7 @@ def test_levels_below_uplift_alone():
 def test_few_motions_have_no_band():
     """Four motions get no band, which would be too narrow; twelve get one."""
     for count, bands in ((4, 0.0), (12, 0.1)):
-        found = multiple_stripe_analysis(BLOCK, TWELVE[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, states=())
+        found = fragility_analysis(BLOCK, TWELVE[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, states=())
         filled = [part for part in fragility_picture(found).axes[0].collections if isinstance(part, PolyCollection)]
         heights = [np.ptp(part.get_paths()[0].vertices[:, 1]) for part in filled]
         assert max(heights, default=0.0) >= bands
@@ -274,7 +276,7 @@ def closed_form():
     """One sine of three times the frequency parameter, r = 0.9, slender-linear, raised level by level: its picture."""
     sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * BLOCK.frequency_parameter))
     unit = G * BLOCK.slenderness_angle
-    found = incremental_dynamic_analysis(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True)
+    found = fragility_analysis(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True, analysis="incremental")
     return incremental_dynamic_analysis_picture(found), unit
 
 
@@ -294,7 +296,7 @@ def test_lanes_are_the_closed_form(closed_form):
 
 def test_every_motion_has_a_lane_of_its_own():
     """Lanes stand beside one another by first crossing, inside the panel; no lane without overturning."""
-    found = incremental_dynamic_analysis(BLOCK, TWELVE, np.arange(2.0, 9.1, 0.5), 0.9)
+    found = fragility_analysis(BLOCK, TWELVE, np.arange(2.0, 9.1, 0.5), 0.9, analysis="incremental")
     figure = incremental_dynamic_analysis_picture(found)
     left = figure.axes[0]
     (crosses,) = (line for line in left.lines if line.get_marker() == "x")

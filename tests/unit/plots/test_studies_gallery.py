@@ -24,7 +24,7 @@ from rocking.plots import (
 from rocking.studies import (
     SyntheticSet,
     boundary,
-    cloud,
+    fragility_analysis,
     map_sensitivity,
     minimum_overturning_acceleration,
     refined_map,
@@ -98,7 +98,7 @@ def cloudy():
         rk.pulses.half_sine(a, t)
         for a, t in zip(random.uniform(2.0, 9.0, 80), random.uniform(0.2, 1.0, 80), strict=True)
     ]
-    return cloud(BLOCK, pulses, 0.9, measure="pga", states=(0.3,))
+    return fragility_analysis(BLOCK, pulses, restitution=0.9, measure="pga", states=(0.3,), analysis="cloud")
 
 
 def test_cloud(cloudy):
@@ -131,9 +131,11 @@ def test_cloud(cloudy):
 
 def test_cloud_refuses():
     """What is no cloud, and a cloud in which nothing falls, have no picture; the reason is the analysis' own."""
-    with pytest.raises(InvalidValueError, match="must be of cloud"):
+    with pytest.raises(InvalidValueError, match="must be of a cloud"):
         cloud_picture([1.0])
-    weak = cloud(BLOCK, [rk.pulses.half_sine(a, 0.1) for a in (3.0, 3.5, 4.0, 4.5)], 0.9)
+    weak = fragility_analysis(
+        BLOCK, [rk.pulses.half_sine(a, 0.1) for a in (3.0, 3.5, 4.0, 4.5)], restitution=0.9, analysis="cloud"
+    )
     with pytest.raises(InvalidValueError, match="no curve of overturning"):
         cloud_picture(weak)
 

@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.cli import main
-from rocking.studies import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies import fragility_analysis
 from rocking.studies.inventory import InventoryObject, Thresholds, assess
 from rocking.studies.inventory.hazard import Hazard
 
@@ -24,11 +24,11 @@ OBJECTS = [InventoryObject(name=n, width=w, depth=2 * w, height=1.0) for n, w in
 @pytest.mark.parametrize(
     ("words", "analysis"),
     [
-        ({"levels": LEVELS}, lambda: multiple_stripe_analysis(BLOCK, PULSES, LEVELS)),
-        ({"analysis": "cloud", "factor": 4.0}, lambda: cloud(BLOCK, PULSES, factor=4.0)),
+        ({"levels": LEVELS}, lambda: fragility_analysis(BLOCK, PULSES, LEVELS)),
+        ({"analysis": "cloud", "factor": 4.0}, lambda: fragility_analysis(BLOCK, PULSES, factor=4.0, analysis="cloud")),
         (
             {"analysis": "incremental", "levels": LEVELS, "tolerance": 1e-3},
-            lambda: incremental_dynamic_analysis(BLOCK, PULSES, LEVELS, tolerance=1e-3),
+            lambda: fragility_analysis(BLOCK, PULSES, LEVELS, tolerance=1e-3, analysis="incremental"),
         ),
     ],
     ids=["stripes", "cloud", "incremental"],

@@ -12,7 +12,7 @@ from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, contact_words, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
 from rocking.reports.response_facts import response_facts
-from rocking.studies import cloud, multiple_stripe_analysis
+from rocking.studies import fragility_analysis
 from rocking.studies.inventory import InventoryObject, assess
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.table import sentence
@@ -53,9 +53,7 @@ def test_fragilities_say_so(body):
     """Of failed histories it is not known whether they rocked or fell; counts, curves and shares leave them out."""
     records = [rk.GroundMotion(np.sin(np.arange(200) * w), 0.01) for w in (0.05, 0.08, 0.11, 0.14, 0.2)]
     levels = [1.0, 4.0, 6.0, 9.0, 14.0]
-    whole, cut = (
-        multiple_stripe_analysis(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2})
-    )
+    whole, cut = (fragility_analysis(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2}))
     failed = cut.responses.outcome == NONE
     assert 0 < failed.sum() == cut.failed < failed.size
     for state in cut.states:
@@ -175,10 +173,10 @@ def test_maps_spectra_and_searches_say_it():
 def test_fragilities_say_it():
     """Stripes and clouds count the histories, in their datasets and in what is printed."""
     for motions, all_lost in ((HEAVY, True), (LIGHT, False)):
-        stripes = multiple_stripe_analysis(LEANING, motions, [3.0, 6.0], restitution=0.8)
+        stripes = fragility_analysis(LEANING, motions, [3.0, 6.0], restitution=0.8)
         assert ("would have to pull" in stripes.summary()["contact"]) is all_lost
         assert bool(stripes.dataset["lost_contact"].any()) is all_lost
-        found = cloud(LEANING, motions, restitution=0.8)
+        found = fragility_analysis(LEANING, motions, restitution=0.8, analysis="cloud")
         assert found.dataset.attrs["contact"] == found.responses.contact
 
 

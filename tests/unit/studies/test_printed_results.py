@@ -6,7 +6,7 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.statistics.lognormal import fit_lognormal
-from rocking.studies import SyntheticSet, cloud, fragility_sensitivity, multiple_stripe_analysis
+from rocking.studies import SyntheticSet, fragility_analysis, fragility_sensitivity
 from rocking.studies.fragility import model_of
 
 BODY = rk.Section.from_points([(0.0, 0.0), (0.3, 0.0), (0.36, 1.5), (0.1, 1.5)])
@@ -19,7 +19,7 @@ def motions():
 
 @pytest.fixture(scope="module")
 def stripes(motions):
-    return multiple_stripe_analysis(BODY, motions, np.linspace(1.0, 9.0, 9), "ked")
+    return fragility_analysis(BODY, motions, np.linspace(1.0, 9.0, 9), "ked")
 
 
 def test_a_fragility_prints_its_curves(stripes):
@@ -46,7 +46,9 @@ def test_a_fit_without_a_curve_says_so(motions):
     """All survive: no curve, neither of a fit nor of a cloud."""
     fit = fit_lognormal([1.0, 2.0, 3.0], [0, 0, 0], [5, 5, 5])
     assert repr(fit) == "<LognormalFit: no curve, from 15 outcomes>"
-    assert "no curve" in repr(cloud(BODY, [motion.scaled(1e-3) for motion in motions], "ked"))
+    assert "no curve" in repr(
+        fragility_analysis(BODY, [motion.scaled(1e-3) for motion in motions], restitution="ked", analysis="cloud")
+    )
 
 
 def test_many_transitions_print_their_ends(motions):

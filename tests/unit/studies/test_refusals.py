@@ -15,10 +15,9 @@ from rocking.studies import (
     Product,
     SyntheticSet,
     boundary,
-    incremental_dynamic_analysis,
+    fragility_analysis,
     minimum_overturning_acceleration,
     minimum_overturning_accelerations,
-    multiple_stripe_analysis,
     overturning_map,
     rocking_spectrum,
 )
@@ -39,9 +38,8 @@ minimum = partial(minimum_overturning_acceleration, **OF_BODY)
 mapped = partial(overturning_map, x=("scale", [1.0, 2.0]), y=("period", [0.3, 0.6]), **OF_BODY)
 outlined = partial(boundary, x=("frequency_ratio", [1.0, 2.0]), y=("amplitude_ratio", [1.0, 2.0]), **OF_BODY)
 spectrum = partial(rocking_spectrum, motions=[SINE], slenderness_angles=[0.2], periods=[1.0, 2.0], restitution=0.9)
-stripes, incremental = (
-    partial(each, **OF_MOTIONS) for each in (multiple_stripe_analysis, incremental_dynamic_analysis)
-)
+stripes = partial(fragility_analysis, **OF_MOTIONS)
+incremental = partial(stripes, analysis="incremental")
 curves = partial(rk.fragility, body=BLOCK, motions=[SINE])
 
 

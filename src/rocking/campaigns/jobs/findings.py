@@ -51,7 +51,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     Returns
     -------
     dict
-        By label of the restitution: what `multiple_stripe_analysis`, `cloud` or `incremental_dynamic_analysis` return.
+        By label of the restitution: what `fragility_analysis` returns.
 
     Raises
     ------

@@ -9,21 +9,15 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import measure as measure_of
 from rocking.statistics.goodness import ends_of
-from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
-from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_analysis
-from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, cloud
+from rocking.studies.fragility.cloud_analysis import CloudAnalysis
 from rocking.studies.fragility.curves import curve_of
+from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
+from rocking.studies.fragility.question import ANALYSES, FragilityQuestion
 from rocking.studies.fragility.subject import Motions, Progress, Subject
 
 if TYPE_CHECKING:
     import xarray as xr
-
-ANALYSES = ("stripes", "cloud", "incremental")
-
-_REACH = (0.9, 9.0, 16)
-"""Levels that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
 
 
 def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -99,70 +93,77 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> round(float(median), 2), median.attrs["units"]
     (3.83, 'm/s2')
     """
-    of_kind = fragility_analysis(
+    if tolerance is not None:
+        kind = checks.one_of("analysis", analysis, ANALYSES)
+        if kind != "incremental":
+            raise InvalidValueError(f'tolerance is for analysis="incremental" only, this is "{kind}"')
+        options["tolerance"] = tolerance
+    return _with_curves(fragility_analysis(
         body, motions, levels, restitution, analysis=analysis, measure=measure, states=states, factor=factor,
-        least=least, tolerance=tolerance, progress=progress, **options,
-    )  # fmt: skip
-    return _with_curves(of_kind)
+        least=least, progress=progress, **options,
+    ))  # fmt: skip
 
 
 def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
-    body: Body, motions: Motions, levels: Any = None, restitution: Any = "ked", *, analysis: str = "stripes",
-    measure: Any = "pga", factor: float | None = None, least: float | None = None, tolerance: float | None = None,
+    body: Body,
+    motions: Motions,
+    levels: Any = None,
+    restitution: Any = "ked",
+    *,
+    analysis: str = "stripes",
+    measure: Any = "pga",
+    states: Sequence[float] = (0.5,),
+    factor: float | None = None,
+    least: float | None = None,
+    progress: Progress = None,
     **options: Any,
-) -> MultipleStripeAnalysis | CloudAnalysis:  # fmt: skip
-    """Return the analysis behind `fragility`, which pictures and files are made of.
+) -> Any:
+    """Return the analysis behind `fragility`, which pictures, rankings of measures and files are made of.
 
     Parameters
     ----------
-    body, motions, levels, restitution, analysis, measure, factor, least, tolerance, **options
-        As for `fragility`.
+    body, motions, levels, restitution, analysis, measure, states, factor, least, progress
+        As for `fragility`; progress is not told of the histories of a search.
+    **options
+        As for `fragility`; ``tolerance`` of stripes and clouds is that of `Settings`.
 
     Returns
     -------
     MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
-        Outcomes, counts and curves.
+        Outcomes, counts and curves; the line of a cloud, the intervals of an incremental analysis.
 
     Raises
     ------
     InvalidValueError
         If a value is outside its range, goes with another analysis, or levels are missing.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block, sine = rk.Block(width=0.4, height=1.6), rk.pulses.sine
+    >>> stripes = fragility_analysis(block, [sine(1.0, period) for period in (0.4, 0.6, 0.8)], [2.0, 4.0, 6.0])
+    >>> stripes.counts["rocking"].tolist()
+    [0, 3, 3]
+    >>> stripes.uplift.verdict
+    'rocking is certain above 2.45166 and impossible below: 0 of 9 histories contradict it'
+    >>> pulses = [sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.0, 3.2, 6.0, 8.0)]
+    >>> cloud = fragility_analysis(block, pulses, analysis="cloud")
+    >>> {outcome.name: n for outcome, n in cloud.responses.counts().items()}
+    {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
+    >>> pulses = [sine(1.0, period) for period in (0.5, 0.7)]
+    >>> growing = fragility_analysis(block, pulses, [3.0, 6.0, 9.0], restitution=0.9, analysis="incremental")
+    >>> growing.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
+    [0.0, 1.0, 0.5]
+    >>> [(round(i.start, 3), round(i.end, 3)) for i in growing.intervals]
+    [(4.789, inf), (3.449, 8.667)]
     """
-    kind = checks.one_of("analysis", analysis, ANALYSES)
-    measure = measure_of(measure)
-    _refuse_others(kind, {"cloud": {"factor": factor, "least": least}, "incremental": {"tolerance": tolerance}})
-    if kind == "cloud":
-        if levels is not None:
-            raise InvalidValueError("levels are not for a cloud, which takes the motions as they are")
-        of_cloud: dict[str, Any] = {
-            "factor": 1.0 if factor is None else factor,
-            "least": LEAST if least is None else least,
-        }
-        return cloud(body, motions, restitution, measure, **of_cloud, **options)
-    if levels is None:
-        about = {name: value for name, value in options.items() if name not in {"threads", "progress", "states"}}
-        levels = default_levels(Subject.of(body, motions, restitution, measure, about))
-    if kind == "stripes":
-        return multiple_stripe_analysis(body, motions, levels, restitution, measure, **options)
-    if tolerance is not None:
-        options["tolerance"] = tolerance
-    return incremental_dynamic_analysis(body, motions, levels, restitution, measure, **options)
-
-
-def default_levels(subject: Subject) -> FloatArray:
-    """Return levels around those that lift the body, for a measure that says which these are [its unit]."""
-    if subject.measure.uplift is None:
-        raise InvalidValueError(f"which levels of {subject.measure.name}? Give levels in {subject.measure.unit}")
-    low, high, count = _REACH
-    lifts = subject.measure.uplift(subject.scale)
-    return np.geomspace(low * lifts, high * lifts, count)
-
-
-def _refuse_others(kind: str, by_kind: dict[str, dict[str, Any]]) -> None:
-    for other, values in by_kind.items():
-        odd = [name for name, value in values.items() if value is not None]
-        if odd and other != kind:
-            raise InvalidValueError(f'{odd[0]} is for analysis="{other}" only, this is "{kind}"')
+    kind, threads = checks.one_of("analysis", analysis, ANALYSES), options.pop("threads", None)
+    search = options.pop("tolerance", None) if kind == "incremental" else None
+    question = FragilityQuestion.of(
+        Subject.of(body, motions, restitution, measure, options), kind, levels, states, factor=factor, least=least,
+        tolerance=search,
+    )  # fmt: skip
+    return question.computed(threads, progress)
 
 
 def _with_curves(analysis: MultipleStripeAnalysis | CloudAnalysis) -> "xr.Dataset":

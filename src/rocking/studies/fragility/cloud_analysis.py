@@ -1,7 +1,6 @@
 """Cloud analysis: the motions as they are, a regression of the rotation on the measure, and overturning apart."""
 
 import math
-from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,14 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.least_squares import Regression, regression
 from rocking.statistics.lognormal import LognormalFit, fit_lognormal
-from rocking.studies.fragility.subject import FragilityAnalysis, Motions, Progress, Responses, Subject, limit_states
-from rocking.studies.histories import Product, results_of
+from rocking.studies.fragility.subject import FragilityAnalysis, Responses
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -161,65 +157,3 @@ class CloudAnalysis(FragilityAnalysis):
             "least": self.least,
             "barely lifted": self.barely_lifted,
         }
-
-
-def cloud_plan(
-    body: Body,
-    motions: Motions,
-    restitution: Any = "ked",
-    measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
-    *,
-    factor: float = 1.0,
-    least: float = LEAST,
-    **options: Any,
-) -> tuple[Product, Callable[[Arrays], CloudAnalysis]]:
-    """Return the histories of a cloud analysis, and what makes the analysis of their results."""
-    subject = Subject.of(body, motions, restitution, measure, options)
-    factor, least = checks.positive("factor", factor), checked_least(least)
-    levels = subject.measure.scaled(subject.intensities, factor)
-    limits = limit_states(states)
-    histories = subject.product(np.array([factor]))
-
-    def finish(arrays: Arrays) -> CloudAnalysis:
-        responses = Responses.of(arrays, subject.parameters, (len(subject.motions),))
-        return CloudAnalysis(subject, limits, histories, responses, levels, least)
-
-    return histories, finish
-
-
-def cloud(
-    body: Body,
-    motions: Motions,
-    restitution: Any = "ked",
-    measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
-    *,
-    factor: float = 1.0,
-    least: float = LEAST,
-    progress: Progress = None,
-    **options: Any,
-) -> CloudAnalysis:
-    """Take the motions as they are, and relate rotation and overturning to a measure of them.
-
-    Parameters
-    ----------
-    body, motions, restitution, measure, states, factor, least, progress, **options
-        As for `rocking.fragility`.
-
-    Returns
-    -------
-    CloudAnalysis
-        Outcomes, the line and the curves.
-
-    Examples
-    --------
-    >>> import rocking as rk
-    >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.0, 3.2, 6.0, 8.0)]
-    >>> analysis = cloud(rk.Block(width=0.4, height=1.6), pulses)
-    >>> {outcome.name: n for outcome, n in analysis.responses.counts().items()}
-    {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
-    """
-    threads = options.pop("threads", None)
-    histories, finish = cloud_plan(body, motions, restitution, measure, states, factor=factor, least=least, **options)
-    return finish(results_of(histories, threads=threads, progress=progress))

@@ -118,9 +118,9 @@ def compare_measures(
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud_analysis import cloud
+    >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
-    >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9)
+    >>> found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9, analysis="cloud")
     >>> compare_measures(found, ["pga", "pgv", "pgv/pga"]).best
     'pgv'
     """

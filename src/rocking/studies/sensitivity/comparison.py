@@ -16,7 +16,9 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
 from rocking.outcome import Outcome
 from rocking.studies.axis import axis_of
-from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
+from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
+from rocking.studies.fragility.question import FragilityQuestion
+from rocking.studies.fragility.subject import Subject
 from rocking.studies.motion_sets import MotionSet
 from rocking.studies.sensitivity.changes import CurveChange, Flips, curve_change, difference_of, flips_of
 from rocking.studies.sensitivity.restitutions import named_restitutions, sampled
@@ -444,11 +446,11 @@ def fragility_sensitivity(
     Parameters
     ----------
     body, motions, levels
-        As for `rocking.studies.multiple_stripe_analysis`.
+        As for `rocking.fragility`.
     restitutions, baseline, repetitions, seed
         As for `sensitivity`; no repetitions, no intervals.
     **options
-        Those of `rocking.studies.multiple_stripe_analysis`.
+        ``measure``, ``states`` and the other options of `rocking.studies.fragility_analysis`.
 
     Returns
     -------
@@ -458,11 +460,13 @@ def fragility_sensitivity(
     from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
+    measure, states = options.pop("measure", "pga"), options.pop("states", (0.5,))
     same_motions = _kept(motions)
 
     def study(*, restitution: Any) -> Any:
-        histories, finish = multiple_stripe_plan(body, same_motions, levels, restitution, **options)
-        return finish(results_of(sampled(histories), threads=threads, progress=progress))
+        subject = Subject.of(body, same_motions, restitution, measure, options)
+        question = FragilityQuestion.of(subject, "stripes", levels, states)
+        return question.answer(results_of(sampled(question.histories), threads=threads, progress=progress))
 
     return sensitivity(study, restitutions, baseline, repetitions=repetitions, seed=seed)
 

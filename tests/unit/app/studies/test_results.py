@@ -16,7 +16,7 @@ from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.results import contours_of, packed, plain, result_of
 from rocking.app.work import Remembered
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility import multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)
@@ -134,7 +134,7 @@ def test_fragility_is_that_of_python(result):
         "stripes", fragility={"levels": levels, "states": [0.5]}, restitution={"model": "ked"},
         motions={"synthetic": "pulse-like", "count": 20, "seed": 7},
     )  # fmt: skip
-    expected = multiple_stripe_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
+    expected = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
     (mine,) = answer["analyses"]
     for name, fit in expected.fits.items():
         assert mine["fits"][name]["median"] == fit.median

@@ -15,7 +15,7 @@ from rocking.campaigns.jobs import Job, JobFolder, analyses, export
 from rocking.campaigns.jobs.findings import READ
 from rocking.cli import main
 from rocking.errors import InvalidValueError
-from rocking.studies import multiple_stripe_analysis
+from rocking.studies import fragility_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
 
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
@@ -46,7 +46,7 @@ def from_python(bootstrap, seed):
     """Return the model of the same study by the Python calls."""
     motions = [rk.pulses.sine(1.0, period) for period in PERIODS]
     body = rk.Block(width=0.5, height=2.0)
-    found = multiple_stripe_analysis(body, motions, np.linspace(2.0, 8.0, 7), states=(0.3,))
+    found = fragility_analysis(body, motions, np.linspace(2.0, 8.0, 7), states=(0.3,))
     return model_of(found, "many states", bootstrap=bootstrap, seed=seed)
 
 

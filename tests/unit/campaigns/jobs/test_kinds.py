@@ -10,7 +10,7 @@ from rocking.campaigns.jobs import Job, analyses, export
 from rocking.errors import InvalidValueError
 from rocking.spec import document
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.fragility import fragility_analysis
 from rocking.studies.sensitivity import SampledRestitution
 
 xr = pytest.importorskip("xarray")
@@ -150,7 +150,7 @@ def test_spectrum_with_a_law_has_no_coefficient(finished, tmp_path, text):
 def test_stripes_are_multiple_stripes(finished, tmp_path):
     """Stripes of synthetic motions: outcomes, counts, curves and summary of the one call."""
     motions = SyntheticSet("pulse-like", 12, 4)
-    wanted = multiple_stripe_analysis(BLOCK, motions, np.linspace(2, 10, 5), states=(0.3,))
+    wanted = fragility_analysis(BLOCK, motions, np.linspace(2, 10, 5), states=(0.3,))
     folder = finished("stripes", 9)
     found = analyses(folder)["ked"]
     assert np.array_equal(found.responses.rotation, wanted.responses.rotation, equal_nan=True)
@@ -163,7 +163,7 @@ def test_stripes_are_multiple_stripes(finished, tmp_path):
 
 def test_incremental_is_incremental(finished):
     """Incremental: the same intervals to the last bit, searched after the campaign."""
-    wanted = incremental_dynamic_analysis(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, states=())
+    wanted = fragility_analysis(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, states=(), analysis="incremental")
     found = analyses(finished("incremental", 5))["0.9"]
     assert found.intervals == wanted.intervals
     assert len(found.intervals) >= 3
@@ -172,7 +172,7 @@ def test_incremental_is_incremental(finished):
 
 def test_cloud_is_cloud(finished, tmp_path):
     """Cloud: the same outcomes and summary, and the intensities of the scaled motions beside them."""
-    wanted = cloud(BLOCK, SyntheticSet("pulse-like", 12, 4), measure="pgv", factor=2.0)
+    wanted = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 12, 4), measure="pgv", factor=2.0, analysis="cloud")
     folder = finished("cloud", 5)
     assert analyses(folder)["ked"].summary() == wanted.summary()
     file = opened(folder, tmp_path)
@@ -185,7 +185,7 @@ def test_fragility_of_several_restitutions(finished, text):
     folder = finished("stripes", 9, text("stripes", 9) + '[restitution]\nmodels = ["ked", "housner"]\n')
     found = analyses(folder)
     for label in ("ked", "housner"):
-        wanted = multiple_stripe_analysis(
+        wanted = fragility_analysis(
             BLOCK, SyntheticSet("pulse-like", 12, 4), np.linspace(2, 10, 5), label, states=(0.3,)
         )
         assert np.array_equal(found[label].responses.rotation, wanted.responses.rotation, equal_nan=True)
@@ -203,7 +203,7 @@ def test_drawn_restitution(finished, text, each):
     (found,) = analyses(folders[0]).values()
     motions = SyntheticSet("pulse-like", 12, 4)
     if each == "impact":
-        wanted = cloud(BLOCK, motions, law, measure="pgv", factor=2.0)
+        wanted = fragility_analysis(BLOCK, motions, restitution=law, measure="pgv", factor=2.0, analysis="cloud")
         assert np.array_equal(found.responses.rotation, wanted.responses.rotation)
     assert not np.array_equal(found.responses.rotation, analyses(finished("cloud", 7))["ked"].responses.rotation)
 

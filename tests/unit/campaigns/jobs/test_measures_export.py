@@ -15,7 +15,7 @@ from rocking.campaigns import CampaignIncompleteError, CampaignInterrupted
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
 from rocking.campaigns.jobs.exporting import exports_of, measures_table
 from rocking.errors import InvalidValueError
-from rocking.studies import SyntheticSet, cloud, compare_measures
+from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
 COUNT, PGA = 40, 3.2
 NAMES = ["pga", "pgv", "p pgv/(g tan alpha)", "arias", "sa(1.0)"]
@@ -53,7 +53,9 @@ def wanted():
         "magnitude": [float(motion.metadata["magnitude"]) for motion in motions],
         "ln distance_km": [math.log(float(motion.metadata["distance_km"])) for motion in motions],
     }
-    found = cloud(rk.Block(width=0.4, height=2.0), motions, "ked", "pgv", factor=1.5)
+    found = fragility_analysis(
+        rk.Block(width=0.4, height=2.0), motions, restitution="ked", measure="pgv", factor=1.5, analysis="cloud"
+    )
     return compare_measures(found, NAMES, metadata)
 
 
@@ -77,7 +79,13 @@ def test_the_ranking_of_the_python_call(campaign, wanted):
     assert found.rows() == wanted.rows()
     assert (dict(found.left_out), found.least) == (dict(wanted.left_out), wanted.least)
     assert len(found.scores) == len(NAMES)
-    fewer = cloud(rk.Block(width=0.4, height=2.0), list(SyntheticSet("point-source", COUNT - 1, 1)), "ked", factor=1.5)
+    fewer = fragility_analysis(
+        rk.Block(width=0.4, height=2.0),
+        list(SyntheticSet("point-source", COUNT - 1, 1)),
+        restitution="ked",
+        factor=1.5,
+        analysis="cloud",
+    )
     assert compare_measures(fewer, NAMES).rows() != compare_measures(analyses(campaign)["ked"], NAMES).rows()
 
 

@@ -14,9 +14,9 @@ from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.statistics import regression
-from rocking.studies import cloud
-from rocking.studies.fragility.cloud_analysis import cloud_plan
-from rocking.studies.fragility.subject import Responses
+from rocking.studies import fragility_analysis
+from rocking.studies.fragility.question import FragilityQuestion
+from rocking.studies.fragility.subject import Responses, Subject
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -39,7 +39,7 @@ MOTIONS = records(80)
 
 @pytest.fixture(scope="module")
 def found():
-    return cloud(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5))
+    return fragility_analysis(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5), analysis="cloud")
 
 
 @pytest.mark.verifies("second engine", "the reference engine, every tenth motion", within="1e-6")
@@ -87,11 +87,11 @@ def test_three_parts_of_the_probability(found):
 
 def barely(count):
     """A cloud whose first histories above the threshold are lifted by 1e-7 alpha only, and where they are."""
-    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9)
-    arrays = histories.run(0, 80)
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), "cloud")
+    arrays = question.histories.run(0, 80)
     chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[::2][:count]
     arrays["peak_rotation"][chosen] = 1e-7 * math.atan(0.25)
-    return finish(arrays), chosen
+    return question.answer(arrays), chosen
 
 
 def test_barely_lifted_histories_are_no_points_of_the_line():
@@ -115,19 +115,25 @@ def test_barely_lifted_histories_reach_no_state():
     mean = hurt.probability(hurt.motion_levels, 0.05).mean()
     # the fits know the shares, and miss by the shape of their curves alone
     assert abs(mean - observed) < 0.02
-    ignored = cloud(BLOCK, MOTIONS, restitution=0.9).probability(hurt.motion_levels, 0.05).mean()
+    ignored = (
+        fragility_analysis(BLOCK, MOTIONS, restitution=0.9, analysis="cloud")
+        .probability(hurt.motion_levels, 0.05)
+        .mean()
+    )
     assert ignored - observed > 0.07
     np.testing.assert_allclose(sum(hurt.parts(hurt.motion_levels, 0.05).values()), 1.0, rtol=1e-14)
     with pytest.raises(InvalidValueError, match="barely lifted"):
         hurt.probability(4.0, 0.005)
     for bad in (-0.1, 1.0, math.nan):
         with pytest.raises(InvalidValueError, match="least"):
-            cloud(BLOCK, MOTIONS[:2], least=bad)
+            fragility_analysis(BLOCK, MOTIONS[:2], least=bad, analysis="cloud")
 
 
 def test_the_same_motion_twice_is_one_observation():
     """Six copies of each motion: intervals come from whole motions, not from six times as many outcomes."""
-    once, often = (cloud(BLOCK, MOTIONS * n, restitution=0.9).fits["overturned"] for n in (1, 6))
+    once, often = (
+        fragility_analysis(BLOCK, MOTIONS * n, restitution=0.9, analysis="cloud").fits["overturned"] for n in (1, 6)
+    )
     assert (once.counts.clusters, once.interval_method) == (0, "profile")
     assert (often.counts.clusters, often.interval_method) == (80, "bootstrap")
     ends = often.interval("median"), often.interval("median", method="profile")
@@ -146,8 +152,8 @@ def test_probability_follows_what_was_observed(found):
 
 def test_a_factor_is_a_scaled_set_of_motions(found):
     """One factor on all motions gives what motions multiplied beforehand give, level and outcome."""
-    scaled = cloud(BLOCK, MOTIONS, restitution=0.9, factor=1.5)
-    beforehand = cloud(BLOCK, [m.scaled(1.5) for m in MOTIONS], restitution=0.9)
+    scaled = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, factor=1.5, analysis="cloud")
+    beforehand = fragility_analysis(BLOCK, [m.scaled(1.5) for m in MOTIONS], restitution=0.9, analysis="cloud")
     np.testing.assert_allclose(scaled.motion_levels, 1.5 * found.motion_levels, rtol=1e-14)
     np.testing.assert_allclose(scaled.motion_levels, beforehand.motion_levels, rtol=1e-14)
     assert scaled.responses.outcome.tolist() == beforehand.responses.outcome.tolist()
@@ -155,18 +161,18 @@ def test_a_factor_is_a_scaled_set_of_motions(found):
 
 def test_plan_and_failures(found):
     """Results computed elsewhere finish as the same analysis; a failed one leaves the fits and is counted."""
-    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5))
-    arrays = histories.run(0, 80)
-    same = finish(arrays)
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), "cloud", states=(0.2, 0.5))
+    arrays = question.histories.run(0, 80)
+    same = question.answer(arrays)
     assert same.fits["overturned"].median == found.fits["overturned"].median
     arrays["outcome"][79], arrays["peak_rotation"][79] = Outcome.FAILED.code, math.nan
-    less = finish(arrays)
+    less = question.answer(arrays)
     assert (less.failed, int(less.trials.sum()), less.fits["overturned"].observations) == (1, 79, 79)
 
 
 def test_counts_by_level_are_those_of_the_motions(found):
     """Motions at equal levels are counted together."""
-    twice = cloud(BLOCK, [*MOTIONS[:5], *MOTIONS[:5]], restitution=0.9)
+    twice = fragility_analysis(BLOCK, [*MOTIONS[:5], *MOTIONS[:5]], restitution=0.9, analysis="cloud")
     assert twice.levels.size == 5
     assert twice.trials.tolist() == [2] * 5
     assert sum(found.counts["overturned"]) == found.responses.overturned.sum()
@@ -174,7 +180,7 @@ def test_counts_by_level_are_those_of_the_motions(found):
 
 def test_rocking_gets_a_curve_where_no_level_decides():
     """Against PGV the probability of rocking is fitted, and overturning never exceeds it."""
-    by_velocity = cloud(BLOCK, MOTIONS, restitution=0.9, measure="pgv")
+    by_velocity = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, measure="pgv", analysis="cloud")
     levels = np.array([0.1, 0.3, 1.0])
     rocks = by_velocity.probability_of_rocking(levels)
     assert np.all((rocks > 0.0) & (rocks <= 1.0))
@@ -226,7 +232,7 @@ def test_places_that_differ_by_more_than_rounding():
 
 def test_summary_without_a_line():
     """Too few motions that rocked leave no line: the summary says why, and the rest stands."""
-    told = cloud(BLOCK, MOTIONS[:3], restitution=0.9).summary()
+    told = fragility_analysis(BLOCK, MOTIONS[:3], restitution=0.9, analysis="cloud").summary()
     assert "at least 3 points" in told["regression"]["none"]
     assert told["outcomes"]["no_uplift"] > 0
 
@@ -239,7 +245,7 @@ def test_what_is_refused(found):
     with pytest.raises(InvalidValueError):
         found.probability(3.0, 0.0)
     with pytest.raises(InvalidValueError, match="at least 3 points"):
-        _ = cloud(BLOCK, MOTIONS[:3], restitution=0.9).regression
+        _ = fragility_analysis(BLOCK, MOTIONS[:3], restitution=0.9, analysis="cloud").regression
     # places differ by more than rounding, which is relative to where they lie
     for at, apart in ((1.0, 0.0), (1.0, 1e-13), (1e6, 1e-8)):
         with pytest.raises(InvalidValueError, match="different places"):

@@ -14,7 +14,7 @@ from scipy.io import loadmat
 import rocking as rk
 from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.statistics import fit_lognormal, fit_ordered
-from rocking.studies import multiple_stripe_analysis
+from rocking.studies import fragility_analysis
 from rocking.studies.fragility import (
     FragilityCurve,
     FragilityModel,
@@ -228,7 +228,7 @@ def test_moments_against_integrals():
 def test_models_of_analyses():
     """An analysis becomes curves with its counts; states without a curve are named; none at all is refused."""
     pulses = [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 0.8, 20)]
-    found = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 4.0, 5.0, 6.0], restitution=0.9)
+    found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 4.0, 5.0, 6.0], restitution=0.9)
     made = model_of(found, "block", "pulses")
     assert [c.state for c in made.curves] == ["rotation > 0.5 alpha", "overturned"]
     assert made.curves[1].median == found.fits["overturned"].median
@@ -237,7 +237,7 @@ def test_models_of_analyses():
     )
     assert made.reached["rocking"].tolist() == [20] * 4
     assert made.uplift_threshold == found.uplift.threshold
-    none = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [0.5, 1.0])
+    none = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [0.5, 1.0])
     with pytest.raises(InvalidValueError, match="nothing to export"):
         model_of(none, "block")
 

@@ -10,14 +10,15 @@ import rocking as rk
 from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies import incremental_dynamic_analysis, multiple_stripe_analysis
-from rocking.studies.fragility._incremental_dynamic_analysis import (
+from rocking.studies import fragility_analysis
+from rocking.studies.fragility.incremental_dynamic_analysis import (
     OutcomeBrackets,
     brackets_of,
-    incremental_dynamic_plan,
     intervals_of,
     refined,
 )
+from rocking.studies.fragility.question import FragilityQuestion
+from rocking.studies.fragility.subject import Subject
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)
 PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.35, 0.9, 12)]
@@ -26,7 +27,7 @@ LEVELS = np.linspace(2.0, 12.0, 41)
 
 @pytest.fixture(scope="module")
 def found():
-    return incremental_dynamic_analysis(BODY, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
+    return fragility_analysis(BODY, PULSES, LEVELS, restitution=0.9, tolerance=1e-10, analysis="incremental")
 
 
 def inside(intervals, motion, level):
@@ -66,7 +67,7 @@ def test_boundaries_are_as_close_as_wanted(found):
 
 def test_fraction_is_that_of_the_stripes(found):
     """The definition "fraction" is the multiple-stripe analysis at the same levels, curve and all."""
-    stripes = multiple_stripe_analysis(BODY, PULSES, LEVELS, restitution=0.9)
+    stripes = fragility_analysis(BODY, PULSES, LEVELS, restitution=0.9)
     np.testing.assert_array_equal(found.fractions, stripes.counts["overturned"] / 12)
     assert found.fits["overturned"].median == stripes.fits["overturned"].median
 
@@ -110,14 +111,16 @@ def test_both_definitions_are_printed(found):
 
 def test_levels_that_start_above_the_crossing():
     """With the first level already overturning, the crossing below it is found all the same."""
-    low = incremental_dynamic_analysis(BODY, PULSES[3], [3.0, 3.5, 4.0, 4.5, 5.0], restitution=0.9, tolerance=1e-10)
-    high = incremental_dynamic_analysis(BODY, PULSES[3], [5.0], restitution=0.9, tolerance=1e-10)
+    low = fragility_analysis(
+        BODY, PULSES[3], [3.0, 3.5, 4.0, 4.5, 5.0], restitution=0.9, tolerance=1e-10, analysis="incremental"
+    )
+    high = fragility_analysis(BODY, PULSES[3], [5.0], restitution=0.9, tolerance=1e-10, analysis="incremental")
     assert high.first_crossings[0] == pytest.approx(low.first_crossings[0], rel=1e-9)
 
 
 def test_motions_that_never_overturn_are_censored():
     """Levels below all crossings leave no crossing, no fit, and the right words."""
-    none = incremental_dynamic_analysis(BODY, PULSES[:3], [2.5, 2.6], restitution=0.9)
+    none = fragility_analysis(BODY, PULSES[:3], [2.5, 2.6], restitution=0.9, analysis="incremental")
     assert none.first_crossings.tolist() == [math.inf] * 3
     assert none.first_crossing_fit is None
     assert none.summary()["first crossing"] is None
@@ -126,10 +129,11 @@ def test_motions_that_never_overturn_are_censored():
 
 def test_motions_with_a_failure_have_no_crossing_and_are_named(found):
     """A failed history takes its motion out of the first crossings and leaves the others bitwise as they were."""
-    histories, finish = incremental_dynamic_plan(BODY, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
-    arrays = histories.run(0, histories.count)
+    subject = Subject.of(BODY, PULSES, 0.9, "pga", {})
+    question = FragilityQuestion.of(subject, "incremental", LEVELS, tolerance=1e-10)
+    arrays = question.histories.run(0, question.histories.count)
     arrays["outcome"][5], arrays["peak_rotation"][5] = Outcome.FAILED.code, math.nan
-    hurt = finish(arrays)
+    hurt = question.answer(arrays)
     assert math.isnan(hurt.first_crossings[0])
     np.testing.assert_array_equal(hurt.first_crossings[1:], found.first_crossings[1:])
     assert hurt.summary()["incomplete motions"] == [0]
@@ -234,8 +238,8 @@ def test_random_coefficients_have_no_crossing():
     """Coefficients drawn anew for every history leave no crossing to search: refused, and stripes take them."""
     law = rk.dynamics.RandomRestitution(np.array([0.9, 1.0]), seed=3)
     with pytest.raises(InvalidValueError, match="drawn anew"):
-        incremental_dynamic_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law)
-    assert multiple_stripe_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law).failed == 0
+        fragility_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law, analysis="incremental")
+    assert fragility_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law).failed == 0
 
 
 class Slower(ImpactLaw):
@@ -253,10 +257,12 @@ class Drawn(Slower):
 
 def test_a_law_of_ones_own_is_taken_with_a_note():
     """A factor of one gives the crossings of the plain coefficient, and the summary says what it takes for granted."""
-    own = incremental_dynamic_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Slower(), tolerance=1e-4)
-    plain = incremental_dynamic_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=1.0, tolerance=1e-4)
+    own = fragility_analysis(
+        BLOCK, PULSES[:2], [3.0, 6.0], restitution=Slower(), tolerance=1e-4, analysis="incremental"
+    )
+    plain = fragility_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=1.0, tolerance=1e-4, analysis="incremental")
     np.testing.assert_allclose(own.first_crossings, plain.first_crossings, rtol=2e-4)
     assert "law of one's own" in own.summary()["restitution note"]
     assert plain.summary()["restitution note"] == ""
     with pytest.raises(InvalidValueError, match="drawn anew"):
-        incremental_dynamic_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Drawn())
+        fragility_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Drawn(), analysis="incremental")

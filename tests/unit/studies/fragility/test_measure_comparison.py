@@ -10,9 +10,10 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies import cloud, compare_measures
-from rocking.studies.fragility.cloud_analysis import cloud_plan
+from rocking.studies import compare_measures, fragility_analysis
 from rocking.studies.fragility.measure_comparison import replace_measure
+from rocking.studies.fragility.question import FragilityQuestion
+from rocking.studies.fragility.subject import Subject
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -25,7 +26,7 @@ NOISE = RANDOM.normal(size=120)
 
 @pytest.fixture(scope="module")
 def analysis():
-    return cloud(BODY, MOTIONS, restitution=0.9)
+    return fragility_analysis(BODY, MOTIONS, restitution=0.9, analysis="cloud")
 
 
 @pytest.fixture(scope="module")
@@ -71,11 +72,11 @@ def test_velocity_beats_acceleration_for_short_pulses(ranking):
 
 def test_barely_lifted_histories_do_not_rank_measures():
     """A cloud with rotations of 1e-7 alpha ranks as the one without those histories; with them it does not."""
-    histories, finish = cloud_plan(BODY, MOTIONS, restitution=0.9)
-    arrays = histories.run(0, 120)
+    question = FragilityQuestion.of(Subject.of(BODY, MOTIONS, 0.9, "pga", {}), "cloud")
+    arrays = question.histories.run(0, 120)
     chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[:20]
     arrays["peak_rotation"][chosen] *= 1e-7 / np.abs(arrays["peak_rotation"][chosen]) * math.atan(0.25)
-    hurt = finish(arrays)
+    hurt = question.answer(arrays)
     kept = hurt.responses.rocked & (hurt.responses.rotation >= 0.01)
     found = compare_measures(hurt, ["pga", "pgv"])
     assert found.least == 0.01
@@ -111,10 +112,10 @@ def test_the_table(ranking):
 def test_overturning_dispersion_is_that_of_the_curve():
     """The dispersion of overturning is the one that a cloud analysis against that measure fits."""
     pulses = [rk.pulses.sine(a, t) for a in np.linspace(2.6, 9.0, 12) for t in (0.4, 0.55, 0.7, 0.85)]
-    over = cloud(BODY, pulses, restitution=0.9)
+    over = fragility_analysis(BODY, pulses, restitution=0.9, analysis="cloud")
     scores = {s.measure: s for s in compare_measures(over, ["pga", "pgv"]).scores}
     for name in ("pga", "pgv"):
-        fit = cloud(BODY, pulses, restitution=0.9, measure=name).fits["overturned"]
+        fit = fragility_analysis(BODY, pulses, restitution=0.9, measure=name, analysis="cloud").fits["overturned"]
         assert scores[name].overturning_dispersion == pytest.approx(fit.dispersion, rel=1e-12, abs=0.0)
         assert scores[name].overturned == over.responses.overturned.sum() > 0
 
@@ -123,7 +124,7 @@ def test_the_same_histories_serve_all_measures(analysis):
     """Another measure changes levels, never outcomes; a factor counts with the power of the measure."""
     other = replace_measure(analysis, "arias")
     assert other.responses is analysis.responses
-    doubled = replace_measure(cloud(BODY, MOTIONS, restitution=0.9, factor=2.0), "arias")
+    doubled = replace_measure(fragility_analysis(BODY, MOTIONS, restitution=0.9, factor=2.0, analysis="cloud"), "arias")
     np.testing.assert_allclose(doubled.motion_levels, 4.0 * other.motion_levels, rtol=1e-13)
 
 
@@ -137,7 +138,9 @@ def test_measures_of_nothing_overturned_say_so(ranking):
 
 def test_a_measure_that_does_not_vary_is_left_out():
     """Pulses of one amplitude: PGA says nothing about them and is named, the others are ranked."""
-    same = cloud(BODY, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9)
+    same = fragility_analysis(
+        BODY, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9, analysis="cloud"
+    )
     found = compare_measures(same, ["pga", "pgv"])
     assert [s.measure for s in found.scores] == ["pgv"]
     assert list(found.left_out) == ["pga"]

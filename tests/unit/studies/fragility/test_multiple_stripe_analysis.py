@@ -11,8 +11,8 @@ from rocking import conventions
 from rocking.dynamics import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies import MotionSet, multiple_stripe_analysis
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
+from rocking.studies import MotionSet, fragility_analysis
+from rocking.studies.fragility.question import FragilityQuestion
 from rocking.studies.fragility.subject import Responses, Subject, limit_states, uplift_check
 
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -34,7 +34,7 @@ MOTIONS, LEVELS = records(12), np.array([1.5, 3.0, 4.5, 6.0, 8.0, 10.0])
 
 @pytest.fixture(scope="module")
 def stripes():
-    return multiple_stripe_analysis(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+    return fragility_analysis(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
 
 
 def test_counts_against_single_simulations(stripes):
@@ -78,19 +78,19 @@ def test_the_check_of_uplift_can_fail(stripes):
 def test_no_threshold_with_a_vertical_part_or_another_measure():
     """With a vertical part, or against PGV, no level decides: rocking gets a curve, and the check says so."""
     shaken = [rk.GroundMotion(m.acceleration, 0.02, vertical=0.5 * m.acceleration[::-1]) for m in MOTIONS]
-    found = multiple_stripe_analysis(BLOCK, shaken, LEVELS, restitution=0.9)
+    found = fragility_analysis(BLOCK, shaken, LEVELS, restitution=0.9)
     assert found.uplift.threshold is None
     assert "no level" in found.uplift.verdict
-    by_velocity, _ = multiple_stripe_plan(BLOCK, MOTIONS, [0.1, 0.2], measure="pgv")
+    by_velocity = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, "ked", "pgv", {}), levels=[0.1, 0.2]).histories
     assert by_velocity.count == 24
 
 
 def test_a_plan_computed_elsewhere_gives_the_same_analysis(stripes):
     """Histories run in two pieces and joined finish as the analysis that was computed at once."""
-    histories, finish = multiple_stripe_plan(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
-    assert histories.key() == stripes.histories.key()
-    halves = histories.run(0, 31), histories.run(31, histories.count)
-    found = finish({name: np.concatenate([half[name] for half in halves]) for name in halves[0]})
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, states=(0.2, 0.5))
+    assert question.histories.key() == stripes.histories.key()
+    halves = question.histories.run(0, 31), question.histories.run(31, question.histories.count)
+    found = question.answer({name: np.concatenate([half[name] for half in halves]) for name in halves[0]})
     np.testing.assert_array_equal(found.responses.rotation, stripes.responses.rotation)
     for name, fit in stripes.fits.items():
         assert found.fits[name].median == fit.median
@@ -98,11 +98,11 @@ def test_a_plan_computed_elsewhere_gives_the_same_analysis(stripes):
 
 def test_failed_histories_are_left_out_and_counted(stripes):
     """One failed history lowers the trials of its level by one and touches nothing else."""
-    histories, finish = multiple_stripe_plan(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
-    arrays = histories.run(0, histories.count)
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, states=(0.2, 0.5))
+    arrays = question.histories.run(0, question.histories.count)
     arrays["outcome"][4] = Outcome.FAILED.code
     arrays["peak_rotation"][4] = math.nan
-    found = finish(arrays)
+    found = question.answer(arrays)
     assert found.failed == 1
     assert found.trials.tolist() == [12, 12, 12, 12, 11, 12]
     lost = {name: int(stripes.counts[name][4] - counts[4]) for name, counts in found.counts.items()}
@@ -113,7 +113,7 @@ def test_failed_histories_are_left_out_and_counted(stripes):
 def test_progress_and_threads_change_nothing(stripes):
     """The numbers of done histories add up, and one thread gives the same states."""
     done = []
-    found = multiple_stripe_analysis(
+    found = fragility_analysis(
         BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5), threads=1, progress=done.append
     )
     assert sum(done) == found.histories.count == 72
@@ -160,14 +160,12 @@ def test_names_and_threshold_make_each_motion_once():
 def test_the_same_motion_under_six_names_is_one_cluster():
     """Copies of one record are one observation: no bootstrap of a certainty, and the verdict says why."""
     copies = [rk.GroundMotion(MOTIONS[0].acceleration, 0.02, name=f"copy {k}") for k in range(6)]
-    one = multiple_stripe_analysis(BLOCK, copies, np.linspace(3.0, 12.0, 9), restitution=0.9).fits["overturned"]
+    one = fragility_analysis(BLOCK, copies, np.linspace(3.0, 12.0, 9), restitution=0.9).fits["overturned"]
     assert (one.counts.clusters, one.interval_method) == (1, "profile")
     assert "1 distinct cluster, where 5 are needed" in one.verdict
     with pytest.raises(InvalidValueError, match="far too narrow"):
         one.bootstrap("clusters")
-    mixed = multiple_stripe_analysis(BLOCK, [*MOTIONS, MOTIONS[3], MOTIONS[3]], LEVELS, restitution=0.9).fits[
-        "overturned"
-    ]
+    mixed = fragility_analysis(BLOCK, [*MOTIONS, MOTIONS[3], MOTIONS[3]], LEVELS, restitution=0.9).fits["overturned"]
     assert mixed.counts.clusters == 12
 
 

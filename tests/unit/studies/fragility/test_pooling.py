@@ -12,8 +12,8 @@ from rocking.statistics import count_outcomes
 from rocking.statistics.counts import pooled
 from rocking.studies import MotionSet
 from rocking.studies.fragility import model_of
-from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
-from rocking.studies.fragility.cloud_analysis import cloud_plan
+from rocking.studies.fragility.question import FragilityQuestion
+from rocking.studies.fragility.subject import Subject
 
 LEVELS = np.array([1.0, 2.0, 3.5, 5.0])
 
@@ -114,12 +114,9 @@ def peak_of(kind, count):
     """Return the memory that the analysis of so many histories takes, its results apart [bytes]."""
     body, motions = rk.Block(width=0.4, height=1.6), Pulses(count // (8 if kind == "stripes" else 1))
     grid = np.linspace(2.0, 9.0, 8)
-    if kind == "stripes":
-        _, finish = multiple_stripe_plan(body, motions, grid, measure="pgv")
-        level = np.broadcast_to(grid, (len(motions), 8))
-    else:
-        _, finish = cloud_plan(body, motions, measure="pgv")
-        level = np.linspace(2.0, 9.0, count)
+    subject = Subject.of(body, motions, "ked", "pgv", {})
+    question = FragilityQuestion.of(subject, kind, grid if kind == "stripes" else None)
+    level = np.broadcast_to(grid, (len(motions), 8)) if kind == "stripes" else np.linspace(2.0, 9.0, count)
     capacity = np.exp(np.random.default_rng(0).normal(1.3, 0.4, (len(motions), 1) if kind == "stripes" else count))
     over = (level > capacity).ravel()
     arrays = {
@@ -127,7 +124,7 @@ def peak_of(kind, count):
         "peak_rotation": np.where(over, 2.0, 0.1),
     }
     tracemalloc.start()
-    model = model_of(finish(arrays), "many")
+    model = model_of(question.answer(arrays), "many")
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert [curve.state for curve in model.curves][-1] == "overturned"

@@ -1,7 +1,7 @@
 """Incremental dynamic analysis: every motion at rising levels, with every interval in which it overturns the body."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rocking import checks
-from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.statistics.censored import CensoredFit, fit_crossings
-from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
-from rocking.studies.fragility.subject import Motions, Progress, Responses
-from rocking.studies.histories import Product, results_of
+from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
+from rocking.studies.fragility.subject import Responses
+from rocking.studies.histories import results_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -186,6 +185,15 @@ OWN_LAW = (
 )
 
 
+def check_repeatable(law: ImpactLaw) -> None:
+    """Refuse a restitution that is another one whenever a motion is repeated."""
+    if law.kind == RANDOM or law.per_history:
+        raise InvalidValueError(
+            f"restitution must be the same whenever a motion is repeated, got {type(law).__name__}: no level starts "
+            'the overturning if the coefficients are drawn anew; analysis="stripes" takes it'
+        )
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     """The outcome of an incremental dynamic analysis: that of the stripes, and the intervals between their levels.
@@ -291,75 +299,3 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "share with resurrection": self.share_resurrected(),
             "share with resurrection wider than 1 %": self.share_resurrected(0.01),
         }
-
-
-def incremental_dynamic_plan(
-    body: Body,
-    motions: Motions,
-    levels: Any,
-    restitution: Any = "ked",
-    measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
-    *,
-    tolerance: float = 1e-8,
-    **options: Any,
-) -> tuple[Product, Callable[[Arrays], IncrementalDynamicAnalysis]]:
-    """Return the histories of an incremental dynamic analysis, and what makes it of their results and a search."""
-    tolerance = checks.within("tolerance", tolerance, 0.0, 0.1)
-    threads = options.pop("threads", None)
-    histories, finish_stripes = multiple_stripe_plan(body, motions, levels, restitution, measure, states, **options)
-    if histories.law.kind == RANDOM or histories.law.per_history:
-        raise InvalidValueError(
-            f"restitution must be the same whenever a motion is repeated, got {type(histories.law).__name__}: no level "
-            "starts the overturning if the coefficients are drawn anew; multiple_stripe_analysis() takes it"
-        )
-
-    def finish(arrays: Arrays) -> IncrementalDynamicAnalysis:
-        stripes = finish_stripes(arrays)
-        return IncrementalDynamicAnalysis(
-            stripes.subject, stripes.states, histories, stripes.responses, stripes.levels,
-            tuple(overturning_intervals(stripes, tolerance, threads)),
-        )  # fmt: skip
-
-    return histories, finish
-
-
-def incremental_dynamic_analysis(
-    body: Body,
-    motions: Motions,
-    levels: Any,
-    restitution: Any = "ked",
-    measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
-    *,
-    tolerance: float = 1e-8,
-    progress: Progress = None,
-    **options: Any,
-) -> IncrementalDynamicAnalysis:
-    """Raise every motion level by level, and find all intervals in which it overturns the body.
-
-    Parameters
-    ----------
-    body, motions, levels, restitution, measure, states, tolerance, progress, **options
-        As for `rocking.fragility`; progress is not told of the histories of the search.
-
-    Returns
-    -------
-    IncrementalDynamicAnalysis
-        Curves, intervals and both definitions.
-
-    Examples
-    --------
-    >>> import rocking as rk
-    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    >>> block = rk.Block(width=0.4, height=1.6)
-    >>> analysis = incremental_dynamic_analysis(block, pulses, [3.0, 6.0, 9.0], restitution=0.9)
-    >>> analysis.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
-    [0.0, 1.0, 0.5]
-    >>> [(round(i.start, 3), round(i.end, 3)) for i in analysis.intervals]
-    [(4.789, inf), (3.449, 8.667)]
-    """
-    histories, finish = incremental_dynamic_plan(
-        body, motions, levels, restitution, measure, states, tolerance=tolerance, **options
-    )
-    return finish(results_of(histories, threads=options.get("threads"), progress=progress))

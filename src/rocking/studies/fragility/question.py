@@ -1,0 +1,89 @@
+"""The question of a fragility: a subject, the analysis of it that is asked for, its histories and its answer."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
+from rocking.studies.fragility.incremental_dynamic_analysis import (
+    IncrementalDynamicAnalysis,
+    check_repeatable,
+    overturning_intervals,
+)
+from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
+from rocking.studies.fragility.subject import LimitState, Progress, Responses, Subject, checked_levels, limit_states
+from rocking.studies.histories import Product, results_of
+
+ANALYSES = ("stripes", "cloud", "incremental")
+
+_REACH = (0.9, 9.0, 16)
+"""Levels that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityQuestion:
+    """A subject with the analysis of it that is asked for: its histories, and what their results make."""
+
+    subject: Subject
+    analysis: str  # one of `ANALYSES`
+    states: tuple[LimitState, ...]
+    levels: FloatArray  # to which every motion is brought; of a cloud that of each motion [unit of the measure]
+    histories: Product
+    least: float  # rotation over alpha below which a history of a cloud is barely lifted [-]
+    tolerance: float  # width over level to which an incremental analysis searches [-]
+
+    @classmethod
+    def of(
+        cls, subject: Subject, analysis: str = "stripes", levels: Any = None, states: Sequence[float] = (0.5,), *,
+        factor: float | None = None, least: float | None = None, tolerance: float | None = None,
+    ) -> Self:  # fmt: skip
+        """Return what is asked, as `rocking.fragility` says it; nothing is computed but intensities."""
+        kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
+        odd = [name for name, value in (("factor", factor), ("least", least)) if value is not None]
+        if odd and kind != "cloud":
+            raise InvalidValueError(f'{odd[0]} is for analysis="cloud" only, this is "{kind}"')
+        least = checked_least(LEAST if least is None else least)
+        tolerance = checks.within("tolerance", 1e-8 if tolerance is None else tolerance, 0.0, 0.1)
+        if kind == "cloud":
+            if levels is not None:
+                raise InvalidValueError("levels are not for a cloud, which takes the motions as they are")
+            factor = checks.positive("factor", 1.0 if factor is None else factor)
+            at, factors = measure.scaled(subject.intensities, factor), np.array([factor])
+        else:
+            at = default_levels(subject) if levels is None else checked_levels("levels", levels, measure.unit)
+            factors = measure.factors(subject.intensities, at)
+        histories = subject.product(factors)
+        if kind == "incremental":
+            check_repeatable(histories.law)
+        return cls(subject, kind, limit_states(states), at, histories, least, tolerance)
+
+    def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
+        """Return the analysis of the results of the histories; the search of an incremental one is done here."""
+        shape = (len(self.subject.motions), *(self.levels.shape if self.analysis != "cloud" else ()))
+        responses = Responses.of(arrays, self.subject.parameters, shape)
+        known = self.subject, self.states, self.histories, responses, self.levels
+        if self.analysis == "cloud":
+            return CloudAnalysis(*known, self.least)
+        stripes = MultipleStripeAnalysis(*known)
+        if self.analysis == "stripes":
+            return stripes
+        return IncrementalDynamicAnalysis(*known, tuple(overturning_intervals(stripes, self.tolerance, threads)))
+
+    def computed(self, threads: int | None = None, progress: Progress = None) -> MultipleStripeAnalysis | CloudAnalysis:
+        """Return the analysis, its histories computed in memory."""
+        return self.answer(results_of(self.histories, threads=threads, progress=progress), threads)
+
+
+def default_levels(subject: Subject) -> FloatArray:
+    """Return levels around those that lift the body, for a measure that says which these are [its unit]."""
+    if subject.measure.uplift is None:
+        raise InvalidValueError(f"which levels of {subject.measure.name}? Give levels in {subject.measure.unit}")
+    low, high, count = _REACH
+    lifts = subject.measure.uplift(subject.scale)
+    return np.geomspace(low * lifts, high * lifts, count)
