@@ -16,7 +16,7 @@ import numpy as np
 import rocking as rk
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.prediction import predict
-from rocking.restitution.implied import energy_bound
+from rocking.restitution._implied import energy_bound
 from rocking.statistics.scores import Forecasts, logistic_left_out
 
 ROOT = Path(__file__).parents[1]

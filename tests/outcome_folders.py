@@ -5,7 +5,7 @@ import csv
 import numpy as np
 
 import rocking as rk
-from rocking.restitution.implied import energy_bound
+from rocking.restitution._implied import energy_bound
 
 BODY = rk.Block(width=0.4, height=1.6)
 TOML = "[body]\nunits = 'm'\nwidth = 0.4\nheight = 1.6\n[predict]\nfriction = [0.1, 0.8]\ncount = 32\n"

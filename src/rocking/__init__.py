@@ -6,81 +6,42 @@ from rocking.lazy import exports, presenters
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rocking import bodies, dynamics, errors, evidence, examples, motions, plots, restitution
-    from rocking.assessment import assess
-    from rocking.bodies import Block, MassPoints, Region, Section, Solid
-    from rocking.bodies.formats import read_body
-    from rocking.dynamics import Response, free_rocking, simulate, simulate_many
-    from rocking.identification import identify
-    from rocking.motions import GroundMotion, pulses, synthetic
-    from rocking.motions.formats import read_motion
-    from rocking.outcome import Outcome
-    from rocking.prediction import predict
-    from rocking.restitution import coefficient_of_restitution
-    from rocking.studies._overturning_map import overturning_map
-    from rocking.studies._rocking_spectrum import rocking_spectrum
-    from rocking.studies.fragility import fragility
-    from rocking.studies.inventory import inventory
-    from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
-
-__all__ = [
-    "Block",
-    "GroundMotion",
-    "MassPoints",
-    "Outcome",
-    "Region",
-    "Response",
-    "Section",
-    "Solid",
-    "assess",
-    "bodies",
-    "coefficient_of_restitution",
-    "dynamics",
-    "errors",
-    "evidence",
-    "examples",
-    "fragility",
-    "free_rocking",
-    "identify",
-    "inventory",
-    "minimum_overturning_acceleration",
-    "motions",
-    "overturning_map",
-    "plots",
-    "predict",
-    "pulses",
-    "read_body",
-    "read_motion",
-    "restitution",
-    "rocking_spectrum",
-    "simulate",
-    "simulate_many",
-    "synthetic",
-]
-
-_HOMES = {
-    "assessment": ("assess",),
-    "bodies": ("Block", "MassPoints", "Region", "Section", "Solid", "bodies"),
-    "bodies.formats": ("read_body",),
-    "dynamics": ("Response", "dynamics", "free_rocking", "simulate", "simulate_many"),
-    "errors": ("errors",),
-    "evidence": ("evidence",),
-    "examples": ("examples",),
-    "identification": ("identify",),
-    "motions": ("GroundMotion", "motions", "pulses", "synthetic"),
-    "motions.formats": ("read_motion",),
-    "outcome": ("Outcome",),
-    "plots": ("plots",),
-    "prediction": ("predict",),
-    "restitution": ("coefficient_of_restitution", "restitution"),
-    "studies": ("minimum_overturning_acceleration", "overturning_map", "rocking_spectrum"),
-    "studies.fragility": ("fragility",),
-    "studies.inventory": ("inventory",),
-}
-
-__getattr__, __dir__ = exports(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
-)
+    from rocking import bodies as bodies
+    from rocking import dynamics as dynamics
+    from rocking import errors as errors
+    from rocking import evidence as evidence
+    from rocking import examples as examples
+    from rocking import motions as motions
+    from rocking import plots as plots
+    from rocking import restitution as restitution
+    from rocking.assessment import assess as assess
+    from rocking.bodies import Block as Block
+    from rocking.bodies import MassPoints as MassPoints
+    from rocking.bodies import Region as Region
+    from rocking.bodies import Section as Section
+    from rocking.bodies import Solid as Solid
+    from rocking.bodies.formats import read_body as read_body
+    from rocking.dynamics import Response as Response
+    from rocking.dynamics import free_rocking as free_rocking
+    from rocking.dynamics import simulate as simulate
+    from rocking.dynamics import simulate_many as simulate_many
+    from rocking.identification import identify as identify
+    from rocking.motions import GroundMotion as GroundMotion
+    from rocking.motions import pulses as pulses
+    from rocking.motions import synthetic as synthetic
+    from rocking.motions.formats import read_motion as read_motion
+    from rocking.outcome import Outcome as Outcome
+    from rocking.prediction import predict as predict
+    from rocking.restitution import coefficient_of_restitution as coefficient_of_restitution
+    from rocking.studies._overturning_map import overturning_map as overturning_map
+    from rocking.studies._rocking_spectrum import rocking_spectrum as rocking_spectrum
+    from rocking.studies.fragility import fragility as fragility
+    from rocking.studies.inventory import inventory as inventory
+    from rocking.studies.minimum_acceleration import (
+        minimum_overturning_acceleration as minimum_overturning_acceleration,
+    )
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)
 
 presenters.update({
     "picture of Response": "rocking.plots:response_picture",

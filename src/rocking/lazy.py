@@ -1,24 +1,31 @@
 """Names of a package that are imported when they are first asked for, so that an answer loads what it needs alone."""
 
-from collections.abc import Callable, Mapping
+import re
+import sys
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
+_SHOWN = re.compile(r"^    from ([\w.]+) import \(?\s*(\w+) as \2\b", re.MULTILINE)
 
-def exports(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return `__getattr__` and `__dir__` of a package whose names stand in other modules."""
-    # no module of the package may have the name of an export: once imported it would stand in its place
+
+def exports(package: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Return `__all__`, `__getattr__` and `__dir__` of a package: of the names that it shows to type checkers alone."""
+    # They stand once, as `from home import name as name` below `if TYPE_CHECKING`, and are read from there. No module
+    # of the package may have the name of an export: once imported it would stand in its place.
+    spec = sys.modules[package].__spec__
+    source = getattr(spec and spec.loader, "get_source", lambda _: None)(package)
+    homes = {name: home for home, name in _SHOWN.findall(source or "")}
 
     def get(name: str) -> Any:
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        home = import_module(homes[name])
-        if homes[name] == f"{package}.{name}":
-            return home
-        found = getattr(home, name, None)
-        return import_module(f"{homes[name]}.{name}") if found is None else found
+        if homes[name] == package:
+            return import_module(f"{package}.{name}")
+        return getattr(import_module(homes[name]), name)
 
-    return get, lambda: sorted(homes)
+    names = sorted(homes)
+    return names, get, names.copy
 
 
 presenters: dict[str, str] = {}

@@ -83,6 +83,13 @@ def test_public_names_are_documented() -> None:
     assert [fault for name in NAMES for fault in faults(name)] == []
 
 
+def test_no_module_stands_in_the_place_of_an_export() -> None:
+    """Where names are fetched late, a module of the same name would hide one, unless it is what is exported."""
+    for package in (each for each in packages() if hasattr(each, "__getattr__")):
+        modules = {each.name for each in pkgutil.iter_modules(package.__path__)} & set(package.__all__)
+        assert [name for name in modules if not isinstance(getattr(package, name), ModuleType)] == []
+
+
 def test_a_missing_parameter_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Negative control."""
     text = str(rocking.coefficient_of_restitution.__doc__)

@@ -2,21 +2,18 @@
 
 from typing import TYPE_CHECKING
 
-from rocking.bodies import shapes
-from rocking.bodies.block import Block
-from rocking.bodies.body import Body, Side
-from rocking.bodies.mass_points import MassPoints
-from rocking.bodies.region import Region
-from rocking.bodies.section import Section
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.bodies import solid
-    from rocking.bodies.solid import Part, Solid
-
-__all__ = ["Block", "Body", "MassPoints", "Part", "Region", "Section", "Side", "Solid", "shapes", "solid"]
-
-__getattr__, __dir__ = exports(
-    "rocking.bodies",
-    {"Part": "rocking.bodies.solid", "Solid": "rocking.bodies.solid", "solid": "rocking.bodies.solid"},
-)
+    from rocking.bodies import shapes as shapes
+    from rocking.bodies import solid as solid
+    from rocking.bodies.block import Block as Block
+    from rocking.bodies.body import Body as Body
+    from rocking.bodies.body import Side as Side
+    from rocking.bodies.mass_points import MassPoints as MassPoints
+    from rocking.bodies.region import Region as Region
+    from rocking.bodies.section import Section as Section
+    from rocking.bodies.solid import Part as Part
+    from rocking.bodies.solid import Solid as Solid
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

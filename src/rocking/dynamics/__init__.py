@@ -5,49 +5,24 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.dynamics._simulate import free_rocking, simulate
-    from rocking.dynamics.contact import ContactResponse, Start
-    from rocking.dynamics.hull.response import HullResponse
-    from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
-    from rocking.dynamics.many import simulate_many
-    from rocking.dynamics.parameters import RockingParameters, RockingSide
-    from rocking.dynamics.response import Response
-    from rocking.dynamics.settings import Settings
-    from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
-    from rocking.outcome import Outcome, Status
-
-__all__ = [
-    "ConstantRestitution",
-    "ContactResponse",
-    "HullResponse",
-    "ImpactLaw",
-    "Outcome",
-    "RandomRestitution",
-    "Response",
-    "RockingParameters",
-    "RockingSide",
-    "Settings",
-    "SpatialBody",
-    "SpatialResponse",
-    "SpatialStart",
-    "SpeedRestitution",
-    "Start",
-    "Status",
-    "free_rocking",
-    "simulate",
-    "simulate_many",
-]
-
-_HOMES = {
-    "rocking.dynamics._simulate": ("free_rocking", "simulate"),
-    "rocking.dynamics.contact": ("ContactResponse", "Start"),
-    "rocking.dynamics.hull.response": ("HullResponse",),
-    "rocking.dynamics.impact_laws": ("ConstantRestitution", "ImpactLaw", "RandomRestitution", "SpeedRestitution"),
-    "rocking.dynamics.many": ("simulate_many",),
-    "rocking.dynamics.parameters": ("RockingParameters", "RockingSide"),
-    "rocking.dynamics.response": ("Response",),
-    "rocking.dynamics.settings": ("Settings",),
-    "rocking.dynamics.space": ("SpatialBody", "SpatialResponse", "SpatialStart"),
-    "rocking.outcome": ("Outcome", "Status"),
-}
-__getattr__, __dir__ = exports("rocking.dynamics", {name: home for home, names in _HOMES.items() for name in names})
+    from rocking.dynamics._simulate import free_rocking as free_rocking
+    from rocking.dynamics._simulate import simulate as simulate
+    from rocking.dynamics.contact import ContactResponse as ContactResponse
+    from rocking.dynamics.contact import Start as Start
+    from rocking.dynamics.hull.response import HullResponse as HullResponse
+    from rocking.dynamics.impact_laws import ConstantRestitution as ConstantRestitution
+    from rocking.dynamics.impact_laws import ImpactLaw as ImpactLaw
+    from rocking.dynamics.impact_laws import RandomRestitution as RandomRestitution
+    from rocking.dynamics.impact_laws import SpeedRestitution as SpeedRestitution
+    from rocking.dynamics.many import simulate_many as simulate_many
+    from rocking.dynamics.parameters import RockingParameters as RockingParameters
+    from rocking.dynamics.parameters import RockingSide as RockingSide
+    from rocking.dynamics.response import Response as Response
+    from rocking.dynamics.settings import Settings as Settings
+    from rocking.dynamics.space import SpatialBody as SpatialBody
+    from rocking.dynamics.space import SpatialResponse as SpatialResponse
+    from rocking.dynamics.space import SpatialStart as SpatialStart
+    from rocking.outcome import Outcome as Outcome
+    from rocking.outcome import Status as Status
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

@@ -13,7 +13,7 @@ from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, 
 from rocking.dynamics.settings import in_space
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
-from rocking.restitution.implied import energy_bound
+from rocking.restitution._implied import energy_bound
 
 COMPLEMENTARITY = "complementarity alone"  # what restitution=None is called, with friction
 UNIMPOSED = -1.0  # a coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]

@@ -16,8 +16,8 @@ from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.portable import trapezoid
 from rocking.restitution import ImpactGeometry
+from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import scatter
-from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 from rocking.studies.sensitivity.restitutions import SampledRestitution
 

@@ -24,8 +24,8 @@ from rocking.conventions import FloatArray, Foot
 from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution import ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
+from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import NAMES, kept, scatter
-from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
 CALIBRATED_RANGE = (1.5, 9.75)  # slendernesses h/b that were measured; outside, an interval is an extrapolation

@@ -28,9 +28,9 @@ from rocking.restitution import (
     implied,
     model,
 )
+from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import scatter
 from rocking.restitution.impact import contact_of, is_whole_base
-from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
 _DRAWS = 400

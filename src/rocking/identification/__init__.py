@@ -5,32 +5,15 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.identification._identify import identify
-    from rocking.identification.design import Design
-    from rocking.identification.measurement import ImpactTimes, RotationSeries
-    from rocking.identification.readers.reader import read_measurement
-    from rocking.identification.results import ForcedRocking, Identification, Impact, IntervalEstimate, ModelComparison
-
-__all__ = [
-    "Design",
-    "ForcedRocking",
-    "Identification",
-    "Impact",
-    "ImpactTimes",
-    "IntervalEstimate",
-    "ModelComparison",
-    "RotationSeries",
-    "identify",
-    "read_measurement",
-]
-
-_HOMES = {
-    "_identify": ("identify",),
-    "design": ("Design",),
-    "measurement": ("ImpactTimes", "RotationSeries"),
-    "readers.reader": ("read_measurement",),
-    "results": ("ForcedRocking", "IntervalEstimate", "Identification", "Impact", "ModelComparison"),
-}
-__getattr__, __dir__ = exports(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
-)
+    from rocking.identification._identify import identify as identify
+    from rocking.identification.design import Design as Design
+    from rocking.identification.measurement import ImpactTimes as ImpactTimes
+    from rocking.identification.measurement import RotationSeries as RotationSeries
+    from rocking.identification.readers.reader import read_measurement as read_measurement
+    from rocking.identification.results import ForcedRocking as ForcedRocking
+    from rocking.identification.results import Identification as Identification
+    from rocking.identification.results import Impact as Impact
+    from rocking.identification.results import IntervalEstimate as IntervalEstimate
+    from rocking.identification.results import ModelComparison as ModelComparison
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

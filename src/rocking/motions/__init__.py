@@ -3,118 +3,55 @@
 from typing import TYPE_CHECKING
 
 from rocking.lazy import exports
-from rocking.motions import pulses, synthetic
-from rocking.motions.components import rotated, rotd_pga, with_vertical
-from rocking.motions.integrals import (
-    arias_intensity,
-    ground_displacement,
-    ground_velocity,
-    peak_ground_displacement,
-    peak_ground_velocity,
-    significant_duration,
-    significant_times,
-)
-from rocking.motions.intensity import (
-    IntensityMeasure,
-    Measure,
-    RockingScale,
-    cumulative_absolute_velocity,
-    housner_intensity,
-    intensity_measures,
-    measure,
-    measures,
-    normalised_acceleration,
-    normalised_velocity,
-    peak_ground_acceleration,
-    spectral_acceleration,
-    spectral_measure,
-)
-from rocking.motions.motion import GroundMotion
-from rocking.motions.processing import (
-    bandpassed,
-    demeaned,
-    detrended,
-    padded,
-    resampled,
-    scaled_to,
-    tapered,
-    trimmed,
-    trimmed_to_significant,
-)
-from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments as Segments  # what engines integrate
-from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
 
 if TYPE_CHECKING:
-    from rocking.motions.flatfiles import Flatfile, flatfile
-    from rocking.motions.fourier import fourier_amplitudes
-    from rocking.motions.pipeline import processed
-    from rocking.motions.rotd import rotd_spectrum
-    from rocking.motions.selection import Selection, selected
-    from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
-
-__all__ = [
-    "Flatfile",
-    "GroundMotion",
-    "IntensityMeasure",
-    "Measure",
-    "Pulse",
-    "ResponseSpectrum",
-    "RockingScale",
-    "Selection",
-    "TargetSpectrum",
-    "arias_intensity",
-    "bandpassed",
-    "cumulative_absolute_velocity",
-    "demeaned",
-    "detrended",
-    "flatfile",
-    "fourier_amplitudes",
-    "ground_displacement",
-    "ground_velocity",
-    "housner_intensity",
-    "intensity_measures",
-    "measure",
-    "measures",
-    "normalised_acceleration",
-    "normalised_velocity",
-    "padded",
-    "peak_ground_acceleration",
-    "peak_ground_displacement",
-    "peak_ground_velocity",
-    "processed",
-    "pulses",
-    "resampled",
-    "response_spectrum",
-    "rotated",
-    "rotd_pga",
-    "rotd_spectrum",
-    "scaled_to",
-    "selected",
-    "significant_duration",
-    "significant_times",
-    "spectral_acceleration",
-    "spectral_measure",
-    "synthetic",
-    "tapered",
-    "target_spectrum",
-    "trimmed",
-    "trimmed_to_significant",
-    "with_vertical",
-]
-
-# of sets of records, which a response does not need
-_HOMES = {
-    "flatfiles": ("Flatfile", "flatfile"),
-    "fourier": ("fourier_amplitudes",),
-    "pipeline": ("processed",),
-    "rotd": ("rotd_spectrum",),
-    "selection": ("Selection", "selected"),
-    "target_spectra": ("TargetSpectrum", "target_spectrum"),
-}
-
-__getattr__, _ = exports(__name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names})
-
-
-def __dir__() -> list[str]:
-    return __all__
+    from rocking.motions import pulses as pulses
+    from rocking.motions import synthetic as synthetic
+    from rocking.motions.components import rotated as rotated
+    from rocking.motions.components import rotd_pga as rotd_pga
+    from rocking.motions.components import with_vertical as with_vertical
+    from rocking.motions.flatfiles import Flatfile as Flatfile
+    from rocking.motions.flatfiles import flatfile as flatfile
+    from rocking.motions.fourier import fourier_amplitudes as fourier_amplitudes
+    from rocking.motions.integrals import arias_intensity as arias_intensity
+    from rocking.motions.integrals import ground_displacement as ground_displacement
+    from rocking.motions.integrals import ground_velocity as ground_velocity
+    from rocking.motions.integrals import peak_ground_displacement as peak_ground_displacement
+    from rocking.motions.integrals import peak_ground_velocity as peak_ground_velocity
+    from rocking.motions.integrals import significant_duration as significant_duration
+    from rocking.motions.integrals import significant_times as significant_times
+    from rocking.motions.intensity import IntensityMeasure as IntensityMeasure
+    from rocking.motions.intensity import Measure as Measure
+    from rocking.motions.intensity import RockingScale as RockingScale
+    from rocking.motions.intensity import cumulative_absolute_velocity as cumulative_absolute_velocity
+    from rocking.motions.intensity import housner_intensity as housner_intensity
+    from rocking.motions.intensity import intensity_measures as intensity_measures
+    from rocking.motions.intensity import measure as measure
+    from rocking.motions.intensity import measures as measures
+    from rocking.motions.intensity import normalised_acceleration as normalised_acceleration
+    from rocking.motions.intensity import normalised_velocity as normalised_velocity
+    from rocking.motions.intensity import peak_ground_acceleration as peak_ground_acceleration
+    from rocking.motions.intensity import spectral_acceleration as spectral_acceleration
+    from rocking.motions.intensity import spectral_measure as spectral_measure
+    from rocking.motions.motion import GroundMotion as GroundMotion
+    from rocking.motions.pipeline import processed as processed
+    from rocking.motions.processing import bandpassed as bandpassed
+    from rocking.motions.processing import demeaned as demeaned
+    from rocking.motions.processing import detrended as detrended
+    from rocking.motions.processing import padded as padded
+    from rocking.motions.processing import resampled as resampled
+    from rocking.motions.processing import scaled_to as scaled_to
+    from rocking.motions.processing import tapered as tapered
+    from rocking.motions.processing import trimmed as trimmed
+    from rocking.motions.processing import trimmed_to_significant as trimmed_to_significant
+    from rocking.motions.pulse import Pulse as Pulse
+    from rocking.motions.rotd import rotd_spectrum as rotd_spectrum
+    from rocking.motions.selection import Selection as Selection
+    from rocking.motions.selection import selected as selected
+    from rocking.motions.spectrum import ResponseSpectrum as ResponseSpectrum
+    from rocking.motions.spectrum import response_spectrum as response_spectrum
+    from rocking.motions.target_spectra import TargetSpectrum as TargetSpectrum
+    from rocking.motions.target_spectra import target_spectrum as target_spectrum
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

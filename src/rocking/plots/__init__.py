@@ -5,105 +5,45 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.plots.animation import animate_gif, animate_html
-    from rocking.plots.body import body_picture, coefficient_picture
-    from rocking.plots.cloud import cloud_picture, measures_picture
-    from rocking.plots.comparison import animate_comparison
-    from rocking.plots.energy_stages import energy_stages_picture
-    from rocking.plots.falling import falling_picture
-    from rocking.plots.fragility import fragility_picture, incremental_dynamic_analysis_picture
-    from rocking.plots.ground_motion import (
-        ground_motion_picture,
-        processing_picture,
-        record_set_picture,
-        selection_picture,
-        spectra_picture,
-    )
-    from rocking.plots.identification import identification_picture
-    from rocking.plots.inventory import inventory_picture
-    from rocking.plots.overturning_map import overturning_map_picture, refined_map_picture
-    from rocking.plots.paper_figures import paper_figure
-    from rocking.plots.prediction import assessment_picture, prediction_picture, reliability_picture
-    from rocking.plots.regimes import regime_map_picture, regimes_picture
-    from rocking.plots.response import response_picture
-    from rocking.plots.rocking_spectrum import rocking_spectrum_picture
-    from rocking.plots.sensitivity import difference_map_picture, sensitivity_picture
-    from rocking.plots.solid import energy_picture, equilibria_picture, slices_picture, solid_picture
-    from rocking.plots.spatial import spatial_picture
-    from rocking.plots.style import journal_style, new_figure, write
-    from rocking.plots.transitions import transitions_of_many_picture, transitions_picture
-
-__all__ = [
-    "animate_comparison",
-    "animate_gif",
-    "animate_html",
-    "assessment_picture",
-    "body_picture",
-    "cloud_picture",
-    "coefficient_picture",
-    "difference_map_picture",
-    "energy_picture",
-    "energy_stages_picture",
-    "equilibria_picture",
-    "falling_picture",
-    "fragility_picture",
-    "ground_motion_picture",
-    "identification_picture",
-    "incremental_dynamic_analysis_picture",
-    "inventory_picture",
-    "journal_style",
-    "measures_picture",
-    "new_figure",
-    "overturning_map_picture",
-    "paper_figure",
-    "prediction_picture",
-    "processing_picture",
-    "record_set_picture",
-    "refined_map_picture",
-    "regime_map_picture",
-    "regimes_picture",
-    "reliability_picture",
-    "response_picture",
-    "rocking_spectrum_picture",
-    "selection_picture",
-    "sensitivity_picture",
-    "slices_picture",
-    "solid_picture",
-    "spatial_picture",
-    "spectra_picture",
-    "transitions_of_many_picture",
-    "transitions_picture",
-    "write",
-]
-
-_OTHERS = {
-    "animate_comparison": "comparison",
-    "animate_gif": "animation",
-    "animate_html": "animation",
-    "assessment_picture": "prediction",
-    "coefficient_picture": "body",
-    "difference_map_picture": "sensitivity",
-    "energy_picture": "solid",
-    "equilibria_picture": "solid",
-    "incremental_dynamic_analysis_picture": "fragility",
-    "journal_style": "style",
-    "measures_picture": "cloud",
-    "new_figure": "style",
-    "paper_figure": "paper_figures",
-    "prediction_picture": "prediction",
-    "processing_picture": "ground_motion",
-    "record_set_picture": "ground_motion",
-    "refined_map_picture": "overturning_map",
-    "reliability_picture": "prediction",
-    "regime_map_picture": "regimes",
-    "selection_picture": "ground_motion",
-    "slices_picture": "solid",
-    "spectra_picture": "ground_motion",
-    "transitions_of_many_picture": "transitions",
-    "write": "style",
-}
-"""Where what is not of the file of its name stands."""
-
-__getattr__, __dir__ = exports(
-    __name__, {name: f"{__name__}.{_OTHERS.get(name, name.removesuffix('_picture'))}" for name in __all__}
-)
+    from rocking.plots.animation import animate_gif as animate_gif
+    from rocking.plots.animation import animate_html as animate_html
+    from rocking.plots.body import body_picture as body_picture
+    from rocking.plots.body import coefficient_picture as coefficient_picture
+    from rocking.plots.cloud import cloud_picture as cloud_picture
+    from rocking.plots.cloud import measures_picture as measures_picture
+    from rocking.plots.comparison import animate_comparison as animate_comparison
+    from rocking.plots.energy_stages import energy_stages_picture as energy_stages_picture
+    from rocking.plots.falling import falling_picture as falling_picture
+    from rocking.plots.fragility import fragility_picture as fragility_picture
+    from rocking.plots.fragility import incremental_dynamic_analysis_picture as incremental_dynamic_analysis_picture
+    from rocking.plots.ground_motion import ground_motion_picture as ground_motion_picture
+    from rocking.plots.ground_motion import processing_picture as processing_picture
+    from rocking.plots.ground_motion import record_set_picture as record_set_picture
+    from rocking.plots.ground_motion import selection_picture as selection_picture
+    from rocking.plots.ground_motion import spectra_picture as spectra_picture
+    from rocking.plots.identification import identification_picture as identification_picture
+    from rocking.plots.inventory import inventory_picture as inventory_picture
+    from rocking.plots.overturning_map import overturning_map_picture as overturning_map_picture
+    from rocking.plots.overturning_map import refined_map_picture as refined_map_picture
+    from rocking.plots.paper_figures import paper_figure as paper_figure
+    from rocking.plots.prediction import assessment_picture as assessment_picture
+    from rocking.plots.prediction import prediction_picture as prediction_picture
+    from rocking.plots.prediction import reliability_picture as reliability_picture
+    from rocking.plots.regimes import regime_map_picture as regime_map_picture
+    from rocking.plots.regimes import regimes_picture as regimes_picture
+    from rocking.plots.response import response_picture as response_picture
+    from rocking.plots.rocking_spectrum import rocking_spectrum_picture as rocking_spectrum_picture
+    from rocking.plots.sensitivity import difference_map_picture as difference_map_picture
+    from rocking.plots.sensitivity import sensitivity_picture as sensitivity_picture
+    from rocking.plots.solid import energy_picture as energy_picture
+    from rocking.plots.solid import equilibria_picture as equilibria_picture
+    from rocking.plots.solid import slices_picture as slices_picture
+    from rocking.plots.solid import solid_picture as solid_picture
+    from rocking.plots.spatial import spatial_picture as spatial_picture
+    from rocking.plots.style import journal_style as journal_style
+    from rocking.plots.style import new_figure as new_figure
+    from rocking.plots.style import write as write
+    from rocking.plots.transitions import transitions_of_many_picture as transitions_of_many_picture
+    from rocking.plots.transitions import transitions_picture as transitions_picture
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

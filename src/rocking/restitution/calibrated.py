@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry
-from rocking.restitution.model import InertiaModel
 from rocking.restitution.shifted_impulse import shifted
 
 NAMES = ("eta", "k", "s", "gamma")

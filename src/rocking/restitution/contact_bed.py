@@ -13,13 +13,13 @@ from rocking import checks, conventions
 from rocking.bodies import Body, MassPoints
 from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
+from rocking.restitution._model import InertiaModel, Restitution
 from rocking.restitution.bed.contact_bed import BaseFriction, ContactBed, Coulomb, Sticking
 from rocking.restitution.bed.impact import BedStatus, bed_impacts
 from rocking.restitution.bed.laws import KelvinVoigt
 from rocking.restitution.bed.setup import Setup, setup_of
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table, stated_error
 from rocking.restitution.impact import ImpactGeometry
-from rocking.restitution.model import InertiaModel, Restitution
 
 _NEARLY = 1.02  # friction this much above the need: the base sticks through the whole impact
 

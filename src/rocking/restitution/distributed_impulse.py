@@ -9,8 +9,8 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
 from rocking.portable import dot, each, gauss_legendre
+from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry, contact_of, is_whole_base
-from rocking.restitution.model import InertiaModel
 
 _NODES, _WEIGHTS = gauss_legendre(60)
 

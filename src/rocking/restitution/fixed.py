@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._model import RestitutionModel
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import Any
 from rocking.bodies import Block
 from rocking.conventions import FEET, opposite
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._model import RestitutionModel
 from rocking.restitution.registry import built, model, number, parameters_in, register
 
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")

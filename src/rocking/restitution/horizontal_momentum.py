@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
+from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry
-from rocking.restitution.model import InertiaModel
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from rocking.bodies import Body, MassPoints
 from rocking.conventions import Foot, opposite
 from rocking.errors import PlausibilityWarning
-from rocking.restitution.implied import implied
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._implied import implied
+from rocking.restitution._model import RestitutionModel
 
 _EXACT = 1e-9
 # Feet this far apart, relative to the base, stand for coincident ones; sound models are then within its square root.

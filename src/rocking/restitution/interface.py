@@ -7,7 +7,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
 from rocking.errors import UnknownModelError
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._model import RestitutionModel
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from rocking.bodies.moments import quarters
 from rocking.conventions import BoolArray, FloatArray, Foot, opposite
 from rocking.errors import InvalidValueError
 from rocking.portable import each, gauss_legendre
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._model import RestitutionModel
 
 # Below this slenderness the closed form loses more than two digits and the series is summed instead.
 _SERIES_BELOW = 0.3

@@ -11,8 +11,8 @@ import numpy as np
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
 from rocking.errors import RockingError
+from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry, contact_of
-from rocking.restitution.model import InertiaModel
 
 _LARGEST_BATCH = 128
 _DEGREE = 80

@@ -10,7 +10,7 @@ from rocking.bodies import Body
 from rocking.conventions import Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.lazy import presenter
-from rocking.restitution.model import RestitutionModel
+from rocking.restitution._model import RestitutionModel
 
 if TYPE_CHECKING:
     from rocking.bodies import Solid
@@ -28,14 +28,6 @@ _MODELS: dict[str, type[RestitutionModel] | str] = {
     "calibrated": "Calibrated",
     "fixed": "Fixed",
 }
-
-
-def _home(name: str) -> str:
-    return f"{__package__}.{name.replace('-', '_')}"
-
-
-homes = {kind: _home(name) for name, kind in _MODELS.items() if isinstance(kind, str)}
-"""Modules of the classes of this package."""
 
 
 def models() -> dict[str, type[RestitutionModel]]:
@@ -134,7 +126,7 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
 def _kind(name: str) -> type[RestitutionModel]:
     found = _MODELS[name]
     if isinstance(found, str):
-        kind: type[RestitutionModel] = getattr(import_module(_home(name)), found)
+        kind: type[RestitutionModel] = getattr(import_module(f"{__package__}.{name.replace('-', '_')}"), found)
         _MODELS[name] = found = kind
     return found
 

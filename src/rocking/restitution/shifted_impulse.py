@@ -6,8 +6,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.restitution._model import InertiaModel
 from rocking.restitution.impact import ImpactGeometry
-from rocking.restitution.model import InertiaModel
 
 
 @dataclass(frozen=True)

@@ -5,49 +5,25 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.statistics.censored import CensoredFit, fit_crossings
-    from rocking.statistics.counts import Counts, StateCounts, count_outcomes, count_states, share_interval
-    from rocking.statistics.goodness import Goodness
-    from rocking.statistics.least_squares import Regression, regression
-    from rocking.statistics.lognormal import LognormalFit, fit_counts, fit_lognormal
-    from rocking.statistics.maximum_likelihood import Separation
-    from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
-    from rocking.statistics.scores import Forecasts, ReliabilityBin, Score, logistic_left_out
-
-__all__ = [
-    "CensoredFit",
-    "Counts",
-    "Forecasts",
-    "Goodness",
-    "LognormalFit",
-    "OrderedFit",
-    "Regression",
-    "ReliabilityBin",
-    "Score",
-    "Separation",
-    "StateCounts",
-    "count_outcomes",
-    "count_states",
-    "fit_counts",
-    "fit_crossings",
-    "fit_lognormal",
-    "fit_ordered",
-    "logistic_left_out",
-    "regression",
-    "share_interval",
-]
-
-_HOMES = {
-    "censored": ("CensoredFit", "fit_crossings"),
-    "counts": ("Counts", "StateCounts", "count_outcomes", "count_states", "share_interval"),
-    "goodness": ("Goodness",),
-    "least_squares": ("Regression", "regression"),
-    "lognormal": ("LognormalFit", "fit_counts", "fit_lognormal"),
-    "maximum_likelihood": ("Separation",),
-    "ordered_probit": ("OrderedFit", "fit_ordered"),
-    "scores": ("Forecasts", "ReliabilityBin", "Score", "logistic_left_out"),
-}
-
-__getattr__, __dir__ = exports(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
-)
+    from rocking.statistics.censored import CensoredFit as CensoredFit
+    from rocking.statistics.censored import fit_crossings as fit_crossings
+    from rocking.statistics.counts import Counts as Counts
+    from rocking.statistics.counts import StateCounts as StateCounts
+    from rocking.statistics.counts import count_outcomes as count_outcomes
+    from rocking.statistics.counts import count_states as count_states
+    from rocking.statistics.counts import share_interval as share_interval
+    from rocking.statistics.goodness import Goodness as Goodness
+    from rocking.statistics.least_squares import Regression as Regression
+    from rocking.statistics.least_squares import regression as regression
+    from rocking.statistics.lognormal import LognormalFit as LognormalFit
+    from rocking.statistics.lognormal import fit_counts as fit_counts
+    from rocking.statistics.lognormal import fit_lognormal as fit_lognormal
+    from rocking.statistics.maximum_likelihood import Separation as Separation
+    from rocking.statistics.ordered_probit import OrderedFit as OrderedFit
+    from rocking.statistics.ordered_probit import fit_ordered as fit_ordered
+    from rocking.statistics.scores import Forecasts as Forecasts
+    from rocking.statistics.scores import ReliabilityBin as ReliabilityBin
+    from rocking.statistics.scores import Score as Score
+    from rocking.statistics.scores import logistic_left_out as logistic_left_out
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

@@ -5,71 +5,32 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.studies._overturning_map import overturning_map
-    from rocking.studies._rocking_spectrum import rocking_spectrum
-    from rocking.studies.adaptive_grid import refined_map
-    from rocking.studies.axis import axes
-    from rocking.studies.boundaries import boundary
-    from rocking.studies.code_methods import compare_code_methods
-    from rocking.studies.fragility import compare_measures, fragility_analysis
-    from rocking.studies.histories import Histories, HistoryTable, Product
-    from rocking.studies.islands import safe_beyond_overturning, safe_islands
+    from rocking.studies._overturning_map import overturning_map as overturning_map
+    from rocking.studies._rocking_spectrum import rocking_spectrum as rocking_spectrum
+    from rocking.studies.adaptive_grid import refined_map as refined_map
+    from rocking.studies.axis import axes as axes
+    from rocking.studies.boundaries import boundary as boundary
+    from rocking.studies.code_methods import compare_code_methods as compare_code_methods
+    from rocking.studies.fragility import compare_measures as compare_measures
+    from rocking.studies.fragility import fragility_analysis as fragility_analysis
+    from rocking.studies.histories import Histories as Histories
+    from rocking.studies.histories import HistoryTable as HistoryTable
+    from rocking.studies.histories import Product as Product
+    from rocking.studies.islands import safe_beyond_overturning as safe_beyond_overturning
+    from rocking.studies.islands import safe_islands as safe_islands
     from rocking.studies.minimum_acceleration import (
-        minimum_overturning_acceleration,
-        minimum_overturning_accelerations,
+        minimum_overturning_acceleration as minimum_overturning_acceleration,
     )
-    from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
-    from rocking.studies.sensitivity import (
-        SampledRestitution,
-        Sensitivity,
-        fragility_sensitivity,
-        map_sensitivity,
-        spectrum_sensitivity,
+    from rocking.studies.minimum_acceleration import (
+        minimum_overturning_accelerations as minimum_overturning_accelerations,
     )
-
-__all__ = [
-    "Histories",
-    "HistoryTable",
-    "MotionList",
-    "MotionSet",
-    "Product",
-    "SampledRestitution",
-    "Sensitivity",
-    "SyntheticSet",
-    "axes",
-    "boundary",
-    "compare_code_methods",
-    "compare_measures",
-    "fragility_analysis",
-    "fragility_sensitivity",
-    "map_sensitivity",
-    "minimum_overturning_acceleration",
-    "minimum_overturning_accelerations",
-    "overturning_map",
-    "refined_map",
-    "rocking_spectrum",
-    "safe_beyond_overturning",
-    "safe_islands",
-    "spectrum_sensitivity",
-]
-
-_HOMES = {
-    "histories": ("Histories", "HistoryTable", "Product"),
-    "motion_sets": ("MotionList", "MotionSet", "SyntheticSet"),
-    "sensitivity": (
-        "SampledRestitution", "Sensitivity", "fragility_sensitivity", "map_sensitivity", "spectrum_sensitivity",
-    ),
-    "axis": ("axes",),
-    "boundaries": ("boundary",),
-    "code_methods": ("compare_code_methods",),
-    "fragility": ("compare_measures", "fragility_analysis"),
-    "minimum_acceleration": ("minimum_overturning_acceleration", "minimum_overturning_accelerations"),
-    "_overturning_map": ("overturning_map",),
-    "adaptive_grid": ("refined_map",),
-    "_rocking_spectrum": ("rocking_spectrum",),
-    "islands": ("safe_beyond_overturning", "safe_islands"),
-}  # fmt: skip
-
-__getattr__, __dir__ = exports(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
-)
+    from rocking.studies.motion_sets import MotionList as MotionList
+    from rocking.studies.motion_sets import MotionSet as MotionSet
+    from rocking.studies.motion_sets import SyntheticSet as SyntheticSet
+    from rocking.studies.sensitivity import SampledRestitution as SampledRestitution
+    from rocking.studies.sensitivity import Sensitivity as Sensitivity
+    from rocking.studies.sensitivity import fragility_sensitivity as fragility_sensitivity
+    from rocking.studies.sensitivity import map_sensitivity as map_sensitivity
+    from rocking.studies.sensitivity import spectrum_sensitivity as spectrum_sensitivity
+else:
+    __all__, __getattr__, __dir__ = exports(__name__)

@@ -18,7 +18,7 @@ from rocking.motions.intensity import measure as measure_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import response_spectrum
 from rocking.outcome import overturned
-from rocking.restitution.implied import energy_bound
+from rocking.restitution._implied import energy_bound
 from rocking.studies.fragility.subject import Responses, Subject
 from rocking.studies.histories import Histories, Product, results_of
 from rocking.studies.motion_sets import MotionList
