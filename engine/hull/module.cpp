@@ -97,10 +97,31 @@ class Library {
         for (std::thread& worker : crew) worker.join();
     }
 
+    // One history: its results, as `run` has them, its nodes and impacts, their contacts, and what a response asks besides.
+    nb::tuple trace(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double rest_speed, double tolerance, Whole most_events) const {
+        expect(numbers.shape(0) == 1 && numbers.shape(1) == kNumbers && choices.shape(0) == 1 && choices.shape(1) == kChoices && results.shape(0) == 1 && results.shape(1) == kResults &&
+                   counts.shape(0) == 1 && counts.shape(1) == kCounts,
+               "tables of one history expected");
+        auto made = std::make_unique<Trace>();
+        {
+            nb::gil_scoped_release release;
+            write(one(numbers.data(), choices.data(), {tolerance, rest_speed, most_events}, made.get()), results.data(), counts.data());
+        }
+        return nb::make_tuple(array(made->nodes, kNode), array(made->impacts, kImpact), array(made->members, 1), array(made->stuck, 1), array(made->struck, 1), made->least_cosine, made->fell);
+    }
+
   private:
+    template <class T>
+    static nb::ndarray<nb::numpy, T, nb::ndim<2>> array(const std::vector<T>& values, std::size_t columns) {
+        T* kept = new T[values.size() + 1];
+        std::copy(values.begin(), values.end(), kept);
+        nb::capsule owner(kept, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+        return {kept, {values.size() / columns, columns}, owner};
+    }
+
     // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
     // spin; gravity. Choices: body, motion, law.
-    Result one(const double* v, const Whole* c, const Settings& set) const {
+    Result one(const double* v, const Whole* c, const Settings& set, Trace* trace = nullptr) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && !(v[k] == kInfinite && (k == 3 || k == 13 || k == 14))) return {};
         const auto there = [](Whole k, const auto& all) { return k >= 0 && k < static_cast<Whole>(all.size()); };
@@ -113,7 +134,7 @@ class Library {
         State s{vec(v + 19), {v[15], v[16], v[17], v[18]}, vec(v + 22), vec(v + 25)};
         const double length = s.q[0] * s.q[0] + s.q[1] * s.q[1] + s.q[2] * s.q[2] + s.q[3] * s.q[3];
         if (!(std::fabs(length - 1.0) < 1e-9)) return {};
-        return Run(b, g, {static_cast<int>(c[2]), 0, v[0]}, v[3], set).run(s, v[2]);
+        return Run(b, g, {static_cast<int>(c[2]), 0, v[0]}, v[3], set, trace).run(s, v[2]);
     }
 
     static void write(const Result& r, double* v, Whole* c) {
@@ -140,5 +161,6 @@ NB_MODULE(_hull, m) {
         .def("add_nobody", &Library::add_nobody)
         .def("add_motion", &Library::add_motion, "times"_a, "rows"_a)
         .def("run", &Library::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a,
-             "threads"_a);
+             "threads"_a)
+        .def("trace", &Library::trace, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a);
 }

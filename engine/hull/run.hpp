@@ -26,6 +26,15 @@ struct Settings {
     std::int64_t most_events;
 };
 
+// A history at the ends of its steps, and its impacts.
+struct Trace {
+    std::vector<double> nodes, impacts;           // time, attitude, place, velocity, spin; time, kinetic energy before and after
+    std::vector<std::int64_t> members, stuck, struck;  // what touches and what sticks at each node, what touches after each impact: how many, which
+    double least_cosine = 1.0;
+    bool fell = false;
+};
+constexpr int kNode = 14, kImpact = 3;
+
 struct Result {
     int outcome = kFailed, status = kInvalid, pose = -1;
     std::int64_t impacts = 0, uplifts = 0, events = 0, steps = 0, held = 0, replaced = 0;
@@ -36,8 +45,8 @@ struct Result {
 
 class Run {
   public:
-    Run(const Body& body, const Ground& ground, const Law& law, double friction, const Settings& set)
-        : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction) {
+    Run(const Body& body, const Ground& ground, const Law& law, double friction, const Settings& set, Trace* trace = nullptr)
+        : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction), trace_(trace) {
         pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
         slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
         weak_ = set_.rest_speed * set_.rest_speed * b_.mass * g_.gravity * b_.size;
@@ -87,6 +96,7 @@ class Run {
         if (r_.outcome != kOverturned) r_.overturning_time = r_.direction = kNan;
         r_.still_rocking &= r_.outcome != kOverturned;
         r_.peak_tilt = peak_ < 1.0 ? std::atan2(std::sqrt((1.0 - peak_) * (1.0 + peak_)), peak_) : 0.0;
+        if (trace_) trace_->least_cosine = peak_, trace_->fell = fell_;
         r_.residual = std::sqrt((s_.place.x - first_.x) * (s_.place.x - first_.x) + (s_.place.y - first_.y) * (s_.place.y - first_.y));
         return r_;
     }
@@ -116,6 +126,14 @@ class Run {
             under_ = under;
         }
         tilt_ = tilt, tilting_ = tilting, kept_ = time_, up_ = axes.c;
+        if (!trace_) return;
+        const double *q = s_.q, node[kNode] = {time_, q[0], q[1], q[2], q[3], s_.place.x, s_.place.y, s_.place.z, s_.velocity.x, s_.velocity.y, s_.velocity.z, s_.spin.x, s_.spin.y, s_.spin.z};
+        trace_->nodes.insert(trace_->nodes.end(), node, node + kNode);
+        list(mode_.contact.members, trace_->members), list(mode_.contact.stuck, trace_->stuck);
+    }
+
+    static void list(const Points& points, std::vector<std::int64_t>& all) {
+        all.push_back(static_cast<std::int64_t>(points.size())), all.insert(all.end(), points.begin(), points.end());
     }
 
     void note(double cosine, double time) {
@@ -273,7 +291,7 @@ class Run {
     // Whether the step may go on to a later sample, and then how long it is.
     bool crosses(double& whole) {
         std::int64_t last = stretch_ + 1;
-        if (g_.motion->degree != 1 || last < smooth_) return false;
+        if (g_.motion->degree != 1 || last < smooth_ || trace_) return false;
         while (last - stretch_ < kAcross && last < g_.motion->count && g_.time(last + 1) - time_ <= length_) ++last;
         if (last == stretch_ + 1) return false;
         const double span = g_.time(last) - time_;
@@ -910,10 +928,15 @@ class Run {
         } else {
             pile(touching);
         }
-        r_.lost += before - kinetic();
+        const double after = kinetic();
+        r_.lost += before - after;
         choose(touching, nullptr, &closed);
         calm();
         ++r_.events, ++r_.impacts;
+        if (trace_) {
+            for (double v : {time_, before, after}) trace_->impacts.push_back(v);
+            list(mode_.contact.members, trace_->struck);
+        }
         keep();
     }
 
@@ -999,6 +1022,7 @@ class Run {
     Vecs slides_;
     std::vector<Watch> watched_;
     std::vector<Fall> falls_, dips_;
+    Trace* const trace_;
     Result r_;
 };
 

@@ -466,6 +466,34 @@ def test_the_compiled_engine_is_the_reference():
 
 
 @needs_engine
+@pytest.mark.verifies("second engine", "the compiled engine's response", within="1e-10", control="within")
+def test_a_response_is_the_same_from_both_engines(agreement):
+    """A body that leans, rocks and slides: where it is all along, what touches, and what impacts cost.
+
+    The control is a friction larger by a millionth.
+    """
+    solid, start, time = Solid(box(0.6, 0.5, 1.6)), SpatialStart(0.25, azimuth=0.3), np.linspace(0.0, 0.9, 200)
+
+    def seen(friction, engine):
+        return rk.free_rocking(solid, restitution=0.8, friction=friction, start=start, engine=engine, duration=0.9)
+
+    one, other, more = seen(0.3, "reference"), seen(0.3, "fast"), seen(0.3 + 3e-7, "fast")
+    assert one.impacts.size > 2
+    assert one.sliding_distance > 0.05
+    assert [each[2:] for each in one.intervals] == [each[2:] for each in other.intervals]
+    assert one.impacts["vertices"].tolist() == other.impacts["vertices"].tolist()
+    for name in ("time", "energy_before", "energy_after"):
+        np.testing.assert_allclose(other.impacts[name], one.impacts[name], rtol=1e-10)
+
+    def apart(response):
+        pairs = [[getattr(each.at(time), name) for each in (one, response)] for name in ("quaternion", "centre")]
+        return max(float(np.abs(a - b).max()) for a, b in pairs)
+
+    agreement(apart(other), 1e-10)
+    assert apart(more) > 1e-8
+
+
+@needs_engine
 @pytest.mark.verifies("invariant", "threads and order of rows", within="bits", control="within")
 def test_histories_have_the_same_bits_whatever_the_threads_and_their_order():
     """One, two and five threads, bodies and scales the other way round; another scale has other bits."""

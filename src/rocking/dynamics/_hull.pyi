@@ -18,3 +18,13 @@ class Library:
         most_events: int,
         threads: int,
     ) -> None: ...
+    def trace(
+        self,
+        numbers: FloatArray,
+        choices: IntArray,
+        results: FloatArray,
+        counts: IntArray,
+        rest_speed: float,
+        tolerance: float,
+        most_events: int,
+    ) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, float, bool]: ...

@@ -114,7 +114,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
         leans less: `outcome` needs it. In space with friction until it rests.
     engine : {"auto", "fast", "reference"}
-        Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone.
+        Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone, and for bodies in space
+        with friction.
     stream : int
         Number of the history, for random coefficients.
     linear, rest_speed, most_events, longest_step, order, tolerance
@@ -291,7 +292,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
 
         if friction is None:
             body = SpatialBody.of(body)
-        refuse("a body in space", bounce=bounce, bounce_law=bounce_law, engine=engine, stream=stream)
+        refuse("a body in space", bounce=bounce, bounce_law=bounce_law, stream=stream)
         if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
         spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
@@ -300,7 +301,8 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
             from rocking.dynamics.hull.response import response_on_hull
 
             own = Settings(**settings, mechanics="space with friction", friction=friction)
-            return response_on_hull(body, motion, restitution, own, start=leaning, **how)
+            return response_on_hull(body, motion, restitution, own, start=leaning, engine=engine, **how)
+        refuse("a body in space without friction", engine=engine)
         return response_in_space(
             body, motion, restitution, Settings(**settings, mechanics="space"), start=leaning, **how
         )

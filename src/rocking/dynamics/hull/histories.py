@@ -12,9 +12,10 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.contact_problem import HullContact
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
-from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import State
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.settings import CompiledEngine, check_progress, check_threads, processors
@@ -33,6 +34,10 @@ WHOLES = (
 )  # fmt: skip
 HOUSNER, POSITION, COEFFICIENT, KED = range(4)
 MOST_POWERS = 8
+ENGINES = {
+    "fast": "fast (Dormand-Prince with complementarity, compiled)",
+    "reference": "reference (Dormand-Prince with complementarity)",
+}
 
 _COMPILED = CompiledEngine(
     "rocking.dynamics._hull",
@@ -55,7 +60,7 @@ def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGroun
         rows = motion.coefficients.transpose(0, 2, 1)
         if rows.shape[1] > MOST_POWERS:
             raise InvalidValueError(f"motions must be polynomials of degree below {MOST_POWERS}; sample them")
-        made.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), -1)))
+        made.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), 3 * rows.shape[1])))
     return made
 
 
@@ -68,6 +73,51 @@ def run_rows(
         numbers, choices, results, counts, settings.rest_speed, settings.tolerance, settings.most_events, threads
     )
     return named(results, counts)
+
+
+def traced(
+    body: HullBody,
+    ground: HullGround,
+    law: Any,
+    friction: float,
+    start: SpatialStart,
+    *,
+    horizon: float,
+    settings: HullSettings,
+) -> HullHistory:
+    """Return one history of the compiled engine as the reference engine keeps it; of its events the impacts alone."""
+    code, value = _code(law)
+    plane = [*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))]
+    numbers = np.array([[value, 1.0, horizon, friction, *plane, *numbers_of(body, start), ground.gravity]])
+    library = library_of([body], [ground.motion], ked=code == KED)
+    results, counts = np.full((1, len(FLOATS)), np.nan), np.zeros((1, len(WHOLES)), np.int64)
+    limits = settings.rest_speed, settings.tolerance, settings.most_events
+    nodes, impacts, members, stuck, struck, least, fell = library.trace(
+        numbers, np.array([[0, 0, code]]), results, counts, *limits
+    )
+    found = {name: column.item() for name, column in named(results, counts).items()}
+    contacts = [HullContact(*each) for each in zip(_groups(members), _groups(stuck), strict=True)]
+    events = [
+        HullEvent(time, HullEventKind.IMPACT, HullContact(touching, touching), before, after)
+        for (time, before, after), touching in zip(impacts.tolist(), _groups(struck), strict=True)
+    ]
+    same = ("peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance", "lost",
+            "pose", "uplifts", "steps", "held", "replaced")  # fmt: skip
+    return HullHistory(
+        nodes[:, 0].tolist(), [_state(row[1:]) for row in nodes], contacts, events, list(Status)[found["status"]],
+        list(Outcome)[found["outcome"]], bool(found["still_rocking"]), fell=fell, least_cosine=least,
+        **{name: found[name] for name in same},
+    )  # fmt: skip
+
+
+def _groups(lists: IntArray) -> list[tuple[int, ...]]:
+    """Return groups of numbers that stand one after another, each led by its length."""
+    rest, made, place = lists.ravel().tolist(), [], 0
+    while place < len(rest):
+        end = place + 1 + rest[place]
+        made.append(tuple(rest[place + 1 : end]))
+        place = end
+    return made
 
 
 def named(results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
@@ -231,8 +281,7 @@ class HullRows:
     @property
     def words(self) -> str:
         """Which engine runs, and how."""
-        fast = "fast (Dormand-Prince with complementarity, compiled)"
-        return fast if self.engine == "fast" else "reference, row by row"
+        return ENGINES[self.engine]
 
     @cached_property
     def library(self) -> Any:

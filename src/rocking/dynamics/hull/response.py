@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, unit
-from rocking.dynamics.hull.histories import start_of
+from rocking.dynamics.hull.histories import ENGINES, chosen, start_of, traced
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
@@ -46,6 +46,7 @@ def response_on_hull(
     settings: Settings,
     *,
     start: SpatialStart,
+    engine: str = "auto",
     scale: float = 1.0,
     duration: float | None = None,
 ) -> "HullResponse":
@@ -61,12 +62,15 @@ def response_on_hull(
     plausibility.warn(plausibility.of_scaled(shaken, scale))
     ground = HullGround.placed(motion, np.eye(3), (math.inf, math.inf), settings.gravity)
     assert settings.friction is not None
-    engine = HullEngine(made, ground, law, settings.friction, settings_on_hull(settings))
-    found = engine.run(start_of(made, start), 0.0 if duration is None else duration)
+    given, horizon, used = settings_on_hull(settings), 0.0 if duration is None else duration, chosen(engine)
+    if used == "fast":
+        found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=given)
+    else:
+        found = HullEngine(made, ground, law, settings.friction, given).run(start_of(made, start), horizon)
     steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
     end = min(until, found.time[-1])
-    time = samples(min(steps, default=FINE / engine.pace), end)
-    return HullResponse(made, ground, str(law), settings, time, found, end, components, scale)
+    time = samples(min(steps, default=FINE / math.sqrt(settings.gravity / made.size)), end)
+    return HullResponse(made, ground, str(law), settings, time, found, end, components, scale, ENGINES[used])
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +109,8 @@ class HullResponse(ResponseBase):
         Motions along x, y and z, or None.
     scale : float
         Factor on the motion [-].
+    used : str
+        Which engine ran, and how.
     """
 
     body: HullBody
@@ -116,16 +122,17 @@ class HullResponse(ResponseBase):
     end: float
     components: tuple[Component, Component, Component]
     scale: float
+    used: str
+
+    @property
+    def engine(self) -> str:
+        """Which engine ran, and how."""
+        return self.used
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the three motions."""
         return tuple("none" if motion is None else motion.name for motion in self.components)
-
-    @property
-    def engine(self) -> str:
-        """Which engine ran, and how."""
-        return "reference (Dormand-Prince with complementarity)"
 
     @cached_property
     def states(self) -> HullStates:
