@@ -236,7 +236,7 @@ def test_typing_redraws_within_150_ms(page: Any) -> None:
           const found = [];
           for (let k = 1; k <= 30; k += 1) {
             const drawn = new Promise(done => new MutationObserver((_, self) => { self.disconnect(); done(); })
-              .observe(place, { childList: true, subtree: true }));
+              .observe(place, { childList: true, characterData: true, subtree: true }));
             const start = performance.now();
             input.value = String(2 + k / 100);
             input.dispatchEvent(new Event('input', { bubbles: true }));
