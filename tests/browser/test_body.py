@@ -92,6 +92,20 @@ def test_a_wrong_number_says_so_and_keeps_the_last_body(page: Any, text: str, se
     assert number(page, "Slenderness h/b") == pytest.approx(4.0)
 
 
+def test_what_is_typed_is_not_written_over(page: Any) -> None:
+    """A name with blanks and a wrong width outlast answers and other fields; another unit writes the width anew."""
+    name, width = page.get_by_label("Name"), page.get_by_label("Width")
+    width.fill("wide")
+    name.click()
+    page.keyboard.type("a b  c ", delay=40)
+    page.get_by_label("Height").fill("2.50")
+    settled(page, "Slenderness h/b", 5.0)
+    assert (name.input_value(), page.get_by_label("Height").input_value()) == ("a b  c ", "2.50")
+    assert (width.input_value(), width.get_attribute("aria-invalid")) == ("wide", "true")
+    page.get_by_role("radio", name="cm", exact=True).check()
+    assert (width.input_value(), width.get_attribute("aria-invalid")) == ("50", None)
+
+
 def test_arrow_keys_step_a_number(page: Any) -> None:
     """Up and down change the size by a round step, with shift ten times."""
     field = page.get_by_label("Height")

@@ -136,7 +136,7 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
 
 /** A refusal of the server as fields know it: the key that it names, and its words. */
 export const refusedOf = (message) => ({
-  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1], words: sentence(message),
+  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1].toLowerCase(), words: sentence(message),
 });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
