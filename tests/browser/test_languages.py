@@ -13,6 +13,7 @@ import rocking.language
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.plausibility import of_body
+from rocking.studies.inventory.reading import parse_inventory
 
 ROWS = list(
     csv.DictReader((Path(rocking.language.__file__).parent / "page.csv").read_text("utf-8").splitlines(keepends=True))
@@ -177,6 +178,37 @@ def test_sentences_of_the_server_are_said_whole(open_page: Callable[..., Any], c
         "overturned by the cat; it was a stone of ours.",
     ]  # fmt: skip
     assert page.evaluate(SAID, foreign) == foreign
+
+
+LIST = """name,width_cm,depth_cm,height_cm,base_width_cm,shape
+a,12x,20,30,,
+b,130-120,20,30,,
+c,20,20,-3,,
+d,20,20,30,40,
+e,20,20,30,,star
+f,20,20
+g,20,,30,,
+ok,20,20,30,,
+"""
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served: Any, code: str) -> None:
+    """Of models, formats, families and steps, why a row of a list is none, and what buttons of charts are called."""
+    info = served.api("info", method="GET")
+    made = [one["domain"] for one in info["models"]]
+    made += [each for one in info["models"] for each in (*one["assumptions"], *one["known_defects"])]
+    made += [one["title"] for one in info["formats"]] + [one["summary"] for one in info["families"]]
+    steps = [*info["steps"].values(), *info["targets"].values()]
+    made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
+    made += [one.reason for one in parse_inventory(LIST).not_assessed]
+    made += ["Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
+    made = [text for text in dict.fromkeys(made) if len(re.findall(r"\b[a-z]{2,}\b", text)) >= 2]
+    assert len(made) > 110
+    said = open_page(link(), locale=code).evaluate(SAID, made)
+    assert [text for text, other in zip(made, said, strict=True) if text == other] == []
+    for text, other in zip(made, said, strict=True):
+        assert sorted(re.findall(r"\d+", text)) == sorted(re.findall(r"\d+", other)), other
 
 
 def test_a_saved_picture_speaks_it(open_page: Callable[..., Any]) -> None:

@@ -57,7 +57,7 @@ def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any
     expect(section.get_by_role("listitem", name="Step 1, mean").get_by_role("alert")).to_have_count(0)
 
     band.get_by_label("high").fill("20")
-    section.get_by_role("button", name="bandpass earlier").click()
+    section.get_by_role("button", name="Move bandpass earlier").click()
     section.get_by_label("Written as").select_option("smc-usgs")
     outcome = asked(section)
     expected = processed(read_motion(tmp_path / "hall.txt"), "mean; bandpass:low=0.2,high=20; taper")

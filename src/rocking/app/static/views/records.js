@@ -112,8 +112,8 @@ const Chain = ({ app, form, stations, faulty }) => {
       <h2 id=${heading}>Steps, in their order</h2>
       <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${`Step ${place + 1}, ${name}`}>
         <div class="toolbar"><strong>${name}</strong>
-          <${Button} kind="quiet" aria-label=${`${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
-          <${Button} kind="quiet" aria-label=${`${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
+          <${Button} kind="quiet" aria-label=${`Move ${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
+          <${Button} kind="quiet" aria-label=${`Move ${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
           <${Button} kind="quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out<//>
         </div>
         <p class="field-help">${sentence(known[name].words)}</p>
