@@ -10,7 +10,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from browser_pages import saved
+from browser_pages import link, saved
 from matplotlib import image
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -80,6 +80,36 @@ def test_first_page_under_one_second(open_page: Callable[..., Any]) -> None:
         seconds.append(time.perf_counter() - started)
         page.context.close()
     assert min(seconds) < 1.0, seconds
+
+
+BEYOND = """() => [
+  document.documentElement.scrollWidth - innerWidth,
+  ...[...document.querySelectorAll('[role=tab][data-view], h1, h2')].filter((each) => each.checkVisibility())
+    .map((each) => each.scrollWidth - each.clientWidth - 3),
+].filter((each) => each > 0)"""
+
+
+@pytest.mark.parametrize("width", [390, 1024])
+def test_letters_twice_as_large(open_page: Callable[..., Any], shot: Callable[..., Any], width: int) -> None:
+    """By a style of the reader's own: in no step is anything beyond the page, nor a title or a step beyond its place.
+
+    Control: in a place of half of its width the title is.
+    """
+    page = open_page(link(), viewport={"width": width, "height": 900})
+    page.evaluate("""() => {
+      const own = new CSSStyleSheet();
+      own.replaceSync("html { font-size: 200% }");
+      document.adoptedStyleSheets = [...document.adoptedStyleSheets, own];
+    }""")
+    for step in page.locator("[role=tab][data-view]").evaluate_all("tabs => tabs.map(tab => tab.dataset.view)"):
+        page.locator(f"#tab-{step}").evaluate("tab => tab.click()")
+        page.wait_for_selector(f"#view-{step}[data-ready=true]")
+        page.wait_for_load_state("networkidle")
+        assert page.evaluate(BEYOND) == [], step
+    shot(page, f"large letters {width}")
+    title = page.locator("section:not([hidden]) > .view-head h1").first
+    title.evaluate("node => Object.assign(node.style, { width: '2rem', overflowWrap: 'normal' })")
+    assert page.evaluate(BEYOND)
 
 
 def test_every_module_of_the_first_page_is_preloaded() -> None:
