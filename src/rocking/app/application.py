@@ -1,15 +1,17 @@
 """The application: gate, endpoints, pages, put together."""
 
 import mimetypes
+import os
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
-from fastapi import FastAPI, Request
+from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.responses import FileResponse
@@ -35,6 +37,7 @@ from rocking.app.work import ComputationQueue
 from rocking.bodies.formats.words import sentence
 from rocking.errors import RockingError
 from rocking.language import page_words
+from rocking.restitution.from_file import register_own
 from rocking.version import __version__
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
@@ -86,6 +89,17 @@ def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exceptio
     return handle
 
 
+async def _own_models() -> None:
+    """Know the models of the owner's file as it is now; one that is no longer sound is refused."""
+    if os.environ.get("ROCKING_MODELS"):
+        await run_in_threadpool(register_own)
+
+
+async def _own_models_if_sound() -> None:
+    with suppress(RockingError):
+        await _own_models()
+
+
 def create_app(settings: ServerSettings) -> FastAPI:
     """Return the application: every page and every endpoint, behind the gate."""
     app = FastAPI(
@@ -125,8 +139,12 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_exception_handler(ValidationError, _handler(_invalid))
     app.add_exception_handler(HTTPException, _handler(_refused))
     of_results = (pictures, tables, documents, projects, questions, studies)
+    computed = {impact, response, pictures, tables, documents}
     for part in (session, info, body, impact, contact_bed, records, motion, response, *of_results):
-        app.include_router(part.router, responses=ERRORS)
+        known = [Depends(_own_models if part in computed else _own_models_if_sound)]
+        app.include_router(
+            part.router, responses=ERRORS, dependencies=known if part in {*computed, info, studies} else []
+        )
     describe_api(app)
     _add_pages(app)
     return app

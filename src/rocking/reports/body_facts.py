@@ -13,7 +13,7 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table, default_models
 from rocking.evidence.measurements import all_measurements
-from rocking.restitution import IdentityCheck, RestitutionModel, energy_balance, identity_report
+from rocking.restitution import IdentityCheck, RestitutionModel, energy_balance, identity_report, models
 
 _MOST_VERTICES = 2000  # vertices of a ring that is drawn
 _RATIOS = np.geomspace(0.8, 12.0, 40)
@@ -173,9 +173,13 @@ def measured_facts() -> dict[str, Any]:
     return {"source": data.source, "points": [dict(zip(columns, row, strict=True)) for row in rows]}
 
 
-@cache
 def curves_facts() -> list[dict[str, Any]]:
     """Return the coefficient of homogeneous rectangles under every model [-]."""
+    return _curves(*models().values())
+
+
+@cache
+def _curves(*kinds: type) -> list[dict[str, Any]]:
     ratios = _RATIOS.tolist()
     return [
         {"model": model.label, "slenderness_ratio": ratios, "coefficient": model.of_slenderness(_RATIOS).tolist()}

@@ -6,6 +6,7 @@ import inspect
 import os
 import re
 import sys
+import threading
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,10 +18,11 @@ from rocking.bodies import Block
 from rocking.conventions import FEET, opposite
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution._model import RestitutionModel
-from rocking.restitution.registry import built, model, number, parameters_in, register
+from rocking.restitution.registry import built, model, number, parameters_in, register, withdraw
 
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
 _VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which are known by name
+_OWN = "own model, "
 _ROUNDING = 1e-9
 # colour and strokes of models that say none, which no model of the package has
 _LOOKS = (
@@ -31,7 +33,8 @@ _LOOKS = (
 )
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
-_REGISTERED: set[str] = set()
+_ONE = threading.Lock()
+_REGISTERED: dict[str, tuple[str, tuple[type[RestitutionModel], ...]]] = {}  # source and models, by the file
 
 
 def file_of(word: str) -> str | None:
@@ -63,15 +66,35 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
 
 
 def register_own() -> None:
-    """Register all models of the file that the owner of the machine names in ROCKING_MODELS, if each keeps its word."""
+    """Register all models of the file that the owner of the machine names in ROCKING_MODELS, if each keeps its word.
+
+    Of a file that was changed since, those that it has now take the place of those that it had.
+    """
+    with _ONE:
+        _register_own()
+
+
+def _register_own() -> None:
     path = os.environ.get(_VARIABLE, "")
-    if not path or path in _REGISTERED:
+    if not path:
         return
     path = os.environ[_VARIABLE] = str(Path(path).absolute())  # processes of studies start in other folders
+    before, old = _REGISTERED.pop(path, ("", ()))
     try:
         source = Path(path).read_text(encoding="utf-8-sig")
+        if source == before:
+            _REGISTERED[path] = before, old
+            return
     except (OSError, ValueError) as error:
         raise UnknownModelError(f"{_VARIABLE}={path} cannot be read: {error}") from error
+    finally:
+        for each in old if path not in _REGISTERED else ():
+            withdraw(each)
+    _REGISTERED[path] = source, _registered(source, path)
+
+
+def _registered(source: str, path: str) -> tuple[type[RestitutionModel], ...]:
+    """Register all models of a file, or none of them."""
     with blamed(path):
         kinds = [each for each in _kinds(source, path).values() if not inspect.isabstract(each)]
         if not kinds:
@@ -83,12 +106,15 @@ def register_own() -> None:
                     _keeps_its_word(built(kind, name, parameters_in(parameters, name, {})))
                 register(kind)
             except Exception as error:
+                for each in kinds[:position]:
+                    withdraw(each)
                 raise InvalidValueError(f"{path}: model {name!r}: {in_own_model(error) or error}") from error
             kind.title = kind.title or name
             if not kind.colour:
                 kind.colour, kind.linestyle = _LOOKS[position % len(_LOOKS)]
-            kind.reference = f"own model, {_signed(source, path)}: {kind.reference}"
-    _REGISTERED.add(path)
+            if not kind.reference.startswith(_OWN):  # of a file that is what it once was
+                kind.reference = f"{_OWN}{_signed(source, path)}: {kind.reference}"
+    return tuple(kinds)
 
 
 def origin_of(label: str) -> dict[str, str]:
@@ -165,7 +191,8 @@ def _kinds(source: str, where: str) -> dict[str, type[RestitutionModel]]:
         if issubclass(kind, RestitutionModel) and kind.__module__ == module.__name__
     }
     for kind in kinds.values():
-        _SOURCES[kind] = (source, where)
+        _SOURCES.pop(kind, None)
+        _SOURCES[kind] = (source, where)  # the last
         copyreg.pickle(kind, _reduced)
     return kinds
 

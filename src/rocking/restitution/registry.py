@@ -77,6 +77,12 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     return kind
 
 
+def withdraw(kind: type[RestitutionModel]) -> None:
+    """Let a model no longer be asked for by its name."""
+    if _MODELS.get(kind.name) is kind:
+        del _MODELS[kind.name]
+
+
 def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any) -> RestitutionModel:
     """Return a restitution model by name, with its parameters and an interface factor.
 

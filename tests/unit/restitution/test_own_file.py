@@ -76,10 +76,40 @@ def test_the_file_is_the_last_of_two_of_one_name(own):
     for value in (HOUSNER, f"0.9 * {HOUSNER}"):
         path = own(value, "twice")
         registry._MODELS.pop("twice", None)
-        from_file._REGISTERED.discard(str(path))
+        from_file._REGISTERED.pop(str(path), None)
         register_own()
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     assert from_file.origin_of("twice") == {"restitution_file": f"twice.py, SHA-256 {digest}"}
+
+
+def test_an_edited_file_takes_the_place_of_what_it_was(own):
+    """Changed, broken, mended, and as it was first: each time what the file says now, or nothing; twice is once."""
+    block = rk.Block(width=1.0, height=4.0)
+
+    def r():
+        return rk.coefficient_of_restitution(block, "edited")
+
+    own(f"0.9 * {HOUSNER}", "edited")
+    register_own()
+    first, source = r(), rk.restitution.models()["edited"].reference
+    path = own(f"0.8 * {HOUSNER}", "edited")
+    assert r() == first  # control: nobody has looked at the file since
+    register_own()
+    assert r() == pytest.approx(first * 8 / 9, rel=1e-14)
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert from_file.origin_of("edited") == {"restitution_file": f"edited.py, SHA-256 {digest}"}
+    for broken in ("1.2", None):
+        own(broken, "edited") if broken else path.unlink()
+        for _ in range(2):
+            with pytest.raises(RockingError):
+                register_own()
+            with pytest.raises(RockingError, match="no restitution model named 'edited'"):
+                r()
+    own(f"0.9 * {HOUSNER}", "edited")
+    register_own()
+    register_own()
+    assert (r(), rk.restitution.models()["edited"].reference) == (first, source)
+    assert source.count("own model") == 1
 
 
 def test_the_page_lists_it(own):

@@ -18,6 +18,7 @@ from rocking.reports.body_facts import (
     outline_facts,
     stages_facts,
 )
+from rocking.restitution import models
 
 router = APIRouter(prefix="/api", tags=["impact"])
 _HELD: Remembered[JsonAnswer] = Remembered(64)
@@ -114,7 +115,8 @@ async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
 
 def answer(inputs: ImpactRequest) -> JsonAnswer:
     """Return what an impact costs; one that was asked for lately is not computed again."""
-    return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs)))
+    key = inputs.model_dump_json(exclude_unset=True), *models().values()
+    return _HELD.get(key, lambda: JsonAnswer(_facts(inputs)))
 
 
 def _facts(inputs: ImpactRequest) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from rocking.app.answers import JsonAnswer, QuantityAnswer, answered, shape
 from rocking.app.inputs import CAPS
 from rocking.app.settings import state_of
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
+from rocking.restitution import models
 from rocking.version import __version__
 
 router = APIRouter(prefix="/api", tags=["info"])
@@ -118,11 +119,12 @@ Info: Any = shape(
 def info(request: Request) -> JsonAnswer:
     """Answer with version, engine, models, pulses, families of motions, formats, units, measures, axes and limits."""
     limits = {**asdict(state_of(request).settings.limits), **CAPS}
-    return JsonAnswer({**_constant(), "limits": limits})
+    return JsonAnswer({**_constant(*models().values()), "limits": limits})
 
 
 @cache
-def _constant() -> dict[str, Any]:
+def _constant(*kinds: type) -> dict[str, Any]:
+    """Return what only another model changes, of these kinds."""
     from rocking.app.api.contact_bed import ContactBedRequest
     from rocking.app.studies.job_document import KINDS
     from rocking.dynamics.plane import fast_engine
@@ -182,8 +184,6 @@ def _quantity(one: Any) -> dict[str, str]:
 
 
 def _models() -> list[dict[str, Any]]:
-    from rocking.restitution import models
-
     return [
         {
             "name": name,

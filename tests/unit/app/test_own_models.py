@@ -1,0 +1,63 @@
+"""The owner's own models: a file that is edited while the server runs is asked as it is now."""
+
+import pytest
+
+from rocking.restitution import registry
+
+MODEL = """
+import rocking as rk
+
+class Mine(rk.restitution.RestitutionModel):
+    name = "{name}"
+    colour = "#7a5195"
+
+    def raw_coefficient(self, body, onto):
+        return {value}
+"""
+BODY = {"units": "m", "width": 0.5, "height": 2.0}
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """Write the file that the owner names, and forget its models afterwards."""
+    monkeypatch.setattr(registry, "_MODELS", dict(registry._MODELS))
+    path = tmp_path / "mine.py"
+
+    def write(value, name="mine"):
+        path.write_text(MODEL.format(value=value, name=name))
+
+    write(0.5)
+    monkeypatch.setenv("ROCKING_MODELS", str(path))
+    return write
+
+
+def test_an_edited_file_is_asked_as_it_is(client, own):
+    """Twice asked the same, once with other code between: other numbers, for impacts, curves and responses."""
+    document = {"body": BODY, "motion": {"pulse": "sine:amplitude=3.2,period=0.8"}, "restitution": {"models": ["mine"]}}
+
+    def said():
+        impact = client.post("/api/impact", json={"body": BODY}).json()
+        (row,) = (each for each in impact["coefficients"]["right"] if each["model"] == "mine")
+        (curve,) = (each for each in impact["curves"] if each["model"] == "mine")
+        response = client.post("/api/response", json=document)
+        assert response.status_code == 200, response.text
+        (answer,) = response.json()["answers"]
+        cost = answer["impacts"][0]
+        kept = cost["velocity_after_rad_s"] / cost["velocity_before_rad_s"]
+        return row["coefficient_of_restitution"], curve["coefficient"][0], pytest.approx(abs(kept), rel=1e-9)
+
+    assert said() == (0.5, 0.5, 0.5)
+    own(0.4)
+    assert said() == (0.4, 0.4, 0.4)
+    own(1.2)
+    refused = client.post("/api/response", json=document)
+    assert refused.status_code >= 400
+    assert "r must lie in [0, 1], is 1.2" in refused.json()["error"]["message"]
+    info = client.get("/api/info")
+    assert info.status_code == 200
+    assert "mine" not in {each["name"] for each in info.json()["models"]}
+    own(0.5)
+    assert said() == (0.5, 0.5, 0.5)
+    assert "mine" in {each["name"] for each in client.get("/api/info").json()["models"]}
+    own(0.5, "other")
+    assert {"mine", "other"} & {each["name"] for each in client.get("/api/info").json()["models"]} == {"other"}
