@@ -1,6 +1,7 @@
 """Projects in the page: saved by themselves, with a way back, in agreement with other tabs and after a restart."""
 
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -64,6 +65,36 @@ def test_a_reload_does_not_bring_back_what_is_old(open_page: Callable[..., Any],
     page.reload()
     expect(page.get_by_label("Width")).to_have_value("0.77")
     assert served.api(where, method="GET")["document"]["inputs"]["body"]["width"] == 0.77
+
+
+@pytest.mark.parametrize("reloaded", [True, False])
+def test_a_save_that_was_never_answered_is_no_clash(
+    open_page: Callable[..., Any], served: Any, until: Callable[..., None], record: Any, reloaded: bool
+) -> None:
+    """A tab that never heard that its save came through has changed nothing elsewhere; what it typed since is saved."""
+    page = open_page()
+    came: list[Any] = []
+
+    def unheard(route: Any) -> None:
+        if route.request.method != "POST" or came:
+            return route.continue_()
+        came.append(route.fetch())
+        return None if reloaded else route.abort()
+
+    page.route(re.compile(r"/api/projects/[^/]+$"), unheard)
+    page.get_by_label("Width").fill("0.75")
+    until(page, lambda: came)
+    page.get_by_label("Height").fill("3")
+    if reloaded:
+        page.reload()
+        page.wait_for_selector("#view-body[data-ready=true]")
+    expect(page.get_by_label("Height")).to_have_value("3")
+    saved(page)
+    expect(page.get_by_test_id("clash")).not_to_be_visible()
+    (project,) = served.api("projects", method="GET")["projects"]
+    body = served.api(f"projects/{project['id']}", method="GET")["document"]["inputs"]["body"]
+    assert (body["width"], body["height"]) == (0.75, 3)
+    record.faults[:] = [fault for fault in record.faults if "ERR_FAILED" not in fault]  # the answer that was cut off
 
 
 def test_what_is_typed_during_an_undo_is_kept(open_page: Callable[..., Any], served: Any) -> None:

@@ -20,6 +20,7 @@ export const createProjects = (app, first) => {
   let timer = 0;
   let taking = false;
   let last = null; // what was saved last
+  let sent = []; // what is on its way, or went on one from which no answer came
   let line = Promise.resolve();
 
   // What is lent from elsewhere is on the screen, and not in the project.
@@ -35,7 +36,8 @@ export const createProjects = (app, first) => {
     return document;
   };
   // For a reload: which version this tab has, and whether more than that was typed.
-  const note = () => remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 });
+  const note = () =>
+    remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });
   const show = (document) => {
     taking = true;
@@ -43,7 +45,7 @@ export const createProjects = (app, first) => {
     app.forms.take(document?.forms);
     taking = false;
     changed.clear();
-    last = own();
+    [sent, last] = [[], own()];
     saving.value = "saved";
     note();
   };
@@ -68,14 +70,19 @@ export const createProjects = (app, first) => {
     const mine = [...changed];
     changed.clear();
     saving.value = "saving";
+    sent = [...sent.slice(-3), document];
+    note();
     try {
-      known(await ask("", { version: here.value.version, document, words }));
+      const facts = await ask("", { version: here.value.version, document, words });
+      sent = [];
+      known(facts);
       last = document;
       saving.value = changed.size ? "saving" : "saved";
       tell();
     } catch (error) {
       for (const key of mine) changed.add(key);
       saving.value = "unsaved";
+      if (error.kind !== "offline") sent.pop();
       if (error.kind === "conflict") await differ(document);
       else if (!["offline", "forbidden"].includes(error.kind)) app.say(`Not saved: ${error.message}`, "error");
     }
@@ -92,12 +99,17 @@ export const createProjects = (app, first) => {
         return;
       }
     }
-    if (same(mine, theirs.document)) {
-      changed.clear();
-      known(theirs);
-      last = mine;
-      saving.value = "saved";
-    } else clash.value = { theirs, mine };
+    const [done, ours] = [same(mine, theirs.document), isOwn(theirs, here.value.version, sent)];
+    if (!done && !ours) {
+      clash.value = { theirs, mine };
+      return;
+    }
+    sent = [];
+    if (done) changed.clear();
+    known(theirs);
+    last = theirs.document;
+    saving.value = done ? "saved" : "saving";
+    if (!done) save(); // as above
   };
 
   const step = (what) => async () => {
@@ -199,7 +211,7 @@ export const createProjects = (app, first) => {
       const whole = await app.call(`projects/${id}`);
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
       if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, whole.document)) {
-        if (whole.version === kept.version) {
+        if (whole.version === kept.version || isOwn(whole, kept.version, kept.sent)) {
           known(whole);
           changed.add("inputs");
           await save();
@@ -220,6 +232,10 @@ export const createProjects = (app, first) => {
     },
   };
 };
+
+// What was saved without this tab having heard of it is nobody else's.
+const isOwn = (theirs, version, sent = []) =>
+  theirs.version === version + 1 && sent.some((each) => same(each, theirs.document));
 
 // The order of keys says nothing.
 const same = (one, other) => {
