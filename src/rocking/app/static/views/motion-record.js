@@ -101,7 +101,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
         ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>
       <div class="record-held" data-testid="record-held">${motion && html`
-        <p class="record-name" tabindex="-1">${motion.file_name || `record ${motion.record.slice(0, 12)}`}</p>
+        <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || `record ${motion.record.slice(0, 12)}`}</p>
         <${Components} names=${known ? (answer.value.components ?? []).map((one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
       </div>
     </div>`;
