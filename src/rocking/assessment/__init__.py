@@ -2,6 +2,5 @@
 
 from rocking.assessment._assess import assess
 from rocking.assessment.answer import BodyAssessment, ModelMargin
-from rocking.studies.remedies import LengthChange, Remedies
 
-__all__ = ["BodyAssessment", "LengthChange", "ModelMargin", "Remedies", "assess"]
+__all__ = ["BodyAssessment", "ModelMargin", "assess"]

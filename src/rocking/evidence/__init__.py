@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rocking.evidence._restitution_distribution import restitution_distribution as restitution_distribution
     from rocking.evidence.calibration import Calibration as Calibration
     from rocking.evidence.calibration import calibrate as calibrate
-    from rocking.evidence.hierarchy import HierarchicalCalibration as HierarchicalCalibration
     from rocking.evidence.hierarchy import calibrate_hierarchy as calibrate_hierarchy
     from rocking.evidence.measurement_file import Measurement as Measurement
     from rocking.evidence.measurement_file import measurement_of as measurement_of
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from rocking.evidence.measurements import DataSet as DataSet
     from rocking.evidence.measurements import all_measurements as all_measurements
     from rocking.evidence.measurements import datasets as datasets
-    from rocking.evidence.recommendation import ModelForBody as ModelForBody
     from rocking.evidence.recommendation import Recommendation as Recommendation
 else:
     __all__, __getattr__, __dir__ = exports(__name__)

@@ -49,18 +49,10 @@ _SHARES, _PARTS = 10, 4  # nodes of the share between groups, and of what lies w
 
 @dataclass(frozen=True, eq=False)
 class HierarchicalCalibration(Calibration):
-    """Posterior of the calibrated default for a body on an interface that was not measured.
+    """Posterior of the calibrated default for a body on an interface that was not measured."""
 
-    Parameters
-    ----------
-    samples, marginals, joint, summary
-        As of `Calibration`.
-    shares : dict of str to float
-        Expected shares of the variance of a new measurement: ``laboratory``, ``interface``, ``block`` and
-        ``measurement``; where no laboratory has two groups, or no block two rows, the first or third is in its
-        neighbour's [-].
-    """
-
+    # expected shares of the variance of a new measurement: laboratory, interface, block and measurement; where no
+    # laboratory has two groups, or no block two rows, the first or third is in its neighbour's [-]
     shares: dict[str, float]
 
 

@@ -28,42 +28,24 @@ def _finite(value: float) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class ModelForBody:
-    """A model and one body: what it gives, how it stands, what to know.
+    """A model and one body: what it gives, how it stands, what to know."""
 
-    Parameters
-    ----------
-    name, title : str
-        Name with parameters, and the model in one line.
-    standing : Standing
-        Closest to the measurements, not resolved from the closest, further off, does not hold for this body, or not
-        measured.
-    coefficients : dict of str to float
-        theta_dot_after / theta_dot_before by the foot, or the edge, landed on; empty where there is none [-].
-    low, high : dict of str to float
-        Ends of the 95 % interval of one measured body, by foot; empty where nothing was measured [-].
-    record : TrackRecord or None
-        Errors on the measurements of bodies like this one; None where the model was not judged.
-    reasons : tuple of str
-        Why the model does not hold for this body; empty if it does.
-    concerns : tuple of str
-        Which of its known defects matters for this body, and how much.
-    outcome : Outcome or None
-        How the body ends under the motion, if one was given.
-    peak_ratio : float
-        Peak rotation over the slenderness angle of its side, NaN without a motion [-].
-    """
-
-    name: str
+    name: str  # name, title: name with parameters, and the model in one line
     title: str
+    # closest to the measurements, not resolved from the closest, further off, does not hold for this body, or not
+    # measured
     standing: Standing
+    # theta_dot_after / theta_dot_before by the foot, or the edge, landed on; empty where there is none [-]
     coefficients: Mapping[str, float]
+    # low, high: ends of the 95 % interval of one measured body, by foot; empty where nothing was measured [-]
     low: Mapping[str, float] = field(default_factory=dict)
     high: Mapping[str, float] = field(default_factory=dict)
+    # errors on the measurements of bodies like this one; None where the model was not judged
     record: TrackRecord | None = None
-    reasons: tuple[str, ...] = ()
-    concerns: tuple[str, ...] = ()
-    outcome: Outcome | None = None
-    peak_ratio: float = math.nan
+    reasons: tuple[str, ...] = ()  # why the model does not hold for this body; empty if it does
+    concerns: tuple[str, ...] = ()  # which of its known defects matters for this body, and how much
+    outcome: Outcome | None = None  # how the body ends under the motion, if one was given
+    peak_ratio: float = math.nan  # peak rotation over the slenderness angle of its side, NaN without a motion [-]
 
     @property
     def energy_left(self) -> float:
@@ -71,18 +53,7 @@ class ModelForBody:
         return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
 
     def scatter(self, onto: Foot) -> float:
-        """Return how far one measured body may lie from the model: from the longer side of its interval.
-
-        Parameters
-        ----------
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            Standard deviation [-].
-        """
+        """Return how far one measured body may lie from the model onto a foot, as a standard deviation [-]."""
         # the shorter side may have been cut at 0 or at the energy bound
         r = self.coefficients[onto]
         return max(self.high[onto] - r, r - self.low[onto]) / NORMAL_95
@@ -94,13 +65,7 @@ class ModelForBody:
         return 0.0 if kept == 0.0 else math.inf if kept >= 1.0 else 2.0 * math.log(0.5) / math.log(kept)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values.
-
-        Returns
-        -------
-        dict
-            None where something does not exist.
-        """
+        """Return the row as plain values, None where something does not exist."""
         record = self.record
         return {
             "model": self.name,

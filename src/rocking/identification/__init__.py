@@ -6,13 +6,10 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.identification._identify import identify as identify
-    from rocking.identification.design import Design as Design
     from rocking.identification.measurement import ImpactTimes as ImpactTimes
     from rocking.identification.measurement import RotationSeries as RotationSeries
     from rocking.identification.readers.reader import read_measurement as read_measurement
-    from rocking.identification.results import ForcedRocking as ForcedRocking
     from rocking.identification.results import Identification as Identification
-    from rocking.identification.results import Impact as Impact
     from rocking.identification.results import IntervalEstimate as IntervalEstimate
     from rocking.identification.results import ModelComparison as ModelComparison
 else:

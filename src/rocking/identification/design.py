@@ -37,23 +37,12 @@ def peaks_bound(before: float, after: float, noise: float) -> float:
 
 @dataclass(frozen=True)
 class Design:
-    """What an experiment would tell.
+    """What an experiment would tell."""
 
-    Parameters
-    ----------
-    peak : float
-        Rotation from which the body is let go, over its slenderness angle [-].
-    impacts : int
-        Number of impacts whose times are kept.
-    noise : float
-        Standard deviation of a time [s].
-    deviation : float
-        Least standard deviation of the mean coefficient of restitution, with the scatter of impacts in it [-].
-    """
-
-    peak: float
-    impacts: int
-    noise: float
+    peak: float  # rotation from which the body is let go, over its slenderness angle [-]
+    impacts: int  # number of impacts whose times are kept
+    noise: float  # standard deviation of a time [s]
+    # least standard deviation of the mean coefficient of restitution, with the scatter of impacts in it [-]
     deviation: float
 
 

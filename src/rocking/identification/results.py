@@ -63,27 +63,13 @@ def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate
 
 @dataclass(frozen=True)
 class Impact:
-    """What one impact took.
+    """What one impact took."""
 
-    Parameters
-    ----------
-    number : int
-        From zero; nothing is known of what the first one took.
-    time : float
-        When it was, as it is computed [s].
-    onto : {"left", "right"}
-        The foot on which the body lands.
-    speed : float
-        Angular velocity before it, without sign [rad/s].
-    coefficient : IntervalEstimate
-        theta_dot_after / theta_dot_before [-].
-    """
-
-    number: int
-    time: float
-    onto: Foot
-    speed: float
-    coefficient: IntervalEstimate
+    number: int  # from zero; nothing is known of what the first one took
+    time: float  # when it was, as it is computed [s]
+    onto: Foot  # the foot on which the body lands
+    speed: float  # angular velocity before it, without sign [rad/s]
+    coefficient: IntervalEstimate  # theta_dot_after / theta_dot_before [-]
 
 
 @dataclass(frozen=True)
@@ -110,33 +96,16 @@ class ModelComparison:
 
 @dataclass(frozen=True)
 class ForcedRocking:
-    """What else a rotation under a known ground motion says, and how far it says anything.
+    """What else a rotation under a known ground motion says, and how far it says anything."""
 
-    Parameters
-    ----------
-    clock : IntervalEstimate
-        By how much the clock of the measurement is ahead of that of the motion [s].
-    gain : IntervalEstimate
-        Measured over true rotation [-].
-    friction : IntervalEstimate
-        Coefficient of friction; of a body that never slid only the low end is a number [-].
-    stretches : int
-        How often the half cycles begin anew, in a state that was measured and with no impact before them.
-    odd : int
-        Half cycles that were left out, since rocking alone does not explain them.
-    seen, measured : float
-        Duration of the half cycles that were used, and of the measurement [s].
-    foreseen : float
-        When a difference of 1e-4 in r changes what follows from rest by a tenth of its peak; NaN if never [s].
-    """
-
-    clock: IntervalEstimate
-    gain: IntervalEstimate
-    friction: IntervalEstimate
-    stretches: int
-    odd: int
-    seen: float
+    clock: IntervalEstimate  # by how much the clock of the measurement is ahead of that of the motion [s]
+    gain: IntervalEstimate  # measured over true rotation [-]
+    friction: IntervalEstimate  # coefficient of friction; of a body that never slid only the low end is a number [-]
+    stretches: int  # how often the half cycles begin anew, in a state that was measured and with no impact before them
+    odd: int  # half cycles that were left out, since rocking alone does not explain them
+    seen: float  # seen, measured: duration of the half cycles that were used, and of the measurement [s]
     measured: float
+    # when a difference of 1e-4 in r changes what follows from rest by a tenth of its peak; NaN if never [s]
     foreseen: float
 
     def __str__(self) -> str:

@@ -47,11 +47,9 @@ if TYPE_CHECKING:
     from rocking.motions.processing import trimmed_to_significant as trimmed_to_significant
     from rocking.motions.pulse import Pulse as Pulse
     from rocking.motions.rotd import rotd_spectrum as rotd_spectrum
-    from rocking.motions.selection import Selection as Selection
     from rocking.motions.selection import selected as selected
     from rocking.motions.spectrum import ResponseSpectrum as ResponseSpectrum
     from rocking.motions.spectrum import response_spectrum as response_spectrum
-    from rocking.motions.target_spectra import TargetSpectrum as TargetSpectrum
     from rocking.motions.target_spectra import target_spectrum as target_spectrum
 else:
     __all__, __getattr__, __dir__ = exports(__name__)

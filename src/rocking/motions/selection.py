@@ -22,30 +22,14 @@ MOST = 4.0  # factor beyond which, or below whose inverse, a record is not scale
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """Records that were chosen and scaled, and how close they come.
+    """Records that were chosen and scaled, and how close they come."""
 
-    Parameters
-    ----------
-    records : RecordSet
-        The scaled records, the closest first.
-    factors : ndarray
-        On each of them [-].
-    misfits : ndarray
-        Root mean square over the periods of ln(spectrum / target), of each [-].
-    periods : ndarray
-        Where spectra were compared [s].
-    target : TargetSpectrum
-        What they were compared with.
-    spectra : ndarray, shape (records, periods)
-        PSA of the scaled records: RotD50 of two components, else that of the one [m/s2].
-    """
-
-    records: RecordSet
-    factors: FloatArray
-    misfits: FloatArray
-    periods: FloatArray
-    target: TargetSpectrum
-    spectra: FloatArray
+    records: RecordSet  # the scaled records, the closest first
+    factors: FloatArray  # on each of them [-]
+    misfits: FloatArray  # root mean square over the periods of ln(spectrum / target), of each [-]
+    periods: FloatArray  # where spectra were compared [s]
+    target: TargetSpectrum  # what they were compared with
+    spectra: FloatArray  # PSA of the scaled records: RotD50 of two components, else that of the one [m/s2]
 
     @property
     def mean(self) -> FloatArray:

@@ -30,41 +30,16 @@ _HOW = "eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1.0g,sd1=0.6g,tl=8, or a C
 
 @dataclass(frozen=True, eq=False)
 class TargetSpectrum:
-    """A pseudo-acceleration spectrum that records are compared with.
+    """A pseudo-acceleration spectrum that records are compared with."""
 
-    Parameters
-    ----------
-    name : str
-        What it is.
-    damping : float
-        Its damping ratio [-].
-    longest : float
-        Largest period for which it is defined [s].
-    shortest : float
-        Smallest period for which it is defined [s].
-    of_periods : callable
-        Pseudo-acceleration [m/s2] of an array of periods [s].
-    """
-
-    name: str
-    damping: float
-    longest: float
-    shortest: float
-    of_periods: Callable[[FloatArray], FloatArray]
+    name: str  # what it is
+    damping: float  # its damping ratio [-]
+    longest: float  # largest period for which it is defined [s]
+    shortest: float  # smallest period for which it is defined [s]
+    of_periods: Callable[[FloatArray], FloatArray]  # pseudo-acceleration [m/s2] of an array of periods [s]
 
     def __call__(self, periods: ArrayLike) -> FloatArray:
-        """Return the pseudo-spectral acceleration.
-
-        Parameters
-        ----------
-        periods : array_like
-            Within what the spectrum is defined for [s].
-
-        Returns
-        -------
-        ndarray
-            The spectrum [m/s2].
-        """
+        """Return the pseudo-spectral acceleration [m/s2] at periods within what it is defined for [s]."""
         given = np.atleast_1d(checks.real_array("periods", periods, "s"))
         checks.all_within(f"periods of {self.name}", given, self.shortest, self.longest, given)
         return np.asarray(self.of_periods(given), dtype=np.float64)

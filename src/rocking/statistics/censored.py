@@ -17,50 +17,21 @@ _LOG_OF_ROOT = 0.5 * math.log(2.0 * math.pi)
 
 @dataclass(frozen=True)
 class CensoredFit:
-    """Median and dispersion of levels.
+    """Median and dispersion of levels."""
 
-    Parameters
-    ----------
-    median : float
-        Median [unit of the levels].
-    dispersion : float
-        Standard deviation of the natural logarithm [-].
-    crossings, censored : int
-        Levels that are known, and levels that are known to lie above a limit.
-    method : str
-        How it was found, in words.
-    """
-
-    median: float
-    dispersion: float
-    crossings: int
+    median: float  # median [unit of the levels]
+    dispersion: float  # standard deviation of the natural logarithm [-]
+    crossings: int  # crossings, censored: levels that are known, and levels that are known to lie above a limit
     censored: int
-    method: str
+    method: str  # how it was found, in words
 
     def probability(self, level: Any) -> FloatArray:
-        """Return the share of levels below a level.
-
-        Parameters
-        ----------
-        level : array_like
-            Levels, > 0 [unit of the levels].
-
-        Returns
-        -------
-        ndarray
-            Probabilities; a step if the dispersion is zero [-].
-        """
+        """Return the share of levels below levels > 0 [their unit]; a step if the dispersion is zero [-]."""
         logs = np.log(checks.positive_array("level", level)) - math.log(self.median)
         return np.asarray(ndtr(logs / self.dispersion)) if self.dispersion else np.asarray(1.0 * (logs >= 0.0))
 
     def summary(self) -> dict[str, Any]:
-        """Return the numbers and the method.
-
-        Returns
-        -------
-        dict
-            The fields by name.
-        """
+        """Return the numbers and the method."""
         return dict(vars(self))
 
 

@@ -22,26 +22,15 @@ _ROWS_AT_ONCE = 1 << 15
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Failures and trials at ascending levels; use `count_outcomes` to make one.
+    """Failures and trials at ascending levels; use `count_outcomes` to make one."""
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels of the intensity measure, ascending [any unit].
-    failures, trials : ndarray
-        Trials that failed, and all trials, at each level [-].
-    cluster_failures, cluster_trials : ndarray, optional
-        The same by cluster: one row a cluster, one column a level [-].
-    cluster_weights : ndarray, optional
-        How many clusters have each of these rows; one each, if not given [-].
-    """
-
-    levels: FloatArray
-    failures: FloatArray
+    levels: FloatArray  # distinct levels of the intensity measure, ascending [any unit]
+    failures: FloatArray  # failures, trials: trials that failed, and all trials, at each level [-]
     trials: FloatArray
+    # cluster_failures, cluster_trials: the same by cluster: one row a cluster, one column a level [-]
     cluster_failures: FloatArray | None = None
     cluster_trials: FloatArray | None = None
-    cluster_weights: FloatArray | None = None
+    cluster_weights: FloatArray | None = None  # how many clusters have each of these rows; one each, if not given [-]
 
     @property
     def survivals(self) -> FloatArray:
@@ -107,24 +96,12 @@ class Counts:
 
 @dataclass(frozen=True, eq=False)
 class StateCounts:
-    """Three states at ascending levels; use `count_states` to make one.
+    """Three states at ascending levels; use `count_states` to make one."""
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels of the intensity measure, ascending [any unit].
-    rocked : ndarray
-        Trials that rocked at least (to the chosen level, or overturned) at each level [-].
-    overturned : ndarray
-        Trials that overturned at each level [-].
-    trials : ndarray
-        All trials at each level [-].
-    """
-
-    levels: FloatArray
-    rocked: FloatArray
-    overturned: FloatArray
-    trials: FloatArray
+    levels: FloatArray  # distinct levels of the intensity measure, ascending [any unit]
+    rocked: FloatArray  # trials that rocked at least (to the chosen level, or overturned) at each level [-]
+    overturned: FloatArray  # trials that overturned at each level [-]
+    trials: FloatArray  # all trials at each level [-]
 
 
 def count_outcomes(

@@ -42,51 +42,25 @@ class Statistic(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Goodness:
-    """Agreement of a curve with the outcomes it was fitted to.
+    """Agreement of a curve with the outcomes it was fitted to."""
 
-    Parameters
-    ----------
-    deviance : Statistic
-        Twice the log likelihood lost against a curve free at every level; tells little with few trials a level.
-    pearson : Statistic
-        Sum over levels of squared differences over variances.
-    hosmer_lemeshow : Statistic
-        The same over groups of neighbouring levels, which suits single observations.
-    kolmogorov : Statistic
-        Largest distance between the share of failures in a group and the curve.
-    lower, upper : ndarray
-        Lowest and highest level of each group [unit of the levels].
-    trials, observed, expected : ndarray
-        Trials, failures, and failures by the curve in each group [-].
-    band : tuple of ndarray
-        Where 95 % of the shares of failures in each group fall that the curve would give [-].
-    distance_limit : float
-        Largest distance that 95 % of data sets drawn from the curve stay below [-].
-    repetitions : int
-        Number of data sets drawn whose refit succeeded.
-    """
-
+    # twice the log likelihood lost against a curve free at every level; tells little with few trials a level
     deviance: Statistic
-    pearson: Statistic
-    hosmer_lemeshow: Statistic
-    kolmogorov: Statistic
-    lower: FloatArray
+    pearson: Statistic  # sum over levels of squared differences over variances
+    hosmer_lemeshow: Statistic  # the same over groups of neighbouring levels, which suits single observations
+    kolmogorov: Statistic  # largest distance between the share of failures in a group and the curve
+    lower: FloatArray  # lower, upper: lowest and highest level of each group [unit of the levels]
     upper: FloatArray
-    trials: FloatArray
+    trials: FloatArray  # trials, observed, expected: trials, failures, and failures by the curve in each group [-]
     observed: FloatArray
     expected: FloatArray
+    # where 95 % of the shares of failures in each group fall that the curve would give [-]
     band: tuple[FloatArray, FloatArray]
-    distance_limit: float
-    repetitions: int
+    distance_limit: float  # largest distance that 95 % of data sets drawn from the curve stay below [-]
+    repetitions: int  # number of data sets drawn whose refit succeeded
 
     def summary(self) -> dict[str, Any]:
-        """Return the statistics as plain numbers.
-
-        Returns
-        -------
-        dict
-            Value and p-value of each [-].
-        """
+        """Return value and p-value of each statistic [-]."""
         return {name: getattr(self, name)._asdict() for name in STATISTICS}
 
 

@@ -13,28 +13,14 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True, eq=False)
 class Regression:
-    """A line y = intercept + slope x by least squares.
+    """A line y = intercept + slope x by least squares."""
 
-    Parameters
-    ----------
-    intercept, slope : float
-        The line [unit of y, and that over the unit of x].
-    scatter : float
-        Standard deviation of the residuals, with n - 2 degrees of freedom [unit of y].
-    slope_error : float
-        Standard error of the slope [unit of the slope].
-    determination : float
-        R squared: the share of the variance of y that the line explains [-].
-    residuals : ndarray
-        What is left of each y [unit of y].
-    """
-
-    intercept: float
+    intercept: float  # intercept, slope: the line [unit of y, and that over the unit of x]
     slope: float
-    scatter: float
-    slope_error: float
-    determination: float
-    residuals: FloatArray
+    scatter: float  # standard deviation of the residuals, with n - 2 degrees of freedom [unit of y]
+    slope_error: float  # standard error of the slope [unit of the slope]
+    determination: float  # R squared: the share of the variance of y that the line explains [-]
+    residuals: FloatArray  # what is left of each y [unit of y]
 
     @property
     def count(self) -> int:
@@ -42,35 +28,12 @@ class Regression:
         return int(self.residuals.size)
 
     def at(self, x: Any) -> FloatArray:
-        """Return the line.
-
-        Parameters
-        ----------
-        x : array_like
-            Places [unit of x].
-
-        Returns
-        -------
-        ndarray
-            Heights of the line [unit of y].
-        """
+        """Return the heights of the line [unit of y] at places [unit of x]."""
         return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
 
     def probability_above(self, y: float, x: Any) -> FloatArray:
-        """Return the probability that a new point is above a height, for normal residuals.
-
-        Parameters
-        ----------
-        y : float
-            The height [unit of y].
-        x : array_like
-            Places [unit of x].
-
-        Returns
-        -------
-        ndarray
-            The probability, without the uncertainty of the line itself [-].
-        """
+        """Return the probability that a new point at places [unit of x] is above a height [unit of y] [-]."""
+        # for normal residuals, without the uncertainty of the line itself
         margin = self.at(x) - y
         if self.scatter == 0.0:
             return np.asarray(margin > 0.0, dtype=np.float64)
@@ -84,13 +47,7 @@ class Regression:
         return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))  # Eq. 219
 
     def summary(self) -> dict[str, Any]:
-        """Return the line as plain values.
-
-        Returns
-        -------
-        dict
-            The numbers, the p-value of the slope and the number of points.
-        """
+        """Return the line as plain values, with the p-value of the slope and the number of points."""
         names = ("intercept", "slope", "scatter", "slope_error", "determination", "p_value", "count")
         return {name: getattr(self, name) for name in names}
 

@@ -453,20 +453,7 @@ def fit_lognormal(
 
 
 def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
-    """Fit a lognormal fragility curve to outcomes that are counted already, or say why there is none.
-
-    Parameters
-    ----------
-    counts : Counts
-        The outcomes.
-    method : {"auto", "maximum-likelihood", "penalised"}
-        As for `fit_lognormal`.
-
-    Returns
-    -------
-    LognormalFit
-        The fit; check `exists` or read `verdict`.
-    """
+    """Return the lognormal curve of outcomes that are counted already, by a method as for `fit_lognormal`."""
     chosen = checks.one_of("method", method, get_args(Method))
     separation = separation_of(counts)
     if chosen == "maximum-likelihood" and separation is not Separation.OVERLAP:

@@ -107,23 +107,13 @@ def _log_difference(high: FloatArray, low: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class OrderedFit:
-    """Curves of rocking at least and of overturning; `fit_ordered` makes one.
+    """Curves of rocking at least and of overturning; `fit_ordered` makes one."""
 
-    Parameters
-    ----------
-    counts : StateCounts
-        The outcomes.
-    separate : tuple of LognormalFit
-        Rocking at least, and overturning, each fitted by itself.
-    method : {"separate", "common-dispersion"}
-        How `rocked` and `overturned` were found.
-    rocked, overturned : tuple of float, optional
-        Median [unit of the levels] and dispersion [-] of rocking at least and of overturning; None where there is none.
-    """
-
-    counts: StateCounts
-    separate: tuple[LognormalFit, LognormalFit]
-    method: str
+    counts: StateCounts  # the outcomes
+    separate: tuple[LognormalFit, LognormalFit]  # rocking at least, and overturning, each fitted by itself
+    method: str  # how `rocked` and `overturned` were found
+    # rocked, overturned: median [unit of the levels] and dispersion [-] of rocking at least and of overturning; None
+    # where there is none
     rocked: Curve | None
     overturned: Curve | None
 
@@ -169,24 +159,8 @@ class OrderedFit:
         return " ".join(parts)
 
     def probabilities(self, im: Any) -> FloatArray:
-        """Return the probabilities of the three states.
-
-        Parameters
-        ----------
-        im : array_like
-            Levels of the intensity measure, >= 0 [unit of the levels].
-
-        Returns
-        -------
-        ndarray
-            No rocking, rocking, overturned along the last axis, adding up to one; beyond a crossing, overturning is
-            held to the probability of rocking at least [-].
-
-        Raises
-        ------
-        InvalidValueError
-            If a curve is missing.
-        """
+        """Return the probabilities of no rocking, rocking and overturned at levels >= 0, along the last axis [-]."""
+        # beyond a crossing overturning is held to the probability of rocking at least
         if self.rocked is None or self.overturned is None:
             raise InvalidValueError(f"two fragility curves are needed, got fewer: {self.verdict}")
         level, _ = levels_of(im)

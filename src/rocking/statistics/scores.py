@@ -17,18 +17,10 @@ REPETITIONS = 2000  # bootstrap samples of an interval
 
 @dataclass(frozen=True)
 class Score:
-    """A number with its interval: whole clusters, such as all outcomes under one motion, were drawn again.
+    """A number with its interval: whole clusters, such as all outcomes under one motion, were drawn again."""
 
-    Parameters
-    ----------
-    value : float
-        The number [-].
-    low, high : float
-        Ends of the 95 % interval [-]; NaN where there are fewer than two clusters.
-    """
-
-    value: float
-    low: float
+    value: float  # the number [-]
+    low: float  # low, high: ends of the 95 % interval [-]; NaN where there are fewer than two clusters
     high: float
 
     @property
@@ -39,24 +31,12 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class ReliabilityBin:
-    """Outcomes to which about the same probability was given.
+    """Outcomes to which about the same probability was given."""
 
-    Parameters
-    ----------
-    count : int
-        How many there are [-].
-    predicted : float
-        Mean of the probabilities given [-].
-    observed : float
-        Share that happened [-].
-    low, high : float
-        Exact 95 % interval of that share [-].
-    """
-
-    count: int
-    predicted: float
-    observed: float
-    low: float
+    count: int  # how many there are [-]
+    predicted: float  # mean of the probabilities given [-]
+    observed: float  # share that happened [-]
+    low: float  # low, high: exact 95 % interval of that share [-]
     high: float
 
 

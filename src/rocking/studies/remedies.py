@@ -154,49 +154,29 @@ def millimetres(length: float) -> int:
 
 @dataclass(frozen=True)
 class LengthChange:
-    """How far a length must be changed.
+    """How far a length must be changed."""
 
-    Parameters
-    ----------
-    stands : float
-        With which no history overturns any more: the least from which on all that were tried stand, in whole
-        millimetres; 0 where it stands as it is [m].
-    lifts_not : float
-        With which it does not even lift, in closed form [m].
-    why_not : str
-        Why none was looked for; empty if one was.
-    """
-
+    # with which no history overturns any more: the least from which on all that were tried stand, in whole
+    # millimetres; 0 where it stands as it is [m]
     stands: float
-    lifts_not: float
-    why_not: str = ""
+    lifts_not: float  # with which it does not even lift, in closed form [m]
+    why_not: str = ""  # why none was looked for; empty if one was
 
 
 @dataclass(frozen=True)
 class Remedies:
-    """What would keep a body standing under motions times a factor.
+    """What would keep a body standing under motions times a factor."""
 
-    Parameters
-    ----------
-    margin : float
-        The factor on the motions [-].
-    tension : dict of str to float
-        Force that anchors along the left and the right edge must hold, that of the whole edge; 0 where it does not
-        lift [N].
-    shear : float
-        Horizontal force on all anchors [N].
-    wider, lower : LengthChange
-        How far each side of the base must reach out, and how far the centre of mass must come down.
-    isolation : tuple of float, optional
-        Least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if
-        there is none up to 6 s.
-    """
-
-    margin: float
+    margin: float  # the factor on the motions [-]
+    # force that anchors along the left and the right edge must hold, that of the whole edge; 0 where it does not lift
+    # [N]
     tension: dict[str, float]
-    shear: float
+    shear: float  # horizontal force on all anchors [N]
+    # wider, lower: how far each side of the base must reach out, and how far the centre of mass must come down
     wider: LengthChange
     lower: LengthChange
+    # least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if there
+    # is none up to 6 s
     isolation: tuple[float, float] | None
 
     @property

@@ -3,13 +3,12 @@
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround
-from rocking.dynamics.hull.histories import HullBatch, hull_histories
+from rocking.dynamics.hull.histories import hull_histories
 from rocking.dynamics.hull.history import HullSettings
 from rocking.dynamics.hull.motion import standing
 from rocking.dynamics.hull.response import HullResponse
 
 __all__ = [
-    "HullBatch",
     "HullBody",
     "HullEngine",
     "HullGround",

@@ -151,26 +151,12 @@ DIMENSIONS = ("body", "ground", "scale", "restitution", "friction", "start")
 
 @dataclass(frozen=True, eq=False)
 class HullBatch:
-    """Results of many histories; every array has the shape (body, ground, scale, restitution, friction, start).
+    """Results of many histories; every array has the shape (body, ground, scale, restitution, friction, start)."""
 
-    Parameters
-    ----------
-    shape : tuple of int
-        How many of each.
-    values : dict of str to ndarray
-        Results by name, one after another; codes of `Outcome` and `Status`; NaN where there is no result.
-    engine : str
-        Which engine ran.
-
-    Examples
-    --------
-    >>> HullBatch((1, 1, 1, 1, 1, 1), {"outcome": np.array([2])}, "none").overturned.item()
-    1.0
-    """
-
-    shape: tuple[int, ...]
+    shape: tuple[int, ...]  # how many of each
+    # results by name, one after another; codes of `Outcome` and `Status`; NaN where there is no result
     values: dict[str, np.ndarray] = field(repr=False)
-    engine: str
+    engine: str  # which engine ran
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return an array by name."""

@@ -1,21 +1,19 @@
 """The contact bed: an impact that takes time, on contact points with stiffness, loss and friction."""
 
 from rocking.restitution.bed.contact_bed import BaseFriction, ContactBed, Coulomb, RegularisedCoulomb, Sticking
-from rocking.restitution.bed.impact import BedImpact, BedImpacts, BedStatus, Emergent, bed_impact, bed_impacts
+from rocking.restitution.bed.impact import BedImpact, BedImpacts, BedStatus, bed_impact, bed_impacts
 from rocking.restitution.bed.laws import ContactLaw, Hertz, HuntCrossley, KelvinVoigt, PlasticUnloading
-from rocking.restitution.bed.rocking_down import BedRocking, bed_free_rocking
+from rocking.restitution.bed.rocking_down import bed_free_rocking
 from rocking.restitution.bed.setup import setup_of
 
 __all__ = [
     "BaseFriction",
     "BedImpact",
     "BedImpacts",
-    "BedRocking",
     "BedStatus",
     "ContactBed",
     "ContactLaw",
     "Coulomb",
-    "Emergent",
     "Hertz",
     "HuntCrossley",
     "KelvinVoigt",

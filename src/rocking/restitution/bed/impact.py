@@ -43,20 +43,14 @@ class BedStatus(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Emergent:
-    """Coefficients of restitution of one impact.
+    """Coefficients of restitution of one impact."""
 
-    Parameters
-    ----------
-    by_peak, by_energy, by_velocity : float
-        theta_dot_after / theta_dot_before by each measure; NaN where it does not apply [-].
-    stopped : bool
-        Whether the body did not step onto the new foot.
-    """
-
+    # by_peak, by_energy, by_velocity: theta_dot_after / theta_dot_before by each measure; NaN where it does not apply
+    # [-]
     by_peak: float
     by_energy: float
     by_velocity: float
-    stopped: bool
+    stopped: bool  # whether the body did not step onto the new foot
 
     @property
     def coefficient(self) -> float:

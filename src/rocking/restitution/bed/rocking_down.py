@@ -20,24 +20,13 @@ _AT_REST = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class BedRocking:
-    """Peaks of free rocking on a bed.
+    """Peaks of free rocking on a bed."""
 
-    Parameters
-    ----------
-    rotations : ndarray
-        Rotation, without its sign, at the start and at each peak [rad].
-    times : ndarray
-        When they are reached [s].
-    touches : ndarray
-        When the impacts between them begin: the base touches beyond the old foot [s].
-    coefficients : ndarray
-        Ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one where the energy
-        of a hop comes back [-].
-    """
-
-    rotations: FloatArray
-    times: FloatArray
-    touches: FloatArray
+    rotations: FloatArray  # rotation, without its sign, at the start and at each peak [rad]
+    times: FloatArray  # when they are reached [s]
+    touches: FloatArray  # when the impacts between them begin: the base touches beyond the old foot [s]
+    # ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one where the energy of a
+    # hop comes back [-]
     coefficients: FloatArray
 
 

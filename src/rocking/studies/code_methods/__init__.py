@@ -1,14 +1,12 @@
 """Code methods: how published rules judge a rocking body, and how far that is from what its histories show."""
 
-from rocking.studies.code_methods.comparison import Bias, CalledSafe, CodeComparison, compare_code_methods
-from rocking.studies.code_methods.methods import CODE_METHODS, LEFT_OUT, CodeMethod
+from rocking.studies.code_methods.comparison import CalledSafe, CodeComparison, compare_code_methods
+from rocking.studies.code_methods.methods import CODE_METHODS, LEFT_OUT
 
 __all__ = [
     "CODE_METHODS",
     "LEFT_OUT",
-    "Bias",
     "CalledSafe",
     "CodeComparison",
-    "CodeMethod",
     "compare_code_methods",
 ]

@@ -27,24 +27,16 @@ QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
 
 @dataclass(frozen=True)
 class Bias:
-    """How a method's capacity compares with the intensity that overturns: method over truth.
+    """How a method's capacity compares with the intensity that overturns: method over truth."""
 
-    Parameters
-    ----------
-    median : float
-        Median ratio; above 1 the method takes a body for stronger than it is [-].
-    interval : tuple of float
-        95 % interval of the median, by drawing whole motions again; NaN of fewer than five [-].
-    scatter : float
-        Half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite where too many motions
-        do not overturn within the range that was searched, NaN of fewer than five motions [-].
-    count, censored : int
-        Pairs of a motion and a body, and those of them which no level overturned: their ratio lies below all others.
-    """
-
-    median: float
+    median: float  # median ratio; above 1 the method takes a body for stronger than it is [-]
+    # 95 % interval of the median, by drawing whole motions again; NaN of fewer than five [-]
     interval: tuple[float, float]
+    # half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite where too many motions do
+    # not overturn within the range that was searched, NaN of fewer than five motions [-]
     scatter: float
+    # count, censored: pairs of a motion and a body, and those of them which no level overturned: their ratio lies
+    # below all others
     count: int
     censored: int
 

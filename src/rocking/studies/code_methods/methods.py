@@ -125,49 +125,14 @@ class CodeMethod(ABC):
 
     @abstractmethod
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion at which the limit is reached.
-
-        Parameters
-        ----------
-        sides, shaking
-            As for `capacity`.
-
-        Returns
-        -------
-        ndarray
-            Of a shape that fits (motions, bodies, 2) [-].
-        """
+        """Return the factor on every motion at which the limit is reached, fitting (motions, bodies, 2) [-]."""
 
     def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Return whether a body under a motion is in the domain.
-
-        Parameters
-        ----------
-        sides, shaking
-            As for `capacity`.
-
-        Returns
-        -------
-        ndarray
-            Of a shape that fits (motions, bodies); throughout if a method does not say otherwise.
-        """
+        """Return whether a body under a motion is in the domain, fitting (motions, bodies)."""
         return np.ones((1, 1), dtype=np.bool_)
 
     def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion up to which a body is called safe.
-
-        Parameters
-        ----------
-        sides : BodySides
-            Bodies, as ``BodySides.of(bodies)``.
-        shaking : Shaking
-            Motions, as ``Shaking.of(motions)``.
-
-        Returns
-        -------
-        ndarray, shape (motions, bodies)
-            Of the worse side; NaN outside the domain [-].
-        """
+        """Return the factor on every motion up to which a body is safe, by its worse side; NaN outside the domain."""
         shape = (len(shaking.motions), *sides.slope.shape)
         worse = np.broadcast_to(self.of_sides(sides, shaking), shape).min(axis=2)
         return np.where(self.holds(sides, shaking), worse, np.nan)
