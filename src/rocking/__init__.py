@@ -49,10 +49,9 @@ presenters.update({
     "picture of HullResponse": "rocking.plots:spatial_picture",
     "picture of SpatialResponse": "rocking.plots:spatial_picture",
     "picture of Identification": "rocking.plots:identification_picture",
-    "report of Identification": "rocking.reports:identification_report",
     "writer of pictures": "rocking.plots:write",
     "animation as .html": "rocking.plots:animate_html",
     "animation as .gif": "rocking.plots:animate_gif",
-    "report": "rocking.reports:response_report",
+    "report": "rocking.reports:report",
     "recommendation": "rocking.evidence.recommending:recommendation_for",
 })  # fmt: skip

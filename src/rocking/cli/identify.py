@@ -216,9 +216,9 @@ class TrialsAnswer:
         return trials_picture(self.found)
 
     def report(self, path: Path) -> None:
-        from rocking.reports._identification import trials_report
+        from rocking.reports import report
 
-        trials_report(self.found, path)
+        report(self.found, path)
 
     def show(self, page: Page) -> None:
         from rocking.cli.arguments import as_options

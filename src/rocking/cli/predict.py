@@ -35,9 +35,9 @@ def _netcdf(answer: "PredictionAnswer", path: Path) -> None:
 
 
 def _report(answer: "PredictionAnswer", path: Path) -> None:
-    from rocking.reports import prediction_report
+    from rocking.reports import report
 
-    prediction_report(answer.found, path, name=answer.name)
+    report(answer.found, path, name=answer.name)
 
 
 EXPORTS = {
@@ -178,11 +178,11 @@ class PredictionAnswer:
 
 
 def _report_of_assessment(answer: "AssessmentAnswer", path: Path) -> None:
-    from rocking.reports import assessment_report
+    from rocking.reports import report
 
     told = answer.told
     words = {"project": told.project or "", "author": told.author or ""}
-    assessment_report(answer.found, path, name=answer.name, date=told.date or f"{datetime.now(UTC):%d %B %Y}", **words)
+    report(answer.found, path, name=answer.name, date=told.date or f"{datetime.now(UTC):%d %B %Y}", **words)
 
 
 ASSESSMENT_EXPORTS = {

@@ -28,9 +28,9 @@ def _csv(answer: "ValidationAnswer", path: Path) -> None:
 
 
 def _report(answer: "ValidationAnswer", path: Path) -> None:
-    from rocking.reports import validation_report
+    from rocking.reports import report
 
-    validation_report(answer.found, path)
+    report(answer.found, path)
 
 
 EXPORTS = {

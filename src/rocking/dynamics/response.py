@@ -379,7 +379,7 @@ class Response(ResponseBase):
         path : str or Path
             A document (.pdf), or a web page of one file (.html).
         **options
-            Of `rocking.reports.response_report`: name, date, friction.
+            Of `rocking.reports.report`: name, date, friction.
 
         Returns
         -------

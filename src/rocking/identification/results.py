@@ -317,7 +317,7 @@ class Identification(Exported):
         Path
             The file.
         """
-        written: Path = presenter("report of Identification")(self, path, name=name, date=date)
+        written: Path = presenter("report")(self, path, name=name, date=date)
         return written
 
     def exported(self) -> "Table":

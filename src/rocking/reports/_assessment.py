@@ -2,12 +2,10 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rocking import checks
 from rocking.assessment import BodyAssessment, ModelMargin
 from rocking.assessment._assess import DIRECTIONS, POINTS, REACH
 from rocking.assessment.answer import StandingSolid, just_above
@@ -27,6 +25,7 @@ from rocking.plots.spatial import spatial_picture
 from rocking.reports.document import (
     Block,
     Cell,
+    Content,
     Document,
     Pair,
     Paragraph,
@@ -34,13 +33,11 @@ from rocking.reports.document import (
     ReportSection,
     ReportTable,
     table,
-    write_report,
 )
 from rocking.reports.response_document import _sides
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
 from rocking.studies.remedies import ASSUMED, CALIBRATED
-from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
 _PLANE = "plane body"
@@ -64,36 +61,9 @@ _SEARCHED = (
 )
 
 
-def assessment_report(
-    found: BodyAssessment, path: str | Path, *, name: str = "", project: str = "", author: str = "", date: str = ""
-) -> Path:
-    """Write the report of an assessment, to be signed: verdict, evidence, what to do, assumptions and references.
-
-    Parameters
-    ----------
-    found : BodyAssessment
-        Of `rocking.assess`.
-    path : str or Path
-        A document (.pdf), or a web page of one file (.html).
-    name : str
-        What the body is called.
-    project, author, date : str
-        What stands at its head and beside the signature.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no assessment, or the ending of the path is another.
-    MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
-    """
-    checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
-    target, drawn, solid = target_of(path), governing_history(found), found.standing
+def assessment_content(found: BodyAssessment, *, name: str, date: str, project: str = "", author: str = "") -> Content:
+    """Return the report of an assessment, to be signed: verdict, evidence, what to do, assumptions and references."""
+    drawn, solid = governing_history(found), found.standing
     pictures: dict[str, Callable[[], Any]] = {
         "body": lambda: body_picture(found.body) if solid is None else equilibria_picture(solid.solid, solid.pose),
         "margins": lambda: assessment_picture(found),
@@ -103,9 +73,7 @@ def assessment_report(
             response_picture(drawn.history, found.friction) if solid is None else spatial_picture(drawn.history)
         ),
     }
-    signed = {"project": project, "author": author, "date": date}
-    write_report(assessment_document(found, name, signed, drawn), pictures, target)
-    return target
+    return assessment_document(found, name, {"project": project, "author": author, "date": date}, drawn), pictures
 
 
 class Drawn(NamedTuple):

@@ -1,14 +1,10 @@
 """The reports of a measurement and of a folder of trials: verdict, picture, what impacts took, models, how it was."""
 
-from pathlib import Path
-
-from rocking import checks
 from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
 from rocking.plots.identification import identification_picture, trials_picture
-from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table, write_report
+from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, table
 from rocking.spec.identification import IdentifiedTrials
-from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
 _HOW = (
@@ -28,40 +24,13 @@ _TRIALS = (
 )
 
 
-def identification_report(found: Identification, path: str | Path, *, name: str = "", date: str = "") -> Path:
-    """Write the report of a measurement: verdict, picture, what each impact took, the models, and how it was found.
-
-    Parameters
-    ----------
-    found : Identification
-        Of `rocking.identification.identify`.
-    path : str or Path
-        A document (.pdf), or a web page of one file (.html).
-    name : str
-        What the body is called.
-    date : str
-        Day of the report, as it should be printed.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no identification, or the ending of the path is another.
-    MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
-    """
-    checks.of_kind("found", found, Identification, "an Identification")
-    target = target_of(path)
-    write_report(_document_of(found, name, date), {"measured": lambda: identification_picture(found)}, target)
-    return target
+def identification_content(found: Identification, *, name: str, date: str) -> Content:
+    """Return the report of a measurement: verdict, picture, what each impact took, the models, and how it was found."""
+    return _document_of(found, name, date), {"measured": lambda: identification_picture(found)}
 
 
-def trials_report(found: IdentifiedTrials, path: Path) -> None:
-    """Write the report of a folder of trials."""
+def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
+    """Return the report of a folder of trials."""
     rows = [
         (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
          row["impacts"])
@@ -80,10 +49,11 @@ def trials_report(found: IdentifiedTrials, path: Path) -> None:
     ]  # fmt: skip
     mark = "bad" if found.mean is None else "fair" if refused or found.doubts else "good"
     document = Document(
-        f"Coefficient of restitution: {found.name}", f"{len(found.rows)} trials", sections,
+        f"Coefficient of restitution: {name or found.name}", f"{len(found.rows)} trials{f'. {date}' if date else ''}",
+        sections,
         verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,
     )  # fmt: skip
-    write_report(document, {"trials": lambda: trials_picture(found)}, path)
+    return document, {"trials": lambda: trials_picture(found)}
 
 
 def _document_of(found: Identification, name: str, date: str) -> Document:

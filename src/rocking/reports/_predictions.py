@@ -1,14 +1,12 @@
 """The reports of a prediction and of a validation: verdict, pictures, tables, and what was assumed."""
 
-from pathlib import Path
+from functools import partial
 
-from rocking import checks
 from rocking.conventions import percent
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
-from rocking.reports.document import Document, Paragraph, Picture, ReportSection, ReportTable, table, write_report
+from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, table
 from rocking.spec.validation import FolderValidation
-from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
 _MARKS = ((0.05, "good"), (0.5, "fair"))
@@ -29,71 +27,8 @@ _VALIDATED = (
 )
 
 
-def prediction_report(found: Prediction, path: str | Path, *, name: str = "", date: str = "") -> Path:
-    """Write the report of a prediction: verdict, picture, probabilities, what decides them, and what was assumed.
-
-    Parameters
-    ----------
-    found : Prediction
-        Of `rocking.prediction.predict`.
-    path : str or Path
-        A document (.pdf), or a web page of one file (.html).
-    name : str
-        What the body is called.
-    date : str
-        Day of the report, as it should be printed.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no prediction, or the ending of the path is another.
-    MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
-    """
-    checks.of_kind("found", found, Prediction, "a Prediction")
-    target = target_of(path)
-    write_report(prediction_document(found, name, date), {"prediction": lambda: prediction_picture(found)}, target)
-    return target
-
-
-def validation_report(found: FolderValidation, path: str | Path, *, date: str = "") -> Path:
-    """Write the report of a validation: verdict, reliability diagram, scores, and what was assumed.
-
-    Parameters
-    ----------
-    found : FolderValidation
-        As `rocking validate` finds it.
-    path : str or Path
-        A document (.pdf), or a web page of one file (.html).
-    date : str
-        Day of the report, as it should be printed.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no validation, or the ending of the path is another.
-    MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
-    """
-    checks.of_kind("found", found, FolderValidation, "a FolderValidation")
-    target = target_of(path)
-    pictures = {event: (lambda each=each: reliability_picture(each)) for event, each in found.found.items()}
-    write_report(validation_document(found, date), pictures, target)
-    return target
-
-
-def prediction_document(found: Prediction, name: str, date: str) -> Document:
-    """Return the content of the report of a prediction."""
+def prediction_content(found: Prediction, *, name: str, date: str) -> Content:
+    """Return the report of a prediction: verdict, picture, probabilities, what decides them, and what was assumed."""
     chance = found.chances["overturning"]
     mark = next((word for most, word in _MARKS if chance.high <= most), "bad")
     picture = Picture(
@@ -109,11 +44,12 @@ def prediction_document(found: Prediction, name: str, date: str) -> Document:
         ),
     ]
     several = f"Under {len(found.motions)} motion{'' if len(found.motions) == 1 else 's'}"
-    return _document(name or "A body in an earthquake", several, date, found.verdict, mark, sections)
+    document = _document(name or "A body in an earthquake", several, date, found.verdict, mark, sections)
+    return document, {"prediction": lambda: prediction_picture(found)}
 
 
-def validation_document(found: FolderValidation, date: str = "") -> Document:
-    """Return the content of the report of a validation."""
+def validation_content(found: FolderValidation, *, name: str, date: str) -> Content:
+    """Return the report of a validation: verdict, reliability diagram, scores, and what was assumed."""
     rows = [(str(each.line), each.reason) for each in found.refused]
     left_out = [table(f"Rows of {found.source} that could not be taken", ["line", "why"], rows)] if rows else []
     count = Paragraph(f"{_count(found.prediction)}.")
@@ -125,7 +61,8 @@ def validation_document(found: FolderValidation, date: str = "") -> Document:
     first = next(iter(found.found.values()))
     mark = _MARKS_OF_FINDINGS["mixed" if first.finding == "better" and first.too_sure else first.finding]
     several = f"{first.count} outcomes under {first.clusters} motions"
-    return _document(f"Predictions of {found.name}", several, date, first.verdict, mark, sections)
+    document = _document(f"Predictions of {name or found.name}", several, date, first.verdict, mark, sections)
+    return document, {event: partial(reliability_picture, each) for event, each in found.found.items()}
 
 
 def _document(title: str, several: str, date: str, verdict: str, mark: str, sections: list[ReportSection]) -> Document:

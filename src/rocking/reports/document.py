@@ -240,6 +240,10 @@ def render_pdf(document: Document, pictures: Path, path: Path) -> None:
     path.write_bytes(_pdf(document, "report.typ", pictures, []))
 
 
+Content = tuple[Document, dict[str, Callable[[], Any]]]
+"""A document, and what draws its pictures, by stem."""
+
+
 def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], path: Path) -> None:
     """Write a report of one body as .pdf or .html; pictures: what draws each, by stem."""
     from rocking.plots.style import write

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rocking import checks
@@ -24,6 +23,7 @@ from rocking.reports.body_facts import ImpactAnswer, side_facts
 from rocking.reports.document import (
     Block,
     Cell,
+    Content,
     Document,
     Listing,
     Pair,
@@ -31,11 +31,9 @@ from rocking.reports.document import (
     Picture,
     ReportSection,
     ReportTable,
-    write_report,
 )
 from rocking.reports.document import table as report_table
 from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, outcome_facts, restitution_words
-from rocking.tables import target_of
 from rocking.version import SOFTWARE
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
@@ -256,37 +254,8 @@ def _signed(value: float) -> str:
     return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
 
 
-def response_report(
-    response: Response, path: str | Path, *, name: str = "", date: str = "", friction: float = DEFAULT_FRICTION
-) -> Path:
-    """Write the report of a response: the body, what an impact costs it, the ground, the response, with pictures.
-
-    Parameters
-    ----------
-    response : Response
-        Of `rocking.simulate` or `rocking.free_rocking`, without friction.
-    path : str or Path
-        A document (.pdf), or a web page of one file (.html).
-    name : str
-        What the body is called.
-    date : str
-        Day of the report, as it should be printed.
-    friction : float
-        Coefficient of friction between body and ground, which the friction that is taken is compared with [-].
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If the ending of the path is another.
-    MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
-    """
-    path = target_of(path)
+def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:
+    """Return the report of a response: the body, what an impact costs it, the ground, the response, with pictures."""
     if response.outcome is Outcome.FAILED:
         raise InvalidValueError(f"a report needs a result: {response.summary}")
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
@@ -305,5 +274,4 @@ def response_report(
     }
     if motion is not None:
         pictures["motion"] = lambda: ground_motion_picture(motion)
-    write_report(document, pictures, path)
-    return path
+    return document, pictures

@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.assessment._assess import SPACE_DIRECTIONS
 from rocking.bodies.solid import Part, Solid, box
 from rocking.errors import InvalidValueError
-from rocking.reports import assessment_report
+from rocking.reports import report
 
 # nearer to the edge towards -x, which is the only one of its kind
 TOWER = Solid([Part(box(0.5, 0.9, 1.2), 400.0), Part(box(0.2, 0.9, 0.4), 900.0).moved(-0.12, 0.0, 1.2)])
@@ -75,7 +75,7 @@ def test_what_is_said(found):
 
 def test_a_report_draws_it_in_space(found, tmp_path):
     """The report has the landscape of the solid, the plane body's table and the history in space."""
-    path = assessment_report(found, tmp_path / "tower.html", name="tower", date="1 May")
+    path = report(found, tmp_path / "tower.html", name="tower", date="1 May")
     text = path.read_text(encoding="utf-8")
     for words in ("The plane body of 180 deg", "all vertices of its hull", "The solid, its x axis at", "into pose"):
         assert words in text

@@ -137,4 +137,4 @@ def test_reports_say_what_was_said(run, tmp_path):
     assert "16 bodies under each motion" in text
     found = predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, shares=False)
     with pytest.raises(rk.errors.RockingError, match=r"\.pdf or \.html"):
-        rk.reports.prediction_report(found, tmp_path / "found.docx")
+        rk.reports.report(found, tmp_path / "found.docx")

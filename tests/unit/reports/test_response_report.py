@@ -77,3 +77,8 @@ def test_what_needs_a_package_says_so_before_it_computes(monkeypatch):
     with pytest.raises(rk.errors.MissingExtraError):
         rk.overturning_map(STATUE, PULSE, *axes, progress=done.append)
     assert done == []
+
+
+def test_what_has_no_report_is_refused(tmp_path):
+    with pytest.raises(RockingError, match=r"found must be one of Response, .*got 3"):
+        rk.reports.report(3, tmp_path / "x.html")

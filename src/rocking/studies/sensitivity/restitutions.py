@@ -82,15 +82,8 @@ class SampledRestitution(DrawnRestitution):
 
     Parameters
     ----------
-    factors : array_like, or mapping of foot to array_like
-        Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
-        ``{"left": .., "right": ..}`` [-].
-    seed : int
-        Seed of the draws.
-    times : optional
-        What they multiply: a coefficient, a model or its name; 1 if not given.
-    cut : (float, float)
-        Probability that the quantiles onto the left and the right foot leave out already [-].
+    factors, seed, times, cut
+        As of `RandomRestitution`.
 
     Raises
     ------
