@@ -106,6 +106,19 @@ def draw(answer: Any, path: Path) -> None:
     write(answer.draw(), path)
 
 
+def _report(answer: Any, path: Path) -> None:
+    from rocking.reports import report
+
+    report(answer.found, path, name=getattr(answer, "name", ""))
+
+
+# of answers whose `found` has a report, and knows what its files hold (`rocking.exported`)
+PICTURE = Export((".png", ".svg"), draw, "matplotlib")
+REPORTED = {"picture": PICTURE, "report": Export((".pdf", ".html"), _report, "matplotlib")}
+CSV = Export((".csv",), lambda answer, path: answer.found.to_csv(path))
+NETCDF = Export((".nc",), lambda answer, path: answer.found.to_netcdf(path), "h5netcdf")
+
+
 def write_dataset(dataset: Any, path: Path) -> None:
     """Write an `xarray.Dataset` by the ending of a file: as netCDF, or with all its values in rows as CSV."""
     from rocking.tables import to_netcdf

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, draw
+from rocking.cli.exports import CSV, NETCDF, REPORTED, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import FEET, NORMAL_95
 from rocking.errors import InvalidValueError, MeasurementError
@@ -27,18 +27,6 @@ _NOISES = {"times": "ms", "rotation": "mrad", "angular_velocity": "mrad/s"}
 """Units of what a measurement leaves over."""
 
 
-def _csv(answer: Any, path: Path) -> None:
-    from rocking.tables import to_csv
-
-    to_csv(answer.found.exported(), path)
-
-
-def _netcdf(answer: Any, path: Path) -> None:
-    from rocking.tables import to_dataset, to_netcdf
-
-    to_netcdf(to_dataset(answer.found.exported()), path)
-
-
 def _excel(answer: Any, path: Path) -> None:
     from rocking.tables import to_excel
 
@@ -47,13 +35,7 @@ def _excel(answer: Any, path: Path) -> None:
     to_excel(sheets, path, table.provenance, dressed=True)
 
 
-EXPORTS = {
-    "picture": Export((".png", ".svg"), draw, "matplotlib"),
-    "report": Export((".pdf", ".html"), lambda answer, path: answer.report(path), "matplotlib"),
-    "csv": Export((".csv",), _csv),
-    "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
-    "excel": Export((".xlsx",), _excel, "openpyxl"),
-}
+EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF, "excel": Export((".xlsx",), _excel, "openpyxl")}
 
 
 @options.sized
@@ -152,9 +134,6 @@ class IdentifiedAnswer:
     def draw(self) -> Any:
         return self.found.plot()
 
-    def report(self, path: Path) -> None:
-        self.found.report(path, name=self.name)
-
     def show(self, page: Page) -> None:
         from rocking.cli.arguments import as_options
 
@@ -214,11 +193,6 @@ class TrialsAnswer:
         from rocking.plots.identification import trials_picture
 
         return trials_picture(self.found)
-
-    def report(self, path: Path) -> None:
-        from rocking.reports import report
-
-        report(self.found, path)
 
     def show(self, page: Page) -> None:
         from rocking.cli.arguments import as_options

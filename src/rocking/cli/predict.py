@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, draw
+from rocking.cli.exports import CSV, NETCDF, PICTURE, REPORTED, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
@@ -28,24 +28,7 @@ COUNT, SEED = 20, 1
 """Synthetic motions, where nobody says otherwise."""
 
 
-def _netcdf(answer: "PredictionAnswer", path: Path) -> None:
-    from rocking.tables import to_netcdf
-
-    to_netcdf(answer.found.to_xarray(), path)
-
-
-def _report(answer: "PredictionAnswer", path: Path) -> None:
-    from rocking.reports import report
-
-    report(answer.found, path, name=answer.name)
-
-
-EXPORTS = {
-    "picture": Export((".png", ".svg"), draw, "matplotlib"),
-    "report": Export((".pdf", ".html"), _report, "matplotlib"),
-    "csv": Export((".csv",), lambda answer, path: answer.found.to_csv(path)),
-    "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
-}
+EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 
 
 @options.sized
@@ -186,7 +169,7 @@ def _report_of_assessment(answer: "AssessmentAnswer", path: Path) -> None:
 
 
 ASSESSMENT_EXPORTS = {
-    "picture": Export((".png", ".svg"), draw, "matplotlib"),
+    "picture": PICTURE,
     "report": Export((".pdf", ".html"), _report_of_assessment, "matplotlib"),
 }
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, draw
+from rocking.cli.exports import CSV, REPORTED, Exports
 from rocking.cli.page import Page, bar, deliver
 
 if TYPE_CHECKING:
@@ -21,23 +21,7 @@ NOTE = "Scores with their 95 % intervals, whole motions drawn anew; balanced acc
 _SCORES = {"brier": "Brier", "logarithmic": "logarithmic", "balanced_accuracy": "balanced accuracy"}
 
 
-def _csv(answer: "ValidationAnswer", path: Path) -> None:
-    from rocking.tables import to_csv
-
-    to_csv(answer.found.exported(), path)
-
-
-def _report(answer: "ValidationAnswer", path: Path) -> None:
-    from rocking.reports import report
-
-    report(answer.found, path)
-
-
-EXPORTS = {
-    "picture": Export((".png", ".svg"), draw, "matplotlib"),
-    "report": Export((".pdf", ".html"), _report, "matplotlib"),
-    "csv": Export((".csv",), _csv),
-}
+EXPORTS = {**REPORTED, "csv": CSV}
 
 
 def validate(

@@ -23,6 +23,7 @@ from rocking.bodies import Body
 from rocking.bodies.formats import FORMATS
 from rocking.conventions import FEET, NORMAL_95
 from rocking.errors import InvalidValueError, RockingError
+from rocking.exported import Exported
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS
 from rocking.identification.results import compared
@@ -153,7 +154,7 @@ class IdentificationProblem:
 
 
 @dataclass(frozen=True, eq=False)
-class IdentifiedTrials:
+class IdentifiedTrials(Exported):
     """What the trials of a folder say."""
 
     name: str  # of the folder

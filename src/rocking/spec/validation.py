@@ -10,6 +10,7 @@ import numpy as np
 from rocking.bodies import Body, Solid
 from rocking.bodies.formats import FORMATS
 from rocking.errors import InvalidValueError, RockingError
+from rocking.exported import Exported
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction, Validation, predict, score
@@ -59,7 +60,7 @@ def _one(paths: Sequence[Path], folder: Path, what: str) -> Path:
 
 
 @dataclass(frozen=True, eq=False)
-class FolderValidation:
+class FolderValidation(Exported):
     """What was foreseen of the trials of a folder, and how good that was."""
 
     name: str  # of the body
