@@ -15,7 +15,9 @@ def exports(package: str) -> tuple[list[str], Callable[[str], Any], Callable[[],
     # of the package may have the name of an export: once imported it would stand in its place.
     spec = sys.modules[package].__spec__
     source = getattr(spec and spec.loader, "get_source", lambda _: None)(package)
-    homes = {name: home for home, name in _SHOWN.findall(source or "")}
+    if source is None:
+        raise ImportError(f"{package} reads its names from its source, which is missing: bundle the .py files too")
+    homes = {name: home for home, name in _SHOWN.findall(source)}
 
     def get(name: str) -> Any:
         if name not in homes:
