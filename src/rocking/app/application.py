@@ -2,6 +2,7 @@
 
 import mimetypes
 import os
+import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
@@ -41,6 +42,7 @@ from rocking.restitution.from_file import register_own
 from rocking.version import __version__
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
+_READING = threading.Lock()
 _WORDS = {404: "there is no such thing here", 405: "this takes another method"}
 STATIC = Path(__file__).parent / "static"
 _MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged, or built
@@ -89,10 +91,15 @@ def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exceptio
     return handle
 
 
+def _read_own_models() -> None:
+    with _READING:
+        register_own()
+
+
 async def _own_models() -> None:
     """Know the models of the owner's file as it is now; one that is no longer sound is refused."""
     if os.environ.get("ROCKING_MODELS"):
-        await run_in_threadpool(register_own)
+        await run_in_threadpool(_read_own_models)
 
 
 async def _own_models_if_sound() -> None:

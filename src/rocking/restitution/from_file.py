@@ -6,7 +6,6 @@ import inspect
 import os
 import re
 import sys
-import threading
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,7 +32,6 @@ _LOOKS = (
 )
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
-_ONE = threading.Lock()
 _REGISTERED: dict[str, tuple[str, tuple[type[RestitutionModel], ...]]] = {}  # source and models, by the file
 
 
@@ -70,11 +68,6 @@ def register_own() -> None:
 
     Of a file that was changed since, those that it has now take the place of those that it had.
     """
-    with _ONE:
-        _register_own()
-
-
-def _register_own() -> None:
     path = os.environ.get(_VARIABLE, "")
     if not path:
         return
