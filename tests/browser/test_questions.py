@@ -196,6 +196,7 @@ def test_what_an_impact_costs(open_page: Callable[..., Any], shot: Callable[...,
     page = open_page(body_link())
     section = page.locator("#view-measure")
     section.get_by_label("Drop a recording here, or").set_input_files(recording)
+    expect(section.get_by_role("list", name="Files")).to_contain_text(".csv")
     outcome = asked(page, "measure")
     expect(outcome.get_by_test_id("verdict")).to_contain_text("coefficient of restitution")
     expect(outcome.get_by_role("table", name="Models")).to_contain_text("ked")

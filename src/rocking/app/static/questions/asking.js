@@ -41,8 +41,8 @@ export const createQuestions = (app, ...commands) => {
       if (!shown.value && all.value.length) await follow(all.value[0].id);
     }),
     ask: safely(async (tables, files, name, { command = commands[0], format = "", project = here() } = {}) => {
-      await app.project.save();
       shown.value = null;
+      await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
       shown.value = { ...question, answer: null };
