@@ -2,15 +2,17 @@
 
 const OURS = ["token", "in", "view"];
 
-/** What the fragment says, as a plain object. */
+/** What the fragment says, as a plain object. @returns {{ [key: string]: string | undefined }} */
 export const read = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
 
-/** Whether a fragment is for the application: empty, or with one of its words. */
+/** Whether a fragment is for the application: empty, or with one of its words.
+ * @param {{ [key: string]: string | undefined }} parts */
 export const isOurs = (parts) => !Object.keys(parts).length || OURS.some((key) => parts[key] !== undefined);
 
-/** Show a view in the address, without a new entry for every keystroke. */
+/** Show a view in the address, without a new entry for every keystroke.
+ * @param {{ [key: string]: string | undefined }} parts @param {{ push?: boolean }} [how] */
 export const write = (parts, { push = false } = {}) => {
-  const given = Object.entries(parts).filter(([, value]) => value !== undefined);
+  const given = /** @type {[string, string][]} */ (Object.entries(parts).filter(([, value]) => value !== undefined));
   const fragment = new URLSearchParams(given).toString();
   history[push ? "pushState" : "replaceState"](null, "", fragment ? `#${fragment}` : location.pathname);
 };

@@ -8,17 +8,20 @@ import { fill } from "/app/dom.js";
 import { say } from "/app/say.js";
 import { Button, Note, Segmented } from "/parts/fields.js";
 
+/** @typedef {import("/app/api-schema.js").Operation} Operation @typedef {import("/app/api-schema.js").Row} Row */
+
 const HEADS = ["Name", "Type", "Needed", "Meaning"];
 const TOLD = ["Name", "Type", "Always", "Meaning"];
 const LONG = 12;
 
+/** @param {any} page @param {Element} place */
 const show = (page, place) => {
   fill(place);
   render(page, place);
 };
 
 const start = async () => {
-  const schema = await call("openapi.json");
+  const schema = /** @type {any} */ (await call("openapi.json"));
   const operations = operationsOf(schema);
   const groups = groupsOf(operations);
   show(groups.map(([name, list]) => html`
@@ -30,20 +33,24 @@ const start = async () => {
   if (location.hash) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 };
 
+/** @param {{ schema: any, count: number }} props */
 const Introduction = ({ schema, count }) => html`
   <section class="card" aria-label="About">
     <h1>${`${schema.info.title} ${schema.info.version}: ${count} endpoints`}</h1>
     <${Paragraphs} text=${schema.info.description} kind="lead" />
     <p class="lead">The schema itself: <a href="/api/openapi.json">/api/openapi.json</a></p></section>`;
 
+/** @param {{ schema: any }} props */
 const Errors = ({ schema }) => html`
   <section class="card" id="errors" data-testid="api-errors" aria-label="Errors"><h2>Errors, the same everywhere</h2>
     <dl class="api-errors">${errorsOf(schema).map(([status, words]) => html`<dt>${status}</dt><dd>${words}</dd>`)}</dl>
     <${Fields} title="What comes back" rows=${errorForm(schema)} heads=${TOLD} /></section>`;
 
+/** @param {{ text: string, kind: string }} props */
 const Paragraphs = ({ text, kind }) => text.split(/\n\s*\n/).map((part) => html`
   <p class=${kind}>${part.replace(/\s*\n\s*/g, " ").split("`").map((words, k) => (k % 2 ? html`<code>${words}</code>` : words))}</p>`);
 
+/** @param {{ schema: any, operation: Operation }} props */
 const Endpoint = ({ schema, operation }) => {
   const { id, method, path, summary, about, kind, files } = operation;
   return html`
@@ -59,15 +66,19 @@ const Endpoint = ({ schema, operation }) => {
       <${Calls} operation=${operation} /></section>`;
 };
 
+/** @param {{ method: string }} props */
 const Sign = ({ method }) => html`<span class="api-method" data-method=${method}>${method.toUpperCase()}</span>`;
 
+/** @param {string} words */
 const comesBack = (words) => (words ? `What comes back: ${words[0].toLowerCase()}${words.slice(1)}` : "What comes back");
 
+/** @param {Operation["parameters"][number]} parameter */
 const parameterOf = ({ name, schema, required = false, description }) => ({
   name, required, about: description ?? schema?.description ?? "",
   type: schema?.enum?.join(", ") ?? schema?.type ?? schema?.anyOf?.[0]?.type ?? "text",
 });
 
+/** @param {{ title: string, rows: Row[], heads?: string[] }} props */
 const Fields = ({ title, rows, heads = HEADS }) => {
   if (!rows.length) return null;
   const table = html`
@@ -80,10 +91,11 @@ const Fields = ({ title, rows, heads = HEADS }) => {
     : html`<details><summary>${`${title}: ${rows.length} fields`}</summary>${table}</details>`;
 };
 
+/** @param {{ operation: Operation }} props */
 const Calls = ({ operation }) => {
   const snippets = snippetsOf(operation, location.origin);
   const chosen = useSignal("curl");
-  const { code } = snippets.find(({ value }) => value === chosen.value);
+  const { code } = snippets.find(({ value }) => value === chosen.value) ?? snippets[0];
   return html`
     <details data-testid="calls"><summary>Call it</summary>
       <${Segmented} label="Call it from" options=${snippets.map(({ value, text }) => [value, text])} value=${chosen} />
@@ -91,6 +103,7 @@ const Calls = ({ operation }) => {
         <${Button} kind="quiet" aria-label=${`Copy the call of ${operation.path}`} onClick=${() => copied(code)}>Copy<//></div></details>`;
 };
 
+/** @param {string} text */
 const copied = async (text) => {
   try {
     await navigator.clipboard.writeText(text);

@@ -1,7 +1,13 @@
 /** An OpenAPI schema as lists that can be shown. Pure functions. */
 
+/** @typedef {{ name: string, type: string, required: boolean, about: string }} Row
+ * @typedef {{ [key: string]: any, anyOf?: Shape[], oneOf?: Shape[], enum?: unknown[] }} Shape
+ * @typedef {{ name: string, in: string, required?: boolean, description?: string, schema?: Shape }} Parameter
+ * @typedef {ReturnType<typeof operationOf>} Operation */
+
 const METHODS = ["get", "post", "delete"];
 const BLOCK = { units: "m", width: 1, height: 4 };
+/** @type {{ [word: string]: any }} */
 const EXAMPLES = {
   body: { body: BLOCK },
   impact: { body: BLOCK },
@@ -13,20 +19,22 @@ const EXAMPLES = {
   },
 };
 
-/** Every operation of a schema, in its order. */
+/** Every operation of a schema, in its order. @param {any} schema */
 export const operationsOf = (schema) =>
   Object.entries(schema.paths).flatMap(([path, item]) =>
     METHODS.filter((method) => item[method])
       .map((method) => operationOf(schema, path, method, item[method])));
 
-/** Operations by their group: [[name, operations]]. */
+/** Operations by their group: [[name, operations]].
+ * @param {Operation[]} operations @returns {[string, Operation[]][]} */
 export const groupsOf = (operations) => {
   const groups = new Map();
   for (const each of operations) groups.set(each.group, [...(groups.get(each.group) ?? []), each]);
   return [...groups];
 };
 
-/** The fields of an object, one row each: {name, type, required, about}. */
+/** The fields of an object, one row each: {name, type, required, about}.
+ * @param {any} schema @param {Shape} shape @param {number} [depth] @param {string} [prefix] @param {any[]} [seen] @returns {Row[]} */
 export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   const plain = resolved(schema, shape);
   if (!plain?.properties || depth > 4) return [];
@@ -43,7 +51,8 @@ export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   });
 };
 
-/** What an answer may look like: [{words, rows}], one entry for each form that it has. */
+/** What an answer may look like: [{words, rows}], one entry for each form that it has.
+ * @param {any} schema @param {Shape} shape */
 export const formsOf = (schema, shape) => {
   const forms = (shape?.oneOf ?? []).map((each) => resolved(schema, each));
   if (forms.length) {
@@ -54,14 +63,15 @@ export const formsOf = (schema, shape) => {
   return [{ words: list ? "a list; each entry has" : "", rows }];
 };
 
-/** Statuses of errors and what they mean: [[status, words]]. */
+/** Statuses of errors and what they mean: [[status, words]]. @param {any} schema */
 export const errorsOf = (schema) =>
   Object.entries(schema.components?.responses ?? {})
     .map(([name, { description }]) => [name.replace(/\D/g, ""), description]);
 
-/** The form of every error. */
+/** The form of every error. @param {any} schema */
 export const errorForm = (schema) => fieldsOf(schema, { $ref: "#/components/schemas/ErrorAnswer" });
 
+/** @param {any} schema @param {string} path @param {string} method @param {any} operation */
 const operationOf = (schema, path, method, operation) => {
   const contents = operation.requestBody?.content ?? {};
   const json = contents["application/json"];
@@ -72,8 +82,8 @@ const operationOf = (schema, path, method, operation) => {
     group: operation.tags?.[0] ?? "general",
     summary: operation.summary ?? "",
     about: plainText(operation.description),
-    parameters: operation.parameters ?? [],
-    query: (operation.parameters ?? [])
+    parameters: /** @type {Parameter[]} */ (operation.parameters ?? []),
+    query: /** @type {Parameter[]} */ (operation.parameters ?? [])
       .filter((each) => each.in === "query" && each.required).map((each) => each.name),
     body: json?.schema ?? null,
     answer: answerOf(operation)["application/json"]?.schema ?? null,
@@ -83,11 +93,13 @@ const operationOf = (schema, path, method, operation) => {
   };
 };
 
+/** @param {any} operation */
 const answerOf = (operation) => {
   const good = Object.entries(operation.responses ?? {}).find(([status]) => status.startsWith("2"));
   return good?.[1].content ?? {};
 };
 
+/** @param {any} schema @param {string} path @param {any} json */
 const exampleOf = (schema, path, json) => {
   const examples = Object.values(json.examples ?? {}).map((each) => each.value);
   const given = json.example ?? examples[0] ?? resolved(schema, json.schema)?.examples?.[0];
@@ -99,19 +111,23 @@ const exampleOf = (schema, path, json) => {
   return Object.fromEntries(names.map((name) => [name, "VALUE"]));
 };
 
+/** @param {string} path */
 const downloadOf = (path) => {
-  const last = path.split("/").at(-1);
+  const last = path.split("/").at(-1) ?? "";
   return last.includes(".") ? last.replace(/[{}]/g, "") : null;
 };
 
 // The sentences before the table of parameters, which is shown as a table.
+/** @param {string} text */
 const plainText = (text) => (text ?? "").split(/\n\s*(?:Parameters|Returns|Raises)\n\s*-+/)[0].trim();
 
+/** @param {any} schema @param {Shape} shape */
 const resolved = (schema, shape) => {
   if (!shape?.$ref) return shape;
-  return shape.$ref.split("/").slice(1).reduce((place, key) => place?.[key], schema);
+  return /** @type {string} */ (shape.$ref).split("/").slice(1).reduce((place, key) => place?.[key], schema);
 };
 
+/** @param {any} schema @param {Shape} shape @returns {string} */
 const typeOf = (schema, shape) => {
   if (shape.$ref) return typeOf(schema, resolved(schema, shape) ?? {});
   const choices = shape.anyOf ?? shape.oneOf;
@@ -119,9 +135,10 @@ const typeOf = (schema, shape) => {
   if (shape.enum) return shape.enum.map((each) => JSON.stringify(each)).join(", ");
   if (shape.const !== undefined) return JSON.stringify(shape.const);
   if (shape.type === "array") return `list of ${typeOf(schema, shape.items ?? shape.prefixItems?.[0] ?? {})}`;
-  return { string: "text", object: "table", integer: "whole number" }[shape.type] ?? shape.type ?? "anything";
+  return KINDS[shape.type] ?? shape.type ?? "anything";
 };
 
+/** @param {any} schema @param {Shape} shape @returns {any} */
 const innerOf = (schema, shape) => {
   const choices = [shape, ...(shape.anyOf ?? [])].map((each) => resolved(schema, each));
   const direct = choices.find((each) => each?.properties);
@@ -131,11 +148,15 @@ const innerOf = (schema, shape) => {
     .find(Boolean) ?? null;
 };
 
+/** @type {{ [type: string]: string | undefined }} */
+const KINDS = { string: "text", object: "table", integer: "whole number" };
+
 const LIMITS = {
   minimum: "≥", exclusiveMinimum: ">", maximum: "≤", exclusiveMaximum: "<",
   maxLength: "length ≤", minLength: "length ≥",
 };
 
+/** @param {Shape} plain @param {Shape} shape */
 const aboutOf = (plain, shape) => {
   const numbers = [shape, ...(shape.anyOf ?? [])];
   const limits = Object.entries(LIMITS).flatMap(([key, sign]) =>

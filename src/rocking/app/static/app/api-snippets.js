@@ -1,19 +1,24 @@
 /** Calls of an endpoint as text to copy: curl, Python, MATLAB. Pure functions. */
 
+/** @typedef {import("/app/api-schema.js").Operation} Operation */
+
 const KEY_HELP = "the key stands in the file api-key of the data folder; it is new at every start";
 
-/** The same call in every language: [{value, text, code}]. */
+/** The same call in every language: [{value, text, code}]. @param {Operation} operation @param {string} origin */
 export const snippetsOf = (operation, origin) => [
   { value: "curl", text: "curl", code: curl(operation, origin) },
   { value: "python", text: "Python", code: python(operation, origin) },
   { value: "matlab", text: "MATLAB", code: matlab(operation, origin) },
 ];
 
+/** @param {{ path: string, query: string[] }} given @param {string} origin */
 const address = ({ path, query }, origin) =>
   origin + path + (query.length ? `?${query.map((name) => `${name}=VALUE`).join("&")}` : "");
 
+/** @param {{ kind: string | null }} given */
 const type = ({ kind }) => (kind === "file" ? "application/octet-stream" : "application/json");
 
+/** @param {Operation} operation @param {string} origin */
 const curl = (operation, origin) => {
   const unsafe = operation.method !== "get";
   const lines = [
@@ -28,6 +33,7 @@ const curl = (operation, origin) => {
   return `# ${KEY_HELP}\n${lines.join(" \\\n  ")}`;
 };
 
+/** @param {Operation} operation @param {string} origin */
 const python = (operation, origin) => {
   const unsafe = operation.method !== "get";
   const content = operation.kind === "json" ? "json.dumps(question).encode()" : "Path(\"FILE\").read_bytes()";
@@ -57,10 +63,15 @@ const python = (operation, origin) => {
   ].filter((line) => line !== null).join("\n");
 };
 
+/** @type {{ [word: string]: string | undefined }} */
+const WORDS = { true: "True", false: "False", null: "None" };
+
+/** @param {unknown} value */
 const pythonOf = (value) =>
   JSON.stringify(value, null, 4).replace(/"(?:[^"\\]|\\.)*"|\b(true|false|null)\b/g,
-    (found, word) => ({ true: "True", false: "False", null: "None" })[word] ?? found);
+    (found, word) => WORDS[word] ?? found);
 
+/** @param {Operation} operation @param {string} origin */
 const matlab = (operation, origin) => {
   const unsafe = operation.method !== "get";
   const head = [
@@ -83,9 +94,12 @@ const matlab = (operation, origin) => {
   ].filter((line) => line !== null).join("\n");
 };
 
+/** @param {unknown} value */
 const quoted = (value) => JSON.stringify(value).replaceAll("'", "''");
 
+/** @param {string} name */
 const saved = (name) => `file = fopen('${name}', 'w'); fwrite(file, answer.Body.Data); fclose(file);`;
 
+/** @param {{ kind: string | null }} given */
 const bodyOf = ({ kind }) =>
-  ({ json: ", MessageBody(question)", file: ", MessageBody(content)" })[kind] ?? "";
+  ({ json: ", MessageBody(question)", file: ", MessageBody(content)" })[kind ?? ""] ?? "";

@@ -2,6 +2,7 @@
 
 /** A refusal of the server, in its own words. */
 export class ApiError extends Error {
+  /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [told] */
   constructor(
     status, { kind = "internal", message = "the server gave no answer", needs = [], ...more } = {},
   ) {
@@ -11,15 +12,17 @@ export class ApiError extends Error {
   }
 }
 
-/** Call the API; resolves to JSON, rejects with ApiError. */
-export const call = async (path, options = {}) => (await send(path, options)).json();
+/** Call the API; resolves to JSON, rejects with ApiError. @type {Call} */
+export const call = async (path, options) => (await send(path, options)).json();
 
-/** A file of the server as a blob. */
+/** A file of the server as a blob. @param {string} path */
 export const fetchFile = async (path) => (await send(path)).blob();
 
-/** Call by POST and let only the newest call of a key follow the one in flight. */
+/** Call by POST and let only the newest call of a key follow the one in flight.
+ * @type {<const Path extends string>(key: string, path: Path, json: unknown) => Promise<Server.Answer<"POST", Path>>} */
 export const latest = (key, path, json) =>
   new Promise((resolve, reject) => {
+    /** @type {Line} */
     const line = lines.get(key) ?? { busy: false, next: null };
     lines.set(key, line);
     line.next?.reject(new DOMException("a newer call took its place", "AbortError"));
@@ -27,16 +30,17 @@ export const latest = (key, path, json) =>
     if (!line.busy) follow(line);
   });
 
-/** Whether an error only says that a newer call took its place. */
+/** Whether an error only says that a newer call took its place. @param {any} error */
 export const superseded = (error) => error?.name === "AbortError";
 
-/** Save the answer as a file; the server's file name wins over the fallback. */
+/** Save the answer as a file; the server's file name wins over the fallback.
+ * @param {string} path @param {unknown} [json] @param {string} [fallbackName] */
 export const download = async (path, json, fallbackName) => {
   const answer = await send(path, json === undefined ? { method: "GET" } : { json });
-  saveBlob(await answer.blob(), nameOf(answer) ?? fallbackName);
+  saveBlob(await answer.blob(), nameOf(answer) ?? fallbackName ?? "");
 };
 
-/** Save a blob under a name. */
+/** Save a blob under a name. @param {Blob} blob @param {string} name */
 export const saveBlob = (blob, name) => {
   const address = URL.createObjectURL(blob);
   const anchor = Object.assign(document.createElement("a"), { href: address, download: name });
@@ -46,11 +50,17 @@ export const saveBlob = (blob, name) => {
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 };
 
+/** @typedef {{ path: string, json: unknown, resolve: (answer: any) => void, reject: (error: unknown) => void }} Waiting
+ * @typedef {{ busy: boolean, next: Waiting | null }} Line */
+
+/** @type {Map<string, Line>} */
 const lines = new Map();
 
 const SIGNED_OUT = "this browser is not signed in; open the link that `rocking serve` prints";
 
+/** @param {Line} line */
 const follow = async (line) => {
+  if (!line.next) return;
   const { path, json, resolve, reject } = line.next;
   line.next = null;
   line.busy = true;
@@ -64,6 +74,7 @@ const follow = async (line) => {
   }
 };
 
+/** @param {string} path @param {CallOptions} [options] */
 const send = async (path, { method, json, body, query, signal, keepalive = false } = {}) => {
   const content = json === undefined ? body : JSON.stringify(json);
   const answer = await fetch(addressOf(path, query), {
@@ -84,14 +95,17 @@ const send = async (path, { method, json, body, query, signal, keepalive = false
   throw new ApiError(answer.status, await refusalOf(answer));
 };
 
+/** @param {unknown} json */
 const typeOf = (json) => (json === undefined ? "application/octet-stream" : "application/json");
 
+/** @param {string} path @param {CallOptions["query"]} query */
 const addressOf = (path, query) => {
   const address = path.startsWith("/") ? path : `/api/${path}`;
   const entries = Object.entries(query ?? {}).filter(([, value]) => value !== undefined && value !== null);
   return entries.length ? `${address}?${new URLSearchParams(entries)}` : address;
 };
 
+/** @param {Response} answer */
 const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
@@ -100,6 +114,7 @@ const refusalOf = async (answer) => {
   return /Authorization/.test(words.message) ? { ...words, message: SIGNED_OUT } : words;
 };
 
+/** @param {Response} answer */
 const nameOf = (answer) => {
   const header = answer.headers.get("Content-Disposition") ?? "";
   return header.match(/filename="([^"]+)"/)?.[1];

@@ -2,7 +2,8 @@
 
 import { say } from "/app/say.js";
 
-/** Copy columns and rows as text; says so, or says why not. */
+/** Copy columns and rows as text; says so, or says why not.
+ * @param {(string | Column)[]} columns @param {unknown[][]} rows */
 export const copyTable = async (columns, rows) => {
   const text = asText(columns, rows);
   try {
@@ -13,14 +14,16 @@ export const copyTable = async (columns, rows) => {
   }
 };
 
-/** The tab-separated text of a table. */
+/** The tab-separated text of a table. @param {(string | Column)[]} columns @param {unknown[][]} rows */
 export const asText = (columns, rows) =>
   [columns.map(heading), ...rows.map((row) => row.map(cell))].map((line) => line.join("\t")).join("\r\n");
 
+/** @param {string | Column} column */
 const heading = (column) =>
   cell(typeof column === "string" ? column : column.unit ? `${column.label} [${column.unit}]` : column.label);
 
 // A text that a spreadsheet would run as a formula gets an apostrophe before it.
+/** @param {unknown} value */
 const cell = (value) => {
   const plain = value instanceof Node ? value.textContent : value;
   if (typeof plain === "number") return Number.isFinite(plain) ? String(plain) : "";

@@ -1,16 +1,18 @@
 /** Extremes of data: a call that takes all values as its arguments ends at some 100,000 of them. */
 
-/** The largest of some values, not below `most`; what is no number is passed over. */
+/** The largest of some values, not below `most`; what is no number is passed over.
+ * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [most] */
 export const highest = (values, most = -Infinity) => {
   for (const value of values) if (value !== null && value > most) most = value;
   return most;
 };
 
-/** The smallest of some values, not above `least`. */
+/** The smallest of some values, not above `least`.
+ * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [least] */
 export const lowest = (values, least = Infinity) => {
   for (const value of values) if (value !== null && value < least) least = value;
   return least;
 };
 
-/** From the smallest to the largest. */
+/** From the smallest to the largest. @param {ArrayLike<number | null> & Iterable<number | null>} values */
 export const spanOf = (values) => highest(values) - lowest(values);

@@ -2,11 +2,15 @@
 
 import { superseded } from "/app/api.js";
 
-/** Follow the body of the inputs: {get, subscribe((facts, error) => ...)}. */
+/** Follow the body of the inputs: {get, subscribe((facts, error) => ...)}. @param {App} app */
 export const createBodyFacts = (app) => {
+  /** @type {Server.DescribedBody | null} */
   let facts = null;
+  /** @type {Refusal | null} */
   let error = null;
+  /** @type {Set<(facts: Server.DescribedBody | null, error: Refusal | null) => unknown>} */
   const watchers = new Set();
+  /** @param {Server.DescribedBody | null} nextFacts @param {any} nextError */
   const tell = (nextFacts, nextError) => {
     [facts, error] = [nextFacts ?? facts, nextError];
     for (const watcher of [...watchers]) watcher(facts, error);
@@ -26,6 +30,7 @@ export const createBodyFacts = (app) => {
   return {
     get: () => facts,
     error: () => error,
+    /** @param {(facts: Server.DescribedBody | null, error: Refusal | null) => unknown} watcher */
     subscribe: (watcher) => {
       watchers.add(watcher);
       if (facts || error) watcher(facts, error);

@@ -3,14 +3,15 @@
 import { html, render } from "/parts/preact.js";
 import { Button, Note, sentence } from "/parts/fields.js";
 
-/** Put components in a place of their own instead of all that stands in a node. */
+/** Put components in a place of their own instead of all that stands in a node.
+ * @param {Element} node @param {VNode} what */
 export const inPlaceOf = (node, what) => {
   const place = document.createElement("div");
   node.replaceChildren(place);
   render(what, place);
 };
 
-/** Say why the page could not start; what the address holds is kept for the next try. */
+/** Say why the page could not start; what the address holds is kept for the next try. @param {string} message */
 export const showFailure = (message) => {
   inPlaceOf(document.getElementById("main"), html`
     <div class="card door" data-testid="failure">
@@ -20,5 +21,5 @@ export const showFailure = (message) => {
       <${Button} kind="primary" onClick=${() => location.reload()}>Try again<//>
     </div>`);
   document.body.classList.add("at-the-door");
-  document.querySelector(".door button").focus();
+  /** @type {HTMLElement | null} */ (document.querySelector(".door button"))?.focus();
 };

@@ -1,9 +1,14 @@
 /** The fields that hold what is no valid value: the inputs do not have what such a field shows. */
 
+/** @typedef {{ inputs?: boolean, view?: string }} Which @typedef {{ label: string, words: string, view: string, input: Element }} Fault */
+
+/** @type {Map<Element, { label: string, words: string }>} */
 const known = new Map();
+/** @type {Set<(faults: Fault[]) => unknown>} */
 const watchers = new Set();
 
-/** Note what is wrong with a field; no words take it off the list. */
+/** Note what is wrong with a field; no words take it off the list.
+ * @param {Element} input @param {string} label @param {string} words */
 const mark = (input, label, words) => {
   if (words ? known.get(input)?.words === words : !known.has(input)) return;
   if (words) known.set(input, { label, words });
@@ -12,19 +17,24 @@ const mark = (input, label, words) => {
 };
 
 // Only fields that someone can see count: those of a shape or a choice that was left are gone.
+/** @param {Element} input */
 const counts = (input) => input.isConnected && !input.closest("[hidden]:not([role=tabpanel])");
 
+/** @param {Element} input */
 const viewOf = (input) => input.closest("[role=tabpanel]")?.id.replace("view-", "") ?? "";
 
-/** Every field in error: {label, words, view, input}; of one view, or `inputs` for all but the studies. */
+/** Every field in error: {label, words, view, input}; of one view, or `inputs` for all but the studies.
+ * @param {Which} [which] */
 const list = ({ inputs = false, view } = {}) =>
   [...known].filter(([input]) => counts(input))
     .map(([input, fault]) => ({ ...fault, view: viewOf(input), input }))
     .filter((fault) => (view ? fault.view === view : !inputs || fault.view !== "studies"));
 
+/** @param {Which} [which] */
 const any = (which) => list(which).length > 0;
 
-/** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere. */
+/** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere.
+ * @param {Which & { but?: string }} [which] */
 const sentence = ({ but, ...which } = {}) =>
   list(which).filter(({ words }) => words !== but).map(({ label, words }) => `${label}: ${words}`).join(" ");
 
@@ -32,7 +42,7 @@ const tell = () => {
   for (const watcher of [...watchers]) watcher(list());
 };
 
-/** Be told whenever a field goes wrong or right; returns how to stop. */
+/** Be told whenever a field goes wrong or right; returns how to stop. @param {(faults: Fault[]) => unknown} watcher */
 const subscribe = (watcher) => {
   watchers.add(watcher);
   return () => watchers.delete(watcher);

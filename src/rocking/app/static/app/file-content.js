@@ -1,6 +1,6 @@
 /** What a file holds. */
 
-/** The bytes of a file as it is now; they are kept, whatever becomes of it on the disk. */
+/** The bytes of a file as it is now; they are kept, whatever becomes of it on the disk. @param {File} file */
 export const contentOf = (file) => file.arrayBuffer().catch(() => {
   throw new Error(`${file.name} cannot be read any more: choose it again.`);
 });

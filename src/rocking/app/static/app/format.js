@@ -5,7 +5,8 @@ const THIN = "\u202f";
 const NONE = "\u2013";
 const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
-/** A number with so many significant digits. */
+/** A number with so many significant digits.
+ * @param {number | string | null | undefined} value @param {number} [digits] */
 export const number = (value, digits = 4) => {
   if (value === null || value === undefined || !Number.isFinite(Number(value))) return NONE;
   const given = Number(value);
@@ -15,22 +16,23 @@ export const number = (value, digits = 4) => {
   return given < 0 ? MINUS + text : text;
 };
 
-/** A number and its unit; a pure number has the unit "" or "-". */
+/** A number and its unit; a pure number has the unit "" or "-".
+ * @param {number | null | undefined} value @param {string} [unit] @param {number} [digits] */
 export const quantity = (value, unit, digits = 4) => {
   const text = number(value, digits);
   if (text === NONE || !unit || unit === "-" || unit === "1") return text;
   return unit === "%" || unit === "\u00b0" ? `${text}${THIN}${unit}` : `${text}\u00a0${pretty(unit)}`;
 };
 
-/** Share of one as a percentage. */
+/** Share of one as a percentage. @param {number} share @param {number} [digits] */
 export const percent = (share, digits = 3) => quantity(share * 100, "%", digits);
 
-/** A unit as it is printed: m/s2 becomes m/s with a raised 2. */
+/** A unit as it is printed: m/s2 becomes m/s with a raised 2. @param {string} unit */
 export const pretty = (unit) => unit.replace(
   /([a-z])(-?[0-9])\b/gi, (_, letter, power) => letter + raised(power),
 );
 
-/** What a person typed as a number, decimal comma allowed; null if it is none. */
+/** What a person typed as a number, decimal comma allowed; null if it is none. @param {string | number} text */
 export const parseNumber = (text) => {
   const clean = String(text).trim().replace(
     /[\s\u202f\u00a0]/g, "",
@@ -40,12 +42,14 @@ export const parseNumber = (text) => {
   return Number.isFinite(value) ? value : null;
 };
 
-/** A number as it stands in an input box: every digit, nothing else. */
+/** A number as it stands in an input box: every digit, nothing else.
+ * @param {number | string | null | undefined} value */
 export const editable = (value) => (value === null || value === undefined ? "" : String(value));
 
-/** Round away what only binary arithmetic left behind. */
+/** Round away what only binary arithmetic left behind. @param {number} value @param {number} [digits] */
 export const tidy = (value, digits = 12) => Number(Number(value).toPrecision(digits));
 
+/** @param {number} size @param {number} digits */
 const plain = (size, digits) => {
   const [whole, fraction = ""] = expanded(size, digits).split(".");
   const trimmed = fraction.replace(/0+$/, "");
@@ -53,16 +57,19 @@ const plain = (size, digits) => {
   return trimmed ? `${grouped}.${trimmed}` : grouped;
 };
 
+/** @param {number} size @param {number} digits */
 const expanded = (size, digits) => {
   const decimals = digits - 1 - Math.floor(Math.log10(size));
   return decimals > 0 ? size.toFixed(Math.min(decimals, 20)) : String(Math.round(size));
 };
 
+/** @param {number} size @param {number} digits */
 const scientific = (size, digits) => {
   const [mantissa, power] = size.toExponential(digits - 1).split("e");
   return `${String(Number(mantissa))}\u00d710${raised(String(Number(power)))}`;
 };
 
+/** @param {string} text */
 const raised = (text) => [...text].map(
   (each) => (each === "-" ? "\u207b" : SUPERSCRIPTS[Number(each)])
 ).join("");

@@ -8,18 +8,23 @@ const KEPT = "rocking.forms";
 
 /** The store of the forms, by view: get, take, subscribe, and one of them. */
 export const createForms = () => {
+  /** @type {Signal<Forms>} */
   const all = signal(formsOf(stored(KEPT)));
+  /** @type {Set<(view: string) => unknown>} */
   const watchers = new Set();
+  /** @param {Forms} next */
   const become = (next) => {
     all.value = next;
     keep(KEPT, next);
   };
   return {
     get: () => all.peek(),
-    /** Show what a project holds. */
+    /** Show what a project holds. @param {unknown} forms */
     take: (forms) => become(formsOf(forms)),
+    /** @param {(view: string) => unknown} watcher */
     subscribe: (watcher) => watchers.add(watcher),
-    /** The form of a view; `first` is what it holds before anything was typed, `at(...path)` is a signal of one field. */
+    /** The form of a view; `first` is what it holds before anything was typed, `at(...path)` is a signal of one field.
+     * @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
     of: (view, first) => {
       const form = () => {
         const typed = Object.entries(all.value[view] ?? {}).filter(([name, value]) => alike(value, first[name]));
@@ -27,6 +32,7 @@ export const createForms = () => {
       };
       return {
         get value() { return form(); },
+        /** @param {...string} path */
         at: (...path) => ({
           get value() { return path.reduce((tree, name) => tree?.[name], form()) ?? ""; },
           set value(next) {
@@ -42,5 +48,6 @@ export const createForms = () => {
 };
 
 // A file from elsewhere may hold anything: what is of another kind was not typed here.
+/** @param {unknown} value @param {unknown} first */
 const alike = (value, first) => first === undefined || first === null
   || (typeof value === typeof first && Array.isArray(value) === Array.isArray(first));

@@ -6,25 +6,31 @@ const KEPT = "rocking.inputs";
 const ASIDE = "rocking.aside";
 
 /** What a new project holds. */
+/** @type {Server.Inputs} */
 export const FIRST = {
   body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
   motion: { pulse: "sine:amplitude=3,period=0.8" },
   restitution: { models: ["ked", "housner"] },
 };
 
-/** The store of the inputs: get, set by path, subscribe, lend. */
+/** The store of the inputs: get, set by path, subscribe, lend. @param {Server.Inputs | null} start */
 export const createInputs = (start) => {
   let current = freeze(start ?? FIRST);
   const wereKept = kept() !== null;
+  /** @type {Aside | null} */
   let aside = keptAside();
   keep(KEPT, current);
+  /** @type {Set<(inputs: Server.Inputs, changed: Set<string>) => unknown>} */
   const watchers = new Set();
+  /** @param {Server.Inputs} next @param {Set<string>} changed */
   const become = (next, changed) => {
     current = freeze(next);
     keep(KEPT, current);
     for (const watcher of [...watchers]) watcher(current, changed);
   };
+  /** @param {Server.Inputs} document */
   const replace = (document) => become(document, new Set([...Object.keys(current), ...Object.keys(document)]));
+  /** @param {Aside | null} next */
   const put = (next) => {
     aside = next;
     keep(ASIDE, next);
@@ -33,17 +39,19 @@ export const createInputs = (start) => {
     get: () => current,
     /** Whether this tab held inputs before it was loaded. */
     wereKept,
-    /** Show what a project holds; nothing stays aside. */
+    /** Show what a project holds; nothing stays aside. @param {Server.Inputs} document */
     take: (document) => {
       put(null);
       replace(document);
     },
+    /** @param {string} path @param {unknown} value */
     set: (path, value) => {
       const [top] = path.split(".");
-      const next = changedAt(current, path.split("."), value);
-      if (JSON.stringify(next[top]) !== JSON.stringify(current[top])) become(next, new Set([top]));
+      const [before, next] = [/** @type {any} */ (current), changedAt(current, path.split("."), value)];
+      if (JSON.stringify(next[top]) !== JSON.stringify(before[top])) become(next, new Set([top]));
     },
-    /** Show inputs from elsewhere; the user's own go aside: {inputs, words, mine}, or null while there are none. */
+    /** Show inputs from elsewhere; the user's own go aside: {inputs, words, mine}, or null while there are none.
+     * @param {Server.Inputs} document @param {string} words */
     lend: (document, words) => {
       const own = aside?.mine ? aside.inputs : current;
       const same = [FIRST, document].some((each) => JSON.stringify(each) === JSON.stringify(own));
@@ -53,6 +61,7 @@ export const createInputs = (start) => {
     aside: () => aside,
     /** Change what is on the screen and what is aside over. */
     swap: () => {
+      if (!aside) return;
       const next = aside.inputs;
       put({ ...aside, inputs: current, mine: !aside.mine });
       replace(next);
@@ -63,6 +72,7 @@ export const createInputs = (start) => {
     },
     /** Let every watcher ask again for what it shows. */
     touch: () => become(current, new Set(Object.keys(current))),
+    /** @param {(inputs: Server.Inputs, changed: Set<string>) => unknown} watcher */
     subscribe: (watcher) => {
       watchers.add(watcher);
       return () => watchers.delete(watcher);
@@ -70,14 +80,14 @@ export const createInputs = (start) => {
   };
 };
 
-/** The inputs as a part of a link. */
+/** The inputs as a part of a link. @param {Server.Inputs} inputs */
 export const encode = (inputs) => {
   const bytes = new TextEncoder().encode(JSON.stringify(inputs));
   const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
   return text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 };
 
-/** The inputs of a link; null if the text is none. */
+/** The inputs of a link; null if the text is none. @param {string} text */
 export const decode = (text) => {
   try {
     const raw = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
@@ -96,16 +106,16 @@ const keptAside = () => {
   return inputs && { inputs, words: String(found.words), mine: Boolean(found.mine) };
 };
 
-/** What was kept in this tab; null if nothing. */
+/** What was kept in this tab; null if nothing. @param {string} key */
 export const stored = (key) => {
   try {
-    return JSON.parse(sessionStorage.getItem(key));
+    return JSON.parse(sessionStorage.getItem(key) ?? "null");
   } catch {
     return null;
   }
 };
 
-/** Keep a value in this tab. */
+/** Keep a value in this tab. @param {string} key @param {unknown} value */
 export const keep = (key, value) => {
   try {
     sessionStorage.setItem(key, JSON.stringify(value));
@@ -114,7 +124,8 @@ export const keep = (key, value) => {
   }
 };
 
-/** A tree with one value changed, at a path of keys; undefined takes it away. */
+/** A tree with one value changed, at a path of keys; undefined takes it away.
+ * @param {any} tree @param {string[]} path @param {unknown} value @returns {any} */
 export const changedAt = (tree, [key, ...rest], value) => {
   const next = { ...(tree ?? {}) };
   if (rest.length) next[key] = changedAt(next[key], rest, value);
@@ -123,8 +134,10 @@ export const changedAt = (tree, [key, ...rest], value) => {
   return next;
 };
 
+/** @type {<T>(value: T) => T} */
 const freeze = (value) => {
   const copy = structuredClone(value);
+  /** @param {any} each */
   const seal = (each) => {
     if (each && typeof each === "object") Object.values(Object.freeze(each)).forEach(seal);
     return each;

@@ -3,7 +3,8 @@
 import { html, render, signal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 
-/** Keep a line over the views up to date that says whose inputs are on the screen, and changes them over. */
+/** Keep a line over the views up to date that says whose inputs are on the screen, and changes them over.
+ * @param {Element} views @param {App["inputs"]} inputs */
 export const mountLent = (views, inputs) => {
   const aside = signal(inputs.aside());
   inputs.subscribe(() => (aside.value = inputs.aside()));
@@ -12,6 +13,7 @@ export const mountLent = (views, inputs) => {
   render(html`<${Lent} inputs=${inputs} aside=${aside} />`, place);
 };
 
+/** @param {{ inputs: App["inputs"], aside: Signal<Aside | null> }} props */
 const Lent = ({ inputs, aside: { value: aside } }) => html`
   <div class="lent" role="status" data-testid="lent" hidden=${!aside}>${aside && html`
     <${Note} kind=${aside.mine ? "info" : "good"} words=${aside.mine

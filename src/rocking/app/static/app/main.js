@@ -41,8 +41,10 @@ const start = async () => {
   run(app, view);
 };
 
+/** @param {Server.Inputs | null} inputs @param {Server.Info} info */
 const createApp = (inputs, info) => {
-  const app = { inputs: createInputs(inputs), forms: createForms(), info, language, superseded, copyTable, say, faults };
+  const app = /** @type {App} */ ({ inputs: createInputs(inputs), forms: createForms(), info, language, superseded, copyTable, say, faults });
+  /** @param {(...given: any[]) => Promise<any>} ask @returns {(...given: any[]) => Promise<any>} */
   const plainly = (ask) => (...given) => ask(...given).catch((error) => {
     if (error.kind) inPlainWords(error, app.inputs.get().body);
     throw error;
@@ -68,12 +70,14 @@ const createApp = (inputs, info) => {
   return app;
 };
 
+/** @param {any} error @param {Server.BodyInput} body */
 const inPlainWords = (error, body) => {
   error.field = fieldOf(error.message);
   error.place = placeOf(error.message, body);
   error.message = plainWords(error.message, body);
 };
 
+/** @param {App} app @param {string} [view] */
 const run = (app, view) => {
   const views = createViews(app);
   const steps = document.getElementById("steps");
@@ -86,8 +90,8 @@ const run = (app, view) => {
   app.go = (name) => tabs.show(name, { focus: true });
   mountSummary(document.getElementById("summary"), app);
   mountProject(document.getElementById("project"), app.project, app);
-  mountLent(document.querySelector(".views"), app.inputs);
-  tabs.show(tabs.names.includes(view) ? view : "body");
+  mountLent(/** @type {Element} */ (document.querySelector(".views")), app.inputs);
+  tabs.show(view && tabs.names.includes(view) ? view : "body");
   steps.inert = false; // until here a click would have been lost
   document.body.dataset.started = "true";
   followAddress(app, tabs);
@@ -95,8 +99,10 @@ const run = (app, view) => {
 };
 
 // A session that ended is noticed by the first call that is refused; after it all is asked again.
+/** @param {App} app @param {ReturnType<typeof createViews>} views @param {ReturnType<typeof createTabs>} tabs */
 const signingIn = (app, views, tabs) => {
   document.addEventListener("rocking:signed-out", () => showDoor(""));
+  /** @param {string} words */
   const again = (words) => () => {
     say(words);
     app.inputs.touch();
@@ -108,6 +114,7 @@ const signingIn = (app, views, tabs) => {
   document.getElementById("another").addEventListener("click", app.linkForAnother);
 };
 
+/** @param {string} refusal */
 const waitAtTheDoor = (refusal) => {
   showDoor(refusal);
   addEventListener("hashchange", () => location.reload());
@@ -116,7 +123,7 @@ const waitAtTheDoor = (refusal) => {
 document.getElementById("theme").addEventListener("click", () => {
   document.dispatchEvent(new CustomEvent("rocking:toggle-theme"));
 });
-document.querySelector(".skip").addEventListener("click", (event) => {
+document.querySelector(".skip")?.addEventListener("click", (event) => {
   event.preventDefault();
   document.getElementById("main").focus();
 });

@@ -4,7 +4,8 @@ import * as address from "/app/address.js";
 import { decode } from "/app/inputs.js";
 import { showDoor, exchange } from "/app/session.js";
 
-/** Follow the address from now on: Back, Forward and links pasted into the tab. */
+/** Follow the address from now on: Back, Forward and links pasted into the tab.
+ * @param {App} app @param {ReturnType<typeof import("/app/tabs.js").createTabs>} tabs */
 export const followAddress = (app, tabs) => {
   const follow = async () => {
     const parts = address.read();
@@ -23,12 +24,14 @@ export const followAddress = (app, tabs) => {
 /** The words when a link's inputs cannot be read. */
 export const UNREADABLE = "The link carries no readable inputs";
 
+/** @param {App} app @param {string} shared */
 const take = (app, shared) => {
   const inputs = decode(shared);
   if (inputs) app.inputs.lend(inputs, "what a link holds");
   else app.say(`${UNREADABLE}; nothing was changed.`, "warning");
 };
 
+/** @param {string} token */
 const enter = async (token) => {
   const refusal = await exchange(token);
   if (refusal) showDoor(refusal);

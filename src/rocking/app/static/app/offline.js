@@ -4,7 +4,7 @@ import { call } from "/app/api.js";
 
 const EVERY = 2_000;
 
-/** Run a function whenever the server answers again after it did not. */
+/** Run a function whenever the server answers again after it did not. @param {() => unknown} again */
 export const whenBack = (again) => {
   let looking = false;
   const look = async () => {

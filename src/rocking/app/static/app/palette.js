@@ -2,29 +2,33 @@
 
 import { svg } from "/app/dom.js";
 
+/** @type {Map<string, Server.ModelFacts>} */
 const models = new Map();
 
-/** Learn the models that the server has; done once, before anything is drawn. */
+/** Learn the models that the server has; done once, before anything is drawn. @param {Server.ModelFacts[]} told */
 export const learnModels = (told) => {
   models.clear();
   for (const model of told) models.set(model.name, model);
 };
 
+/** @type {Look[]} */
 const SPARE = [
   { colour: "#69994D", dash: [3, 2, 8, 2] },
   { colour: "#8C6900", dash: [12, 3] },
   { colour: "#7F5CB9", dash: [5, 3, 1, 3] },
 ];
 
+/** @type {Map<string, Look>} */
 const spares = new Map();
 
-/** Colour and dash of a restitution model's label, such as "ked" or "0.98*shifted-impulse:k=0.6". */
+/** Colour and dash of a restitution model's label, such as "ked" or "0.98*shifted-impulse:k=0.6".
+ * @param {string | number} label @returns {Look} */
 export const modelStyle = (label) => {
   const model = models.get(family(label));
   return model?.colour ? model : spare(String(label));
 };
 
-/** The model's name in words, with its parameter if it has one. */
+/** The model's name in words, with its parameter if it has one. @param {string | number} label */
 export const modelWords = (label) => {
   const text = String(label);
   const name = models.get(family(text))?.short_name;
@@ -34,7 +38,8 @@ export const modelWords = (label) => {
   return name ? `${factor}${name}${parameter}` : text;
 };
 
-/** A short line, or dots where a curve is drawn as such, in a colour and its true dash. */
+/** A short line, or dots where a curve is drawn as such, in a colour and its true dash.
+ * @param {{ colour: string, dash?: number[], dots?: boolean }} given */
 export const dashKey = ({ colour, dash = [], dots = false }) => {
   const stroke = colour.startsWith("--") ? `var(${colour})` : colour;
   const mark = dots
@@ -50,7 +55,8 @@ export const dashKey = ({ colour, dash = [], dots = false }) => {
 const ANGLES = ["#7F5CB9", "#69994D", "#8C6900", "#C6317C", "#237F8C", "#796E5B"];
 const DASHES = [[], [9, 3], [3, 3], [9, 3, 3, 3], [6, 2], [2, 2, 6, 2]];
 
-/** Look of a curve of one of several angles: the model's own, or a colour of the angle that no model has. */
+/** Look of a curve of one of several angles: the model's own, or a colour of the angle that no model has.
+ * @param {string} model @param {number} index @param {{ angles: number, models: number }} given2 */
 export const angleStyle = (model, index, { angles, models }) => {
   const own = modelStyle(model);
   if (angles < 2) return own;
@@ -58,13 +64,14 @@ export const angleStyle = (model, index, { angles, models }) => {
   return { colour: ANGLES[at], dash: models < 2 ? DASHES[at] : own.dash };
 };
 
-/** Colour for the n-th of several curves that are no models. */
+/** Colour for the n-th of several curves that are no models. @param {number} index @returns {Look} */
 export const seriesStyle = (index) => {
   const looks = [...models.values()].filter(({ colour }) => colour);
   return looks[index % looks.length];
 };
 
 /** Marker and words of the groups of published measurements. */
+/** @type {{ [group: string]: { marker: string, words: string } | undefined }} */
 export const GROUPS = {
   table1: { marker: "square", words: "literature (Table 1)" },
   S: { marker: "down", words: "specimens S" },
@@ -72,9 +79,11 @@ export const GROUPS = {
   L: { marker: "up", words: "specimens L" },
 };
 
-const family = (label) => String(label).split("*").at(-1).split(":")[0].trim();
+/** @param {string | number} label */
+const family = (label) => String(label).replace(/^.*\*/s, "").split(":")[0].trim();
 
+/** @param {string} label */
 const spare = (label) => {
   if (!spares.has(label)) spares.set(label, SPARE[spares.size % SPARE.length]);
-  return spares.get(label);
+  return /** @type {Look} */ (spares.get(label));
 };

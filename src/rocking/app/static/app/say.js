@@ -2,10 +2,11 @@
 
 import { el, fill } from "/app/dom.js";
 
+/** @type {{ [kind: string]: string | undefined }} */
 const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
 let timer = 0;
 
-/** Say something in the status line. */
+/** Say something in the status line. @param {string} text @param {string} [kind] */
 export const say = (text, kind = "info") => {
   const line = document.getElementById("status");
   fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), el("span", {}, text));

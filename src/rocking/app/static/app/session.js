@@ -7,7 +7,7 @@ import { Button, Field, Note, toWrong } from "/parts/fields.js";
 
 const said = signal(null); // what the door says; nothing while there is none
 
-/** Exchange the token of a link for the cookie; says why not if it did not work. */
+/** Exchange the token of a link for the cookie; says why not if it did not work. @param {string} token */
 export const exchange = async (token) => {
   try {
     await call("session", { json: { token } });
@@ -18,9 +18,11 @@ export const exchange = async (token) => {
 };
 
 const signedIn = () => document.dispatchEvent(new CustomEvent("rocking:signed-in"));
+/** @param {() => unknown} done */
 const onSignedIn = (done) => document.addEventListener("rocking:signed-in", done, { once: true });
 
-/** A page that says how to get in, before the application; what the address holds is kept for after. */
+/** A page that says how to get in, before the application; what the address holds is kept for after.
+ * @param {string} message */
 export const showDoor = (message) => {
   const before = said.value;
   said.value = message;
@@ -36,7 +38,7 @@ const openOver = () => {
   const close = over("Sign in again", html`<${Door} running />`, { stays: true });
   const look = async () => {
     if (document.hidden) return;
-    const { signed_in: inside } = await call("session").catch(() => ({}));
+    const { signed_in: inside } = await call("session").catch(() => ({ signed_in: false }));
     if (inside) signedIn();
   };
   addEventListener("focus", look);
@@ -47,7 +49,8 @@ const openOver = () => {
   });
 };
 
-/** A dialog over the page; returns how to close it. */
+/** A dialog over the page; returns how to close it.
+ * @param {string} label @param {VNode} what @param {{ stays?: boolean }} [how] */
 const over = (label, what, { stays = false } = {}) => {
   const place = document.body.appendChild(document.createElement("div"));
   const gone = () => {
@@ -55,7 +58,7 @@ const over = (label, what, { stays = false } = {}) => {
     place.remove();
   };
   render(html`<dialog class="over" aria-label=${label} onClose=${gone} onCancel=${(event) => stays && event.preventDefault()}>${what}</dialog>`, place);
-  const dialog = place.firstElementChild;
+  const dialog = /** @type {HTMLDialogElement} */ (place.firstElementChild);
   dialog.showModal();
   return () => dialog.close();
 };
@@ -63,9 +66,10 @@ const over = (label, what, { stays = false } = {}) => {
 const Door = ({ running = false }) => {
   const form = useRef(null);
   const [link, wrong] = [useSignal(""), useSignal("")];
+  /** @param {Event} event */
   const enter = async (event) => {
     event.preventDefault();
-    const token = link.value.trim().split("token=").at(-1).split("&")[0];
+    const token = link.value.trim().replace(/^.*token=/s, "").split("&")[0];
     wrong.value = token ? "" : "Paste the link first.";
     if (!token) return toWrong(form.current);
     said.value = await exchange(token);
@@ -84,12 +88,13 @@ const Door = ({ running = false }) => {
     </form>`;
 };
 
-/** Show a new one-time link for another browser, on the clipboard where that is allowed. */
+/** Show a new one-time link for another browser, on the clipboard where that is allowed. @param {App} app */
 export const linkForAnother = async (app) => {
   const { url } = await app.call("session/link", { method: "POST" });
   const close = over("Link for another browser", html`<${Another} app=${app} url=${url} close=${() => close()} />`);
 };
 
+/** @param {{ app: App, url: string, close: () => unknown }} props */
 const Another = ({ app, url, close }) => {
   const box = useRef(null);
   const mark = () => box.current.querySelector("input").select();

@@ -2,30 +2,42 @@
 
 const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
 
-/** The inputs of a document from outside, empty tables left out; null if they cannot be such a document. */
+/** The inputs of a document from outside, empty tables left out; null if they cannot be such a document.
+ * @param {unknown} document @returns {Server.Inputs | null} */
 export const inputsOf = (document) => {
   if (!isTable(document)) return null;
   const { motion, ...rest } = document;
   const inputs = withoutNulls({ ...rest, body: isTable(rest.body) ? withoutNulls(rest.body) : null });
   const good = Object.keys(inputs).every((key) => CHECKS[key]?.(inputs[key])) && isBody(inputs.body);
   if (!good || !(motion === undefined || motion === null || isMotion(motion))) return null;
-  return motion ? { ...inputs, motion: withoutNulls(motion) } : inputs;
+  return /** @type {any} */ (motion ? { ...inputs, motion: withoutNulls(motion) } : inputs);
 };
 
-/** What is typed in views, of a document from outside; what cannot be that is left out. */
+/** What is typed in views, of a document from outside; what cannot be that is left out.
+ * @param {any} forms @returns {Forms} */
 export const formsOf = (forms) => (!isTable(forms) ? {} : Object.fromEntries(Object.entries(forms).filter(([, form]) => isTable(form)
   && maybe(isList((file) => isTable(file) && eachOf(file, ["name", "sha"], isText)))(form.files))));
 
+/** @param {unknown} value @returns {value is { [key: string]: any }} */
 const isTable = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+/** @param {unknown} value */
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+/** @param {unknown} value */
 const isText = (value) => typeof value === "string";
+/** @param {(value: any) => boolean} each @returns {(value: any) => boolean} */
 const isList = (each) => (value) => Array.isArray(value) && value.every(each);
+/** @param {any} value */
 const isPair = (value) => isList(isNumber)(value) && value.length === 2;
+/** @param {any} value */
 const isRing = (value) => isList(isPair)(value) && value.length > 2;
+/** @param {unknown} value */
 const none = (value) => value === undefined || value === null;
+/** @param {(value: any) => boolean} check @returns {(value: any) => boolean} */
 const maybe = (check) => (value) => none(value) || check(value);
+/** @param {any} table @param {string[]} keys @param {(value: any) => boolean} check */
 const eachOf = (table, keys, check) => keys.every((key) => maybe(check)(table[key]));
 
+/** @param {{ [key: string]: any }} table */
 const withoutNulls = (table) =>
   Object.fromEntries(Object.entries(table).filter(([, value]) => value !== null && value !== undefined));
 
@@ -34,21 +46,26 @@ const LENGTHS = [
   "moment_of_inertia",
 ];
 
+/** @param {any} table */
 const isSized = (table) => isTable(table) && eachOf(table, LENGTHS, isNumber) && eachOf(table, ["feet", "centre"], isPair);
 
+/** @param {any} region */
 const isRegion = (region) =>
   isTable(region) && maybe(isRing)(region.outline) && maybe(isList(isRing))(region.holes)
   && maybe(isNumber)(region.density) && maybe(isText)(region.wkt);
 
+/** @param {any} section */
 const isSection = (section) =>
   isSized(section) && isList(isRegion)(section.region) && section.region.length > 0;
 
+/** @param {any} body */
 const isBody = (body) =>
   isSized(body) && UNITS.has(body.units) && maybe(isText)(body.name)
   && eachOf(body, ["block", "trapezoid", "ellipse", "regular_polygon"], isSized)
   && maybe(isSection)(body.section)
   && maybe((table) => isTable(table) && isList(isPair)(table.points))(body.mass_points);
 
+/** @param {any} motion */
 const isMotion = (motion) =>
   isTable(motion) && ["pulse", "record", "synthetic"].filter((key) => !none(motion[key])).length === 1
   && eachOf(motion, [
@@ -56,15 +73,19 @@ const isMotion = (motion) =>
   ], isText)
   && eachOf(motion, ["scale", "seed", "member", "pga", "pgv", "time_step"], isNumber);
 
+/** @param {any} side */
 const isSide = (side) =>
   isTable(side) && eachOf(side, ["model"], isText) && eachOf(side, ["value"], isNumber)
   && maybe(isList(isText))(side.models) && maybe(isList(isNumber))(side.values);
 
+/** @param {any} table */
 const isRestitution = (table) => isSide(table) && eachOf(table, ["left", "right"], isNumber);
 
+/** @type {{ [key: string]: ((table: any) => boolean) | undefined }} */
 const CHECKS = {
   body: isTable,
   restitution: isRestitution,
+  /** @param {any} table */
   response: (table) => isTable(table) && eachOf(table, ["free", "assumed_friction"], isNumber),
   settings: isTable,
 };

@@ -6,7 +6,7 @@ import { bodyPicture } from "/drawing/body-picture.js";
 import { Button, Note } from "/parts/fields.js";
 import { Made } from "/parts/made.js";
 
-/** Keep the column up to date. */
+/** Keep the column up to date. @param {HTMLElement} aside @param {App} app */
 export const mountSummary = (aside, app) => {
   const [facts, wrong] = [signal(app.body.get()), signal("")]; // what is wrong, a line each
   const look = () => {
@@ -22,6 +22,7 @@ export const mountSummary = (aside, app) => {
   render(html`<${Summary} app=${app} facts=${facts} wrong=${wrong} />`, aside);
 };
 
+/** @param {{ app: App, facts: Signal<Server.DescribedBody | null>, wrong: Signal<string> }} props */
 const Summary = ({ app, facts: { value: facts }, wrong }) => html`
   <h2>The body</h2>
   <div class="refusal" data-testid="summary-faults">
@@ -29,13 +30,16 @@ const Summary = ({ app, facts: { value: facts }, wrong }) => html`
   ${facts && html`<${Facts} facts=${facts} />`}
   <${Button} kind="quiet" onClick=${() => app.go("body")}>Change the body<//>`;
 
+/** @param {{ facts: Server.DescribedBody }} props */
 const Facts = ({ facts }) => html`
   ${facts.name && html`<p class="summary-name" translate=${false}>${facts.name}</p>`}
   <${Made} class="summary-picture" node=${useMemo(() => bodyPicture(facts, { height: 190, plain: true }), [facts])} />
   <dl class="facts compact" data-testid="summary">${rows(facts).map(([term, text]) => html`<dt key=${term}>${term}</dt><dd>${text}</dd>`)}</dl>`;
 
+/** @param {Server.DescribedBody} facts */
 const rows = ({ sides, mass_kg: mass }) => {
   const { left, right } = sides;
+  /** @param {keyof Server.SideFacts} key @param {(value: number) => string} show */
   const both = (key, show) =>
     show(left[key]) === show(right[key]) ? show(right[key]) : `${show(left[key])} | ${show(right[key])}`;
   return [

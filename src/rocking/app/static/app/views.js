@@ -4,15 +4,17 @@ import { inPlaceOf } from "/app/failure.js";
 import { Button, Note } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
 
-/** A keeper of views: show(name, before) mounts and tells them. */
+/** A keeper of views: show(name, before) mounts and tells them. @param {App} app */
 export const createViews = (app) => {
   const mounted = new Map();
+  /** @param {string} name */
   const mount = (name) => {
     if (!mounted.has(name)) mounted.set(name, load(name, app, () => mounted.delete(name)));
     return mounted.get(name);
   };
   return {
     mount,
+    /** @param {string} name @param {string | null} [before] */
     show: async (name, before) => {
       if (before) (await mounted.get(before))?.hidden?.();
       const view = await mount(name);
@@ -23,12 +25,14 @@ export const createViews = (app) => {
 
 // A browser may keep that a module did not come: what is asked for again has an address of its own.
 const asked = new Map();
+/** @param {string} name */
 const address = (name) => {
   const before = asked.get(name) ?? 0;
   asked.set(name, before + 1);
   return `/views/${name}.js${before ? `?again=${before}` : ""}`;
 };
 
+/** @param {string} name @param {App} app @param {() => unknown} forget */
 const load = async (name, app, forget) => {
   const section = document.getElementById(`view-${name}`);
   try {
@@ -47,6 +51,7 @@ const load = async (name, app, forget) => {
 };
 
 // A module that did not come is asked for again when the view is next shown; the inputs outlast a reload.
+/** @param {any} error */
 const failure = (error) => (/import|fetch/i.test(error.message)
   ? "This part did not come from the server; is `rocking serve` still running?"
   : `This part could not be shown: ${error.message}`);

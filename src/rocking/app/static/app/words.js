@@ -1,6 +1,7 @@
 /** The page in another language. Scripts say English; whatever appears is looked up in one catalogue, before it is
  * painted: whole sentences, and sentences with something in their places. What is not in it stays as it is. */
 
+/** @type {{ [code: string]: string }} */
 const NAMES = { en: "English", de: "Deutsch", it: "Italiano", zh: "中文" };
 const KEY = "rocking.language";
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
@@ -11,19 +12,27 @@ const WORD = /[A-Za-z]{3}/;
 const NAME = /^[\p{Lu}\d“"]|^\S+$/u; // "Delete Left wing": what somebody named
 const SENTENCES = /[.;?] |[.;:?]$/;
 const JOINTS = [/(?<=[.?]) /, /(?<=;) /, /(?<=^[^:]*:) /];
-const isProse = (part) => part.match(/[A-Za-z]{3,}/g)?.length > 1 && part.includes(" ");
+/** @param {string} part */
+const isProse = (part) => (part.match(/[A-Za-z]{3,}/g)?.length ?? 0) > 1 && part.includes(" ");
+/** @type {{ [mark: string]: string | undefined }} */
 const WIDE = { ".": "。", ";": "；", ":": "：", "?": "？" };
 
+/** @typedef {{ pattern: RegExp, places: string[], other: string, weak: boolean, names: boolean, own: string[], length: number, order: number }} Form */
+
+/** @type {Map<string, string>} */
 const exact = new Map();
+/** @type {Map<string, Form[]>} */
 const byWord = new Map(); // sentences with places by the rarest of their words; "" for those without
+/** @type {Map<string, string | undefined>} */
 const found = new Map();
+/** @type {WeakMap<Node, string>} */
 const written = new WeakMap();
 
 /** The language of the page: the one that was chosen in this browser, or the first that it asks for. */
 const chosen = () => {
   try {
     const kept = localStorage.getItem(KEY);
-    if (kept in NAMES) return kept;
+    if (kept && kept in NAMES) return kept;
   } catch {
     // Nothing is kept: the browser's own languages decide.
   }
@@ -32,7 +41,7 @@ const chosen = () => {
 
 export const language = chosen();
 
-/** What an English text is in the language of the page. */
+/** What an English text is in the language of the page. @param {string} text */
 export const words = (text) => {
   const bare = text.trim();
   if (!bare || exact.size === 0) return text;
@@ -40,7 +49,7 @@ export const words = (text) => {
   return text.slice(0, text.indexOf(bare)) + inside + text.slice(text.indexOf(bare) + bare.length);
 };
 
-/** What a text is; undefined where the catalogue does not have it, nor all of its sentences. */
+/** What a text is; undefined where the catalogue does not have it, nor all of its sentences. @param {string} text */
 const known = (text) => {
   if (!found.has(text)) {
     if (found.size > MOST) found.clear();
@@ -49,6 +58,7 @@ const known = (text) => {
   return found.get(text);
 };
 
+/** @param {string} text */
 const sentence = (text) => {
   if (exact.has(text) || text.length > LONGEST || !/[A-Za-z]{2}/.test(text)) return exact.get(text);
   const near = formsOf(text);
@@ -56,6 +66,7 @@ const sentence = (text) => {
 };
 
 // Overturned; 3 impacts: said by "overturned" and "{0} impacts", all of it or nothing.
+/** @param {string} text */
 const joined = (text) => {
   for (const joint of JOINTS) {
     const parts = text.split(joint);
@@ -67,8 +78,9 @@ const joined = (text) => {
 };
 
 // A sentence as it is, or with another mark at its end and, where all of it is known, another capital.
+/** @param {string} text @param {Form[]} near @param {boolean} whole */
 const said = (text, near, whole) => {
-  const [, stem, end] = text.match(/^(.+?)([.;:?]?)$/s);
+  const [, stem, end] = /** @type {RegExpMatchArray} */ (text.match(/^(.+?)([.;:?]?)$/s));
   const low = whole && /[ .]/.test(text) ? stem[0].toLowerCase() + stem.slice(1) : stem;
   for (const [form, mark] of [[text, ""], [low + end, ""], [stem, end], [low, end]]) {
     const other = exact.get(form) ?? filled(form, near, whole);
@@ -80,6 +92,7 @@ const said = (text, near, whole) => {
 };
 
 // With `whole`, what stands in the places must be known too, or a name, and no sentence of its own.
+/** @param {string} text @param {Form[]} near @param {boolean} whole */
 const filled = (text, near, whole) => {
   for (const form of near) {
     const match = form.pattern.exec(text)?.slice(1);
@@ -87,29 +100,34 @@ const filled = (text, near, whole) => {
     const inside = match.map((part) => known(part) ?? (WORD.test(part) ? undefined : part));
     if (!fits(form, match, inside, whole)) continue;
     const places = new Map(form.places.map((place, k) => [place, inside[k] ?? match[k]]));
-    return form.other.replace(/\{\d+\}/g, (place) => places.get(place));
+    return form.other.replace(/\{\d+\}/g, (place) => places.get(place) ?? "");
   }
   return undefined;
 };
 
 // "{0} to {1}" with words in its places is a sentence that somebody else has made; "Delete {0}" takes any name.
+/** @param {Form} form @param {string[]} match @param {(string | undefined)[]} inside @param {boolean} whole */
 const fits = ({ weak, names }, match, inside, whole) => {
   const strange = match.filter((_, k) => inside[k] === undefined);
   if (weak) return names ? strange.every((part) => NAME.test(part)) : !match.some((part) => WORD.test(part));
   return !whole || !strange.some(isProse);
 };
 
-/** The sentences with places that share their rarest word with a text, the longest first. */
+/** The sentences with places that share their rarest word with a text, the longest first. @param {string} text */
 const formsOf = (text) => {
   const near = new Set(byWord.get(""));
   for (const word of wordsOf(text)) for (const form of byWord.get(word) ?? []) near.add(form);
   return [...near].sort((one, two) => one.order - two.order);
 };
 
+/** @param {string} text */
 const wordsOf = (text) => new Set(text.toLowerCase().match(/[a-z]+/g));
 
+/** @param {{ [english: string]: string }} catalogue */
 const learn = (catalogue) => {
+  /** @type {Omit<Form, "order">[]} */
   const forms = [];
+  /** @type {Map<string, number>} */
   const times = new Map();
   for (const [english, other] of Object.entries(catalogue)) {
     const places = english.match(/\{\d+\}/g);
@@ -128,13 +146,15 @@ const learn = (catalogue) => {
   }
   forms.sort((one, two) => two.length - one.length);
   for (const [order, form] of forms.entries()) {
-    const [rarest = ""] = form.own.sort((one, two) => times.get(one) - times.get(two));
+    const [rarest = ""] = form.own.sort((one, two) => (times.get(one) ?? 0) - (times.get(two) ?? 0));
     byWord.set(rarest, [...(byWord.get(rarest) ?? []), { ...form, order }]);
   }
 };
 
+/** @param {Element | null} [element] */
 const stays = (element) => element?.closest("pre, code, textarea, [translate=no]") !== null;
 
+/** @param {Text} node */
 const sayText = (node) => {
   if (written.get(node) === node.data || stays(node.parentElement)) return;
   const other = words(node.data);
@@ -142,6 +162,7 @@ const sayText = (node) => {
   if (other !== node.data) node.data = other;
 };
 
+/** @param {Element} element @param {string} name */
 const sayAttribute = (element, name) => {
   const value = element.getAttribute(name);
   if (value === null || stays(element)) return;
@@ -149,12 +170,13 @@ const sayAttribute = (element, name) => {
   if (other !== value) element.setAttribute(name, other);
 };
 
-/** Say a part of the page, or a picture that is not in it, in the language of the page. */
+/** Say a part of the page, or a picture that is not in it, in the language of the page.
+ * @param {Node} node @returns {void} */
 export const sayAll = (node) => {
   if (exact.size === 0) return undefined;
-  if (node.nodeType === Node.TEXT_NODE) return sayText(node);
+  if (node.nodeType === Node.TEXT_NODE) return sayText(/** @type {Text} */ (node));
   if (node.nodeType !== Node.ELEMENT_NODE) return undefined;
-  for (const name of ATTRIBUTES) sayAttribute(node, name);
+  for (const name of ATTRIBUTES) sayAttribute(/** @type {Element} */ (node), name);
   return node.childNodes.forEach(sayAll);
 };
 
@@ -162,8 +184,8 @@ const watch = () => {
   sayAll(document.documentElement);
   new MutationObserver((changes) => {
     for (const { type, target, addedNodes, attributeName } of changes) {
-      if (type === "characterData") sayText(target);
-      else if (type === "attributes") sayAttribute(target, attributeName);
+      if (type === "characterData") sayText(/** @type {Text} */ (target));
+      else if (type === "attributes") sayAttribute(/** @type {Element} */ (target), attributeName ?? "");
       else addedNodes.forEach(sayAll);
     }
   }).observe(document.documentElement, {
@@ -171,7 +193,7 @@ const watch = () => {
   });
 };
 
-const choose = document.getElementById("language");
+const choose = /** @type {HTMLSelectElement} */ (document.getElementById("language"));
 choose.append(...Object.entries(NAMES).map(([code, name]) => new Option(name, code, false, code === language)));
 choose.addEventListener("change", () => {
   localStorage.setItem(KEY, choose.value);

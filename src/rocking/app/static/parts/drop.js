@@ -3,20 +3,25 @@
 import { html, useRef } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 
-/** A place for files; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box. */
+/** A place for files; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
+ * @param {{ label: string, name?: string, accept?: string, many?: boolean, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
 export const Drop = ({ label, name = label, accept, many = false, on, testid, children, ...more }) => {
   const [one, folder] = [useRef(null), useRef(null)];
-  const mark = (over) => (event) => {
+  /** @param {boolean} over */
+  const mark = (over) => (/** @type {DragEvent & { currentTarget: HTMLElement }} */ event) => {
     event.preventDefault();
     event.currentTarget.classList.toggle("over", over);
   };
+  /** @param {ArrayLike<File> & Iterable<File>} files */
   const take = (files) => files.length && on(many ? [...files] : [files[0]]);
+  /** @param {any} event */
   const drop = (event) => {
     mark(false)(event);
     const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
     if (many && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
     return take(event.dataTransfer.files);
   };
+  /** @param {any} event */
   const chosen = ({ target }) => {
     const files = [...target.files];
     target.value = ""; // or the same file, mended, could not be chosen again
@@ -37,9 +42,11 @@ export const Drop = ({ label, name = label, accept, many = false, on, testid, ch
 };
 
 // All files of what was dropped, of folders those in them, which browsers give in pieces.
+/** @param {any[]} entries @returns {Promise<File[]>} */
 const inFolders = async (entries) => (await Promise.all(entries.map(async (entry) => {
   if (entry.isFile) return new Promise((resolve, reject) => entry.file(resolve, reject));
   const reader = entry.createReader();
+  /** @returns {Promise<File[]>} */
   const inside = async () => {
     const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
     return some.length ? [...await inFolders(some), ...await inside()] : [];

@@ -6,16 +6,20 @@ import { freshId } from "/app/dom.js";
 import { faults } from "/app/faults.js";
 import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
 
+/** @param {string} stem */
 const useId = (stem) => useRef(freshId(stem)).current;
 
+/** @param {any} value @param {((value: any) => unknown)} [on] @returns {[any, (next: any) => unknown]} */
 const bound = (value, on) => (value !== null && typeof value === "object"
   ? [value.value, (next) => (value.value = next)] : [value, (next) => on?.(next)]);
 
 // What stands in a box: what was typed there, until `now` becomes something else.
+/** @param {any} now @param {(value: any) => string} written @param {(text: string, now: any) => boolean} says @returns {[{ text: string, fault: string, now: any }, (text: string, fault?: string) => void]} */
 const useTyped = (now, written, says) => {
   const [, draw] = useState();
   const held = useRef({ text: written(now), now, fault: "" }).current;
   if (held.now !== now) Object.assign(held, { now, fault: "" }, says(held.text, now) ? {} : { text: written(now) });
+  /** @param {string} text */
   const type = (text, fault = "") => {
     Object.assign(held, { text, fault });
     draw({});
@@ -27,13 +31,15 @@ const useTyped = (now, written, says) => {
 export const Refused = createContext({});
 
 // What was refused of a field, until it is changed.
+/** @param {string} [name] @returns {[string, () => void]} */
 const useRefused = (name) => {
   const refused = useContext(Refused);
   const past = useRef(null);
   return [name && refused.key === name && past.current !== refused ? refused.words : "", () => (past.current = refused)];
 };
 
-/** A box of one's own with the label and the words of a field. */
+/** A box of one's own with the label and the words of a field.
+ * @param {FieldProps<any> & { id: string, beside?: any, children?: any }} props */
 export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
   <div class=${`field ${kind}`} hidden=${hidden}>
     <div class="field-head"><label for=${id}>${label}${unit && html`<span class="unit">${` ${pretty(unit)}`}</span>`}</label>${beside}</div>
@@ -42,10 +48,15 @@ export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden,
   </div>`;
 
 // What every box says of itself: its name, its words, and whether it is wrong.
+/** @param {string} id @param {string} [error] */
 const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
 
+/** @type {{ [key: string]: number | undefined }} */
+const TURNS = { ArrowUp: 1, ArrowDown: -1 };
+
 /** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
- * optional one that was emptied null; what is wrong with one that is `aside` is no fault of the inputs. */
+ * optional one that was emptied null; what is wrong with one that is `aside` is no fault of the inputs.
+ * @param {NumberProps} props */
 export const NumberField = ({
   label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, optional, aside = false,
   ...more
@@ -57,13 +68,15 @@ export const NumberField = ({
   const wrong = held.fault || error;
   useLayoutEffect(() => void (aside || faults.mark(box.current, label, wrong)), [label, wrong]);
   useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
+  /** @param {string} text */
   const take = (text) => {
     const { fault = "", given } = checked(text, { min, above, max, whole, optional, unit });
     type(text, fault);
     if (!fault) put(given);
   };
+  /** @param {KeyboardEvent} event */
   const turn = (event) => {
-    const turns = { ArrowUp: 1, ArrowDown: -1 }[event.key] * (event.shiftKey ? 10 : 1);
+    const turns = (TURNS[event.key] ?? 0) * (event.shiftKey ? 10 : 1);
     if (!turns) return;
     event.preventDefault();
     take(editable(stepped(held.text, turns, { min: min ?? above, max, step })));
@@ -73,7 +86,8 @@ export const NumberField = ({
       value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
 };
 
-/** A line of text, or as `tag` says a "textarea"; `type` is that of its box. */
+/** A line of text, or as `tag` says a "textarea"; `type` is that of its box.
+ * @param {FieldProps<any> & { id?: string, tag?: string, type?: string }} props */
 export const Field = ({
   label, id = useId("field"), name, unit, value, on, help, error: told = "", kind, hidden, tag = "input", type = "text", ...more
 }) => {
@@ -81,6 +95,7 @@ export const Field = ({
   const [refused, changed] = useRefused(name);
   const error = told || refused;
   const [held, typed] = useTyped(now ?? "", String, saysText);
+  /** @param {any} event */
   const take = ({ target }) => {
     changed();
     typed(target.value);
@@ -90,13 +105,15 @@ export const Field = ({
     <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
-/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen. */
+/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen.
+ * @param {FieldProps<any> & { chosen?: unknown, options: [any, string][] }} props */
 export const Choice = ({ label, name, value, on, chosen, options, help, error: told = "", hidden, ...more }) => {
   const id = useId("choice");
   const [refused, changed] = useRefused(name);
   const error = told || refused;
   const [now, put] = bound(value, on);
   const shown = String(chosen ?? now ?? "");
+  /** @param {any} event */
   const take = ({ target }) => {
     changed();
     put(options[target.selectedIndex][0]);
@@ -107,7 +124,8 @@ export const Choice = ({ label, name, value, on, chosen, options, help, error: t
       ${options.map(([key, words]) => html`<option key=${key} value=${String(key)}>${words}</option>`)}</select><//>`;
 };
 
-/** A choice of one from a few [value, words], all in sight. */
+/** A choice of one from a few [value, words], all in sight.
+ * @param {FieldProps<any> & { options: [any, string][] }} props */
 export const Segmented = ({ label, value, on, options, hidden }) => {
   const name = useId("choice");
   const [now, put] = bound(value, on);
@@ -117,7 +135,7 @@ export const Segmented = ({ label, value, on, options, hidden }) => {
   </div></fieldset>`;
 };
 
-/** Yes or no. */
+/** Yes or no. @param {FieldProps<boolean>} props */
 export const Switch = ({ label, value, on, help, hidden }) => {
   const id = useId("switch");
   const [now, put] = bound(value, on);
@@ -127,11 +145,12 @@ export const Switch = ({ label, value, on, help, hidden }) => {
     <p id=${`${id}-about`} class="field-help">${help}</p></div>`;
 };
 
-/** A slider that says its value beside its label; logarithmic on request. */
+/** A slider that says its value beside its label; logarithmic on request.
+ * @param {FieldProps<number> & { min: number, max: number, step?: number, log?: boolean }} props */
 export const Slider = ({ label, unit = "", value, on, min, max, step, log = false, help, hidden }) => {
   const id = useId("slider");
   const [now, put] = bound(value, on);
-  const scale = log ? logarithmic(min, max) : { low: min, high: max, step: step ?? "any", from: (given) => given, to: tidy };
+  const scale = log ? logarithmic(min, max) : { low: min, high: max, step: step ?? "any", from: (/** @type {number} */ given) => given, to: tidy };
   const words = quantity(now, unit);
   const beside = html`<output for=${id} class="slider-value">${words}</output>`;
   return html`<${Frame} id=${id} label=${label} beside=${beside} help=${help} kind="field-slider" hidden=${hidden}>
@@ -139,9 +158,11 @@ export const Slider = ({ label, unit = "", value, on, min, max, step, log = fals
       aria-valuetext=${words} onInput=${({ target }) => put(scale.to(Number(target.value)))} /><//>`;
 };
 
+/** @type {{ [word: string]: string | undefined }} */
 const YES = { true: "yes", false: "no" };
 
-/** A field of a key, with the unit, the words and the choices of its description. */
+/** A field of a key, with the unit, the words and the choices of its description.
+ * @param {FieldProps<string> & { name: string, facts: Server.KeyFacts }} props */
 export const KeyField = ({ name, facts, ...more }) => {
   const label = name.replaceAll("_", " ");
   if (!facts.choices.length) {
@@ -153,58 +174,67 @@ export const KeyField = ({ name, facts, ...more }) => {
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 
-/** Words as a sentence. */
+/** Words as a sentence. @param {string} words */
 export const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
 
-/** The first field of a form that someone sees and that is wrong. */
-export const wrongIn = (form) => [...form.querySelectorAll("[aria-invalid=true]")].find((box) => box.offsetParent !== null);
+/** The first field of a form that someone sees and that is wrong. @param {Element} form */
+export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true]")]).find((box) => box.offsetParent !== null);
 
-/** Put the keyboard on the first field that is wrong, once it is drawn so. */
+/** Put the keyboard on the first field that is wrong, once it is drawn so. @param {Element} form */
 export const toWrong = (form) => setTimeout(() => wrongIn(form)?.focus());
 
 /** A button; kind is "primary", "quiet", "danger", "icon" or nothing. */
 export const Button = ({ kind = "", ...more }) => html`<button type="button" class=${`button ${kind}`} ...${more} />`;
 
-/** A titled part of a view. */
+/** A titled part of a view. @param {{ title: string, kind?: string, children?: any, [more: string]: any }} props */
 export const Card = ({ title, kind = "", children, ...more }) => {
   const id = useId("card");
   return html`<section class=${`card ${kind}`} aria-labelledby=${id} ...${more}><h2 id=${id}>${title}</h2>${children}</section>`;
 };
 
+/** @type {{ [kind: string]: string }} */
 const SIGNS = { info: "i", warning: "!", error: "\u2715", good: "\u2713" };
 
-/** A sentence with a sign: kind is "info", "warning", "error" or "good". */
+/** A sentence with a sign: kind is "info", "warning", "error" or "good".
+ * @param {{ words: string, kind?: string, [more: string]: any }} props */
 export const Note = ({ words, kind = "info", ...more }) => html`
   <p class=${`note ${kind}`} ...${more}><span class="sign" aria-hidden="true">${SIGNS[kind]}</span><span>${words}</span></p>`;
 
+/** @param {string} text @param {number | null} now */
 const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(text) === now : now === null);
+/** @param {string} text @param {unknown} now */
 const saysText = (text, now) => text.trim() === now;
 
+/** @param {string} text @param {Limits & { unit: string }} limits @returns {{ given?: number | null, fault?: string }} */
 const checked = (text, { min, above, max, whole, optional, unit }) => {
   if (!text.trim()) return optional ? { given: null } : { fault: "A number is needed here." };
   const given = parseNumber(text);
   if (given === null) return { fault: "This is not a number." };
-  const wrong = [
+  const wrong = /** @type {[boolean, string, number | undefined][]} */ ([
     [above !== undefined && given <= above, "More than", above],
     [min !== undefined && min !== null && given < min, "At least", min],
     [max !== undefined && max !== null && given > max, "At most", max],
-  ].find(([fails]) => fails);
+  ]).find(([fails]) => fails);
   if (wrong) return { fault: `${wrong[1]} ${quantity(wrong[2], unit)}.` };
   return whole && !Number.isInteger(given) ? { fault: "A whole number is needed." } : { given };
 };
 
 // "1,000" is one to us and a thousand to others: say how it was read.
+/** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
   && `Read as ${number(parseNumber(text))}: the comma is the decimal sign. For thousands leave it out.`;
 
+/** @param {string} text @param {number} turns @param {{ min?: number, max?: number, step?: number }} limits */
 const stepped = (text, turns, { min, max, step }) => {
   const value = parseNumber(text) ?? min ?? 0;
   const by = step ?? 10 ** Math.floor(Math.log10(Math.abs(value) || 1) - 1);
   return tidy(Math.min(max ?? Infinity, Math.max(min ?? -Infinity, value + turns * by)));
 };
 
+/** @param {number} min @param {number} max @returns {Scale} */
 const logarithmic = (min, max) => ({
   low: 0, high: 1000, step: 1,
+  /** @param {number} value */
   from: (value) => (1000 * Math.log(value / min)) / Math.log(max / min),
   to: (place) => tidy(min * (max / min) ** (place / 1000), 4),
 });

@@ -3,14 +3,15 @@
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { fill } from "/app/dom.js";
 
-/** A node that was made elsewhere. */
+/** A node that was made elsewhere. @param {{ node: Child, [more: string]: any }} props */
 export const Made = ({ node, ...more }) => {
   const place = useRef(null);
   useLayoutEffect(() => void fill(place.current, node), [node]);
   return html`<div ref=${place} ...${more}></div>`;
 };
 
-/** A picture in the width that it has, drawn by `draw(...of, width)`. */
+/** A picture in the width that it has, drawn by `draw(...of, width)`.
+ * @param {{ draw: (...given: any[]) => Child, of: any[] }} props */
 export const Drawn = ({ draw, of }) => {
   const place = useRef(null);
   const width = useSignal(0);

@@ -11,4 +11,4 @@ export const html = htm.bind(h);
 export { batch, computed, createContext, render, signal, useContext, useEffect, useLayoutEffect, useMemo, useRef, useState };
 
 /** A signal that lives as long as its component. */
-export const useSignal = (first) => useRef(signal(first)).current;
+export const useSignal = /** @type {typeof signal} */ ((/** @type {any} */ first) => useRef(signal(first)).current);

@@ -9,7 +9,8 @@ import { Button } from "/parts/fields.js";
 const LONG = 20;
 
 /** A table of columns (text or {label, unit, digits}) and rows of numbers, texts or templates; `copied` are the rows as
- * text and numbers where they are others. */
+ * text and numbers where they are others.
+ * @param {{ columns: (string | Column)[], rows: any[][], caption?: string, csv?: () => unknown, testid?: string, copied?: () => unknown[][], actions?: any }} props */
 export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows, actions }) => {
   const id = useRef(freshId("table")).current;
   const heads = columns.map((each) => (typeof each === "string" ? { label: each } : each));
@@ -28,6 +29,7 @@ export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows
     </div>`;
 };
 
+/** @param {Column & { value: any, first: boolean }} props */
 const Cell = ({ value, digits, numeric, nowrap, first }) => {
   const isNumber = typeof value === "number";
   const shown = isNumber ? number(value, digits) : value;
@@ -36,7 +38,8 @@ const Cell = ({ value, digits, numeric, nowrap, first }) => {
   return first ? html`<th scope="row" class=${kind} title=${title}>${shown}</th>` : html`<td class=${kind} title=${title}>${shown}</td>`;
 };
 
-/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words. */
+/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words.
+ * @param {{ caption: string, head: string[], rows: (string | [string, string | null])[][] }} props */
 export const Rows = ({ caption, head, rows }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
     <table><caption class="visually-hidden">${caption}</caption>

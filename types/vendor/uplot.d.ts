@@ -1,0 +1,22 @@
+// What the page uses of uPlot; drawing reads `_splits` and `_values` of its axes too.
+declare class uPlot {
+  constructor(options: any, data: any, place: HTMLElement);
+  width: number;
+  height: number;
+  bbox: { left: number; top: number; width: number; height: number };
+  ctx: CanvasRenderingContext2D;
+  over: HTMLElement;
+  cursor: { idx?: number | null; left?: number; top?: number };
+  scales: { [key: string]: { min: number; max: number } };
+  axes: { label: string; _splits?: number[]; _values?: string[] }[];
+  setData(data: any, resetScales?: boolean): void;
+  setScale(scale: string, limits: { min: number; max: number }): void;
+  setSize(size: { width: number; height: number }): void;
+  setCursor(place: { left: number; top: number }, fire?: boolean, publish?: boolean): void;
+  valToPos(value: number, scale: string, onCanvas?: boolean): number;
+  posToVal(place: number, scale: string): number;
+  batch(change: () => void): void;
+  redraw(paths?: boolean, axes?: boolean): void;
+  destroy(): void;
+}
+export default uPlot;
