@@ -6,12 +6,14 @@ import { Table } from "/parts/table.js";
 
 const MOST = 60;
 
-/** A "show as table" part under a chart; refresh() after new data. */
+/** A "show as table" part under a chart; refresh() after new data.
+ * @param {ChartOptions} options @param {() => Columns} dataOf */
 export const chartTable = ({ title, x, y, series }, dataOf) => {
   const place = el("div", {});
   const of = el("span", { class: "visually-hidden" }, ` of ${title}`);
   const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table", of), place);
   const columns = [x, ...series.map((each) => ({ label: each.label, unit: y.unit }))];
+  /** @param {number} every */
   const rowsOf = (every) => {
     const data = dataOf();
     return data[0].map((_, index) => index).filter((index) => index % every === 0)

@@ -3,15 +3,20 @@
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { lineChart } from "/charts/line.js";
 
-/** One time of several charts: a pointer on one is told to `onInstant` and shown on all, `onZoom` when one is looked into. */
+/** One time of several charts: a pointer on one is told to `onInstant` and shown on all, `onZoom` when one is looked into.
+ * @param {(instant: number) => unknown} [onInstant] @param {ChartOptions["onZoom"]} [onZoom] */
 export const createTime = (onInstant, onZoom) => {
+  /** @type {Set<Chart>} */
   const charts = new Set();
+  /** @type {Chart | null} */
   let leading = null; // the chart under the pointer
+  /** @param {number} instant */
   const point = (instant) => charts.forEach((each) => each !== leading && each.point(instant));
   return {
-    /** Shows an instant that is played or sought elsewhere. */
+    /** Shows an instant that is played or sought elsewhere. @param {number} instant */
     show: (instant) => leading || point(instant),
     onZoom,
+    /** @param {Chart} chart */
     add: (chart) => {
       charts.add(chart);
       chart.setCursorHook((_, instant) => {
@@ -26,11 +31,14 @@ export const createTime = (onInstant, onZoom) => {
 };
 
 const UNMARKED = {};
+/** @type {Time} */
 const ALONE = { add: () => () => {} };
 
-/** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `part` is in sight. */
+/** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `part` is in sight.
+ * @param {{ shape: ChartOptions, data: Columns, part?: Point | null, marks?: Marks, time?: Time, testid?: string }} props */
 export const Figure = ({ shape, data, part, marks = UNMARKED, time = ALONE, testid }) => {
   const place = useRef(null);
+  /** @type {{ current: Chart }} */
   const chart = useRef(null);
   const look = JSON.stringify(shape);
   useLayoutEffect(() => {

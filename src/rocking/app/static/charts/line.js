@@ -10,7 +10,8 @@ import { highest, lowest } from "/app/extremes.js";
 import { number, pretty, quantity } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
 
-/** Draw curves over one abscissa; see the returned object for what it can do. */
+/** Draw curves over one abscissa; see the returned object for what it can do.
+ * @param {HTMLElement} container @param {ChartOptions} options */
 export const lineChart = (container, options) => {
   const { title, x, y, height = 220, bands } = options;
   const id = freshId("chart");
@@ -18,9 +19,13 @@ export const lineChart = (container, options) => {
   const figure = el("figure", { class: "chart" },
     el("figcaption", { id }, title), legendOf(options.series), stage);
   container.append(figure);
+  /** @type {Columns} */
   let data = [[], ...options.series.map(() => [])];
+  /** @type {Marks} */
   let marks = {};
+  /** @type {((index: number, instant: number) => unknown) | null} */
   let hook = null;
+  /** @type {Point | null} */
   let zoomed = null;
   const table = chartTable(options, () => data);
   const vector = () => vectorOf(plot, options, data, marks);
@@ -29,14 +34,17 @@ export const lineChart = (container, options) => {
 
   const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
   stage.after(shown);
+  /** @param {uPlot} self */
   const readout = (self) => {
     const at = self.cursor.idx;
     const values = at === null || at === undefined ? [] : data.map((column) => column[at]);
     fill(shown, values.length ? words(options, values) : "\u00a0");
   };
 
+  /** @param {uPlot} self */
   const look = ({ scales: { x: { min, max } } }) => {
-    const now = min > data[0][0] || max < data[0].at(-1) ? [min, max] : null;
+    const [first, last] = [Number(data[0][0]), Number(data[0].at(-1))];
+    const now = /** @type {Point | null} */ (min > first || max < last ? [min, max] : null);
     if (String(now) !== String(zoomed)) options.onZoom?.((zoomed = now));
   };
 
@@ -48,14 +56,14 @@ export const lineChart = (container, options) => {
     axes: axes(x, y),
     series: [{ label: axisWords(x) }, ...options.series.map(seriesOf)],
     hooks: {
-      setCursor: [(self) => {
+      setCursor: [(/** @type {uPlot} */ self) => {
         readout(self);
         if (
           self.cursor.idx !== null && self.cursor.idx !== undefined
-        ) hook?.(self.cursor.idx, data[0][self.cursor.idx]);
+        ) hook?.(self.cursor.idx, Number(data[0][self.cursor.idx]));
       }],
-      setScale: [(self, key) => key === "x" && data[0].length && look(self)],
-      draw: [(self) => drawMarks(self, marks)],
+      setScale: [(/** @type {uPlot} */ self, /** @type {string} */ key) => key === "x" && data[0].length && look(self)],
+      draw: [(/** @type {uPlot} */ self) => drawMarks(self, marks)],
     },
   }, data, stage);
 
@@ -68,7 +76,8 @@ export const lineChart = (container, options) => {
   return {
     plot,
     element: figure,
-    /** Takes columns; with a part of the abscissa [from, to] the chart goes on looking into that. */
+    /** Takes columns; with a part of the abscissa [from, to] the chart goes on looking into that.
+     * @param {Columns} next @param {Point | null} [part] */
     setData: (next, part = null) => {
       data = next;
       zoomed = part;
@@ -80,12 +89,14 @@ export const lineChart = (container, options) => {
       stage.setAttribute("aria-label", summary(options, next));
       table.refresh();
     },
+    /** @param {(index: number, instant: number) => unknown} fn */
     setCursorHook: (fn) => (hook = fn),
+    /** @param {Marks} next */
     setMarks: (next) => {
       marks = next;
       plot.redraw(false, true);
     },
-    /** Puts the cursor at an instant that is shown elsewhere; nobody else is told. */
+    /** Puts the cursor at an instant that is shown elsewhere; nobody else is told. @param {number} instant */
     point: (instant) => {
       const left = plot.valToPos(instant, "x");
       plot.setCursor({ left: left * devicePixelRatio <= plot.bbox.width ? left : -10, top: -10 }, false, false);
@@ -102,25 +113,32 @@ export const lineChart = (container, options) => {
   };
 };
 
+/** @param {ChartOptions} options @param {Columns} data */
 const csvOf = ({ x, series, y }, data) => {
   const head = [axisWords(x), ...series.map(({ label }) => axisWords({ label, unit: y.unit }))];
+  /** @param {string} words */
   const quoted = (words) => `"${String(words).replaceAll('"', '""')}"`;
   const rows = data[0].map((_, k) => data.map((column) => column[k] ?? "").join(","));
   return [head.map(quoted).join(","), ...rows, ""].join("\n");
 };
 
 // A logarithmic axis ends with the data and not at the next power of ten.
+/** @type {{ distr: number, range: (plot: unknown, low: number, high: number) => Point }} */
 const WHOLE = { distr: 3, range: (_, low, high) => (low > 0 && high > low ? [low, high] : [0.1, 10]) };
 
+/** @param {HTMLElement} stage */
 const widthOf = (stage) => Math.max(200, Math.floor(stage.clientWidth));
 
+/** @param {{ label: string, unit?: string }} axis */
 const axisWords = ({ label, unit }) => (unit && unit !== "-" ? `${label} [${pretty(unit)}]` : label);
 
+/** @param {ChartAxis} y */
 const scaleOf = (y) => {
   if (y.log) return { distr: 3 };
   return y.range ? { range: y.range } : {};
 };
 
+/** @param {ChartSeries} series */
 const seriesOf = ({ label, colour: paint, dash, width = 1.6, points = false }) => ({
   label,
   stroke: () => colour(paint),
@@ -130,19 +148,23 @@ const seriesOf = ({ label, colour: paint, dash, width = 1.6, points = false }) =
   points: { show: points, size: 5 },
 });
 
+/** @param {ChartSeries[]} series */
 const legendOf = (series) => {
   if (series.length < 2) return null;
   return el("ul", { class: "legend" }, series.map((each) => el("li", {}, legendKey(each), each.label)));
 };
 
+/** @param {ChartSeries} series */
 const legendKey = ({ colour: paint, dash, points, width }) =>
   dashKey({ colour: paint, dash, dots: Boolean(points) && width === 0 });
 
+/** @param {ChartOptions} options @param {(number | null)[]} values */
 const words = ({ x, y, series }, [at, ...values]) =>
   [`${x.label} ${quantity(at, x.unit)}`]
     .concat(values.map((value, index) => `${series[index].label} ${quantity(value, y.unit)}`))
     .join(" \u00b7 ");
 
+/** @param {ChartOptions} options @param {Columns} data */
 const summary = ({ title, x, y, series }, [xs, ...columns]) => {
   if (!xs.length) return `${title}: no data yet`;
   const ranges = columns.map((column, index) => {
@@ -153,11 +175,13 @@ const summary = ({ title, x, y, series }, [xs, ...columns]) => {
   return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
 };
 
+/** @param {uPlot} self @param {Marks} marks */
 const drawMarks = (self, { vertical = [], horizontal = [], ticks = [] }) => {
   const { ctx } = self;
   const { left, top, width, height } = self.bbox;
   ctx.save();
   ctx.lineWidth = devicePixelRatio;
+  /** @param {string} paint @param {number[]} dash @param {...number} ends */
   const line = (paint, dash, ...ends) => {
     ctx.strokeStyle = colour(paint);
     ctx.setLineDash(dash.map((each) => each * devicePixelRatio));
@@ -166,6 +190,7 @@ const drawMarks = (self, { vertical = [], horizontal = [], ticks = [] }) => {
     ctx.lineTo(ends[2], ends[3]);
     ctx.stroke();
   };
+  /** @param {number} place @param {number} from @param {number} span */
   const inside = (place, from, span) => place >= from && place <= from + span;
   for (const value of vertical) {
     const at = self.valToPos(value, "x", true);

@@ -9,10 +9,11 @@ const LOOK = [
   "opacity", "paint-order", "font-family", "font-size", "font-weight", "text-anchor", "color",
 ];
 
-/** A copy of a drawn picture under its title, in the colours of the page as it is now. */
+/** A copy of a drawn picture under its title, in the colours of the page as it is now.
+ * @param {SVGSVGElement} picture @param {string} title */
 export const stillOf = (picture, title) => {
   const { width, height } = picture.viewBox.baseVal;
-  const inside = picture.cloneNode(true);
+  const inside = /** @type {SVGSVGElement} */ (picture.cloneNode(true));
   dress(picture, inside);
   inside.removeAttribute("aria-label");
   set(inside, { x: MARGIN, y: HEAD, width, height });
@@ -26,6 +27,7 @@ export const stillOf = (picture, title) => {
     inside);
 };
 
+/** @param {Element} from @param {Element} to */
 const dress = (from, to) => {
   const style = getComputedStyle(from);
   for (const name of LOOK) {

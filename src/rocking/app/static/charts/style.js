@@ -5,7 +5,7 @@ import { words } from "/app/words.js";
 
 const resolved = new Map();
 
-/** A colour as a canvas takes it; "--name" is a variable of the page. */
+/** A colour as a canvas takes it; "--name" is a variable of the page. @param {string} [paint] @returns {string} */
 export const colour = (paint) => {
   if (!paint?.startsWith("--") && !paint?.startsWith("var(")) return paint ?? colour("--ink");
   const name = paint.replace(/^var\(|\)$/g, "");
@@ -21,18 +21,19 @@ document.addEventListener("rocking:theme", () => {
   listeners.forEach((each) => each());
 });
 
-/** Run a function whenever the page turns light or dark; returns how to stop. */
+/** Run a function whenever the page turns light or dark; returns how to stop. @param {() => unknown} listener */
 export const onTheme = (listener) => {
   listeners.add(listener);
   return () => listeners.delete(listener);
 };
 
-/** The two axes of a chart. */
+/** The two axes of a chart. @param {ChartAxis} x @param {ChartAxis} y */
 export const axes = (x, y) => [
   { ...look(x), size: 44, space: 60 },
   { ...look(y), size: 62, space: 34 },
 ];
 
+/** @param {ChartAxis} axis */
 const look = ({ label, unit, log }) => ({
   label: unit && unit !== "-" ? `${words(label)} [${pretty(unit)}]` : words(label),
   labelSize: 18,
@@ -41,5 +42,6 @@ const look = ({ label, unit, log }) => ({
   stroke: () => colour("--ink-soft"),
   grid: { stroke: () => colour("--grid"), width: 1 },
   ticks: { stroke: () => colour("--grid"), width: 1, size: 4 },
+  /** @param {unknown} _ @param {(number | null)[]} ticks */
   values: (_, ticks) => ticks.map((each) => (each === null ? "" : number(each, log ? 1 : 6))),
 });

@@ -4,13 +4,16 @@ import { freshId, svg } from "/app/dom.js";
 import { words as inLanguage } from "/app/words.js";
 import { colour } from "/charts/style.js";
 
+/** @typedef {import("/vendor/uplot/uPlot.esm.js").default} uPlot @typedef {ReturnType<typeof frameOf>} Frame */
+
 /** Height of a row of ticks on the axis [px]. */
 export const TICK = 6;
 
 const [TITLE, ROW, MARGIN, LETTER] = [28, 18, 12, 6.4];
 const FONT = { "font-family": "system-ui, sans-serif", "font-size": 12 };
 
-/** The chart as an element, in the colours of the page as it is now. */
+/** The chart as an element, in the colours of the page as it is now.
+ * @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
 export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
   const legend = series.length > 1 ? legendOf(series, plot.width) : { rows: 0, node: null };
   const head = TITLE + legend.rows * ROW;
@@ -34,19 +37,25 @@ export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
     svg("g", { transform: `translate(0 ${head})` }, axesOf(plot, frame), inside));
 };
 
+/** @param {uPlot} plot */
 const frameOf = (plot) => {
   const ratio = plot.ctx.canvas.width / plot.width;
-  const box = Object.fromEntries(Object.entries(plot.bbox).map(([side, value]) => [side, value / ratio]));
-  const along = (scale) => (value) => plot.valToPos(value, scale, true) / ratio;
+  const box = /** @type {uPlot["bbox"]} */ (Object.fromEntries(Object.entries(plot.bbox).map(([side, value]) => [side, value / ratio])));
+  /** @param {string} scale */
+  const along = (scale) => (/** @type {number} */ value) => plot.valToPos(value, scale, true) / ratio;
   return { box, x: along("x"), y: along("y") };
 };
 
+/** @param {number} x @param {number} y @param {string} words @param {Attributes} [more] */
 const text = (x, y, words, more) => svg("text", { x, y, fill: colour("--ink-soft"), ...more }, words);
 
+/** @param {uPlot} plot @param {Frame} frame */
 const axesOf = (plot, { box, x, y }) => {
   const [across, up] = plot.axes;
   const [right, bottom] = [box.left + box.width, box.top + box.height];
+  /** @param {uPlot["axes"][number]} axis @returns {[number, string][]} */
   const ticks = (axis) => (axis._splits ?? []).map((at, k) => [at, axis._values?.[k] ?? ""]);
+  /** @param {Attributes} ends */
   const line = (ends) => svg("line", { ...ends, stroke: colour("--grid") });
   const middle = box.top + box.height / 2;
   return [
@@ -61,41 +70,48 @@ const axesOf = (plot, { box, x, y }) => {
   ];
 };
 
+/** @param {Frame} frame @param {number | null} x @param {number | null} y */
 const markOf = ({ box }, x, y) => svg("line", {
   x1: x ?? box.left, x2: x ?? box.left + box.width, y1: y ?? box.top, y2: y ?? box.top + box.height,
   stroke: colour(x === null ? "--mark-strong" : "--mark"), "stroke-dasharray": x === null ? "6 4" : "2 3",
 });
 
+/** @param {Frame} frame @param {Ticks} ticks @param {number} row */
 const ticksOf = ({ box, x }, { colour: paint, at }, row) => at.map((value) => {
   const foot = box.top + box.height - row * TICK;
   return svg("line", { x1: x(value), x2: x(value), y1: foot, y2: foot - TICK + 1, stroke: colour(paint), "stroke-width": 1.5 });
 });
 
+/** @param {unknown} value */
 const known = (value) => value !== null && value !== undefined;
 
-/** Runs of neighbouring samples that all have values. */
+/** Runs of neighbouring samples that all have values. @param {(number | null)[]} xs @param {...(number | null)[]} columns */
 const runsOf = (xs, ...columns) => {
+  /** @type {number[][]} */
   const runs = [[]];
   xs.forEach((_, k) => {
-    if (columns.every((column) => known(column[k]))) runs.at(-1).push(k);
-    else if (runs.at(-1).length) runs.push([]);
+    if (columns.every((column) => known(column[k]))) runs[runs.length - 1].push(k);
+    else if (runs[runs.length - 1].length) runs.push([]);
   });
   return runs.filter((run) => run.length);
 };
 
-const placed = ({ x, y }, xs, ys, run) => run.map((k) => `${x(xs[k]).toFixed(2)} ${y(ys[k]).toFixed(2)}`);
+/** @param {Frame} frame @param {(number | null)[]} xs @param {(number | null)[]} ys @param {number[]} run */
+const placed = ({ x, y }, xs, ys, run) => run.map((k) => `${x(Number(xs[k])).toFixed(2)} ${y(Number(ys[k])).toFixed(2)}`);
 
+/** @param {Frame} frame @param {ChartSeries} series @param {(number | null)[]} xs @param {(number | null)[]} ys */
 const curveOf = (frame, { colour: paint, dash, width = 1.6, points = false }, xs, ys) => {
   const stroke = colour(paint);
   const runs = runsOf(xs, ys);
   const dots = points ? runs.flat().map((k) =>
-    svg("circle", { cx: frame.x(xs[k]), cy: frame.y(ys[k]), r: 2.5, fill: stroke })) : [];
+    svg("circle", { cx: frame.x(Number(xs[k])), cy: frame.y(Number(ys[k])), r: 2.5, fill: stroke })) : [];
   if (width === 0 || !runs.length) return dots;
   const d = runs.map((run) => `M${placed(frame, xs, ys, run).join("L")}`).join("");
   const look = { stroke, "stroke-width": width, "stroke-linejoin": "round" };
   return [svg("path", { d, ...look, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), ...dots];
 };
 
+/** @param {Frame} frame @param {Band} band @param {Columns} data */
 const bandOf = (frame, { series: [high, low], fill }, data) => {
   const xs = data[0];
   const d = runsOf(xs, data[high] ?? [], data[low] ?? []).map((run) =>
@@ -104,7 +120,7 @@ const bandOf = (frame, { series: [high, low], fill }, data) => {
   return d ? svg("path", { d, fill }) : null;
 };
 
-/** Keys and words of several curves in rows: {rows, node}. */
+/** Keys and words of several curves in rows: {rows, node}. @param {ChartSeries[]} series @param {number} width */
 export const legendOf = (series, width) => {
   let [x, row] = [MARGIN, 1];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {

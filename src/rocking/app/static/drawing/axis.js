@@ -4,14 +4,17 @@ import { svg } from "/app/dom.js";
 import { number, tidy } from "/app/format.js";
 import { multiples, roundStep } from "/drawing/viewport.js";
 
-/** A map from values to pixels with ticks: {at, ticks, low, high}. */
+/** A map from values to pixels with ticks: {at, ticks, low, high}.
+ * @param {number} low @param {number} high @param {number} from @param {number} to @param {number} [count] */
 export const axisOf = (low, high, from, to, count = 5) => {
   const step = roundStep(high - low, count);
+  /** @param {number} value */
   const at = (value) => Math.round((from + ((value - low) / (high - low)) * (to - from)) * 100) / 100;
   return { at, low, high, ticks: multiples(low, high, step).map((each) => tidy(each)) };
 };
 
-/** Grid lines and numbers under a picture. */
+/** Grid lines and numbers under a picture.
+ * @param {Axis} axis @param {{ top: number, bottom: number, label: string, unit?: string }} where */
 export const bottomAxis = (axis, { top, bottom, label, unit = "" }) =>
   svg("g", { "aria-hidden": "true" },
     axis.ticks.map((value) => [
@@ -27,7 +30,8 @@ export const bottomAxis = (axis, { top, bottom, label, unit = "" }) =>
       label,
     ));
 
-/** Grid lines and numbers left of a picture. */
+/** Grid lines and numbers left of a picture.
+ * @param {Axis} axis @param {{ left: number, right: number, label: string }} where */
 export const leftAxis = (axis, { left, right, label }) => {
   const middle = axis.at((axis.low + axis.high) / 2);
   return svg("g", { "aria-hidden": "true" },

@@ -7,7 +7,8 @@ import { pointsOf, regionPaths } from "/drawing/outline.js";
 import { arc, centreMark, footMark, groundLine, words } from "/drawing/symbols.js";
 import { boxOf, roundStep, viewport } from "/drawing/viewport.js";
 
-/** Draw a body from its facts; `plain` leaves out the words. */
+/** Draw a body from its facts; `plain` leaves out the words.
+ * @param {Drawn} body @param {{ width?: number, height?: number, plain?: boolean }} [how] */
 export const bodyPicture = (body, { width = 208, height = 360, plain = false } = {}) => {
   const view = viewport(boxOf(everything(body)), {
     width, height, margin: plain ? { bottom: 20 } : { left: 20, right: 20, top: 22, bottom: 56 },
@@ -26,25 +27,29 @@ export const bodyPicture = (body, { width = 208, height = 360, plain = false } =
     plain ? null : scaleBar(view, width, height));
 };
 
-/** The height on which the feet stand [m]. */
+/** The height on which the feet stand [m]. @param {Drawn} body */
 export const groundOf = (body) => body.ground ?? 0;
 
+/** @param {Drawn} body */
 const everything = (body) => [
   ...pointsOf(body.outline), ...(body.points ?? []), body.centre_m, ...body.feet_m.map(
     (foot) => [foot, groundOf(body)]
   ),
 ];
 
-/** Whether both feet see the same body, rounding aside. */
+/** Whether both feet see the same body, rounding aside. @param {Server.Sides} sides */
 export const sameSides = ({ left, right }) =>
-  Object.keys(left).every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(right[key]));
+  /** @type {(keyof Server.SideFacts)[]} */ (Object.keys(left)).every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(right[key]));
 
 // Equal sides are drawn once, over the right foot.
+/** @param {Drawn} body @returns {[Server.SideFacts, number, number][]} */
 const sidesOf = ({ sides, feet_m: feet }) => {
+  /** @type {[Server.SideFacts, number, number]} */
   const right = [sides.right, feet[1], -1];
   return sameSides(sides) ? [right] : [[sides.left, feet[0], 1], right];
 };
 
+/** @param {Drawn} body @param {Server.SideFacts} side @param {number} foot @param {number} sign @param {Viewport} view */
 const sideDrawing = (body, side, foot, sign, view) => {
   const [x, y] = [view.x(foot), view.y(groundOf(body))];
   const centre = [view.x(body.centre_m[0]), view.y(body.centre_m[1])];
@@ -60,6 +65,7 @@ const sideDrawing = (body, side, foot, sign, view) => {
     words(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal_m, "m")}`, outside));
 };
 
+/** @param {number[][]} points @param {Viewport} view */
 const massDots = (points, view) => {
   const heaviest = highest(points.map((each) => each[2]));
   return points.map(([x, y, mass]) =>
@@ -69,8 +75,10 @@ const massDots = (points, view) => {
     ));
 };
 
+/** @param {number} angle */
 const degrees = (angle) => quantity((angle * 180) / Math.PI, "\u00b0");
 
+/** @param {Viewport} view @param {number} width @param {number} height */
 const scaleBar = (view, width, height) => {
   const length = roundStep(width / view.scale, 5) / 2;
   const span = length * view.scale;
@@ -80,6 +88,7 @@ const scaleBar = (view, width, height) => {
     svg("text", { class: "soft", x: x - 6, y: y + 1, "text-anchor": "end" }, quantity(length, "m", 3)));
 };
 
+/** @param {Drawn} body */
 const inWords = (body) => {
   const { left, right } = body.sides;
   const [x, y] = body.centre_m;

@@ -6,7 +6,7 @@ import { STAGE_WORDS } from "/drawing/stages-picture.js";
 
 const ROW = 52;
 
-/** Draw shares {stage: share} as bars. */
+/** Draw shares {stage: share} as bars. @param {{ [stage: string]: number }} shares @param {{ width: number }} size */
 export const ledgerPicture = (shares, { width }) => {
   const stages = Object.entries(shares);
   const height = stages.length * ROW + 4;
@@ -21,6 +21,7 @@ export const ledgerPicture = (shares, { width }) => {
     ));
 };
 
+/** @param {string} name @param {number} share @param {number} before @param {{ full: number, y: number }} where */
 const oneBar = (name, share, before, { full, y }) => {
   const [title, words] = STAGE_WORDS[name] ?? [name, ""];
   const lost = before - share;

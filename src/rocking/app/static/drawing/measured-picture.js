@@ -7,7 +7,8 @@ import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis, leftAxis } from "/drawing/axis.js";
 import { marker } from "/drawing/markers.js";
 
-/** Draw {measured: [{slenderness_ratio, coefficient, low, high, group}], curves, rows, slenderness}. */
+/** Draw {measured: [{slenderness_ratio, coefficient, low, high, group}], curves, rows, slenderness}.
+ * @param {{ measured: Server.MeasuredPoint[], curves: Server.ModelCurve[], rows: { model: string, value: number }[], slenderness: number }} facts @param {{ width: number, height?: number }} size */
 export const measuredPicture = ({ measured, curves, rows, slenderness }, { width, height = 380 }) => {
   const all = [...measured.map((each) => each.slenderness_ratio), slenderness];
   const values = [...measured.map((each) => each.coefficient), ...rows.map((each) => each.value)];
@@ -32,6 +33,7 @@ export const measuredPicture = ({ measured, curves, rows, slenderness }, { width
         svg("title", {}, `${modelWords(model)}: ${number(value)}`))));
 };
 
+/** @param {Server.ModelCurve} curve @param {Axis} x @param {Axis} y */
 const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
   const { colour, dash } = modelStyle(model);
   const places = ratios.map((each, index) => [each, coefficient[index]])
@@ -39,10 +41,11 @@ const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
     .map(([ratio, value]) => `${x.at(ratio)} ${y.at(value)}`);
   return places.length < 2 ? null : svg("path", {
     d: `M${places.join("L")}`, fill: "none", stroke: colour, "stroke-width": 1.75,
-    "stroke-dasharray": dash.join(" "),
+    "stroke-dasharray": dash?.join(" "),
   });
 };
 
+/** @param {Server.MeasuredPoint} each @param {Axis} x @param {Axis} y */
 const point = (each, x, y) => {
   const { marker: shape, words } = GROUPS[each.group] ?? { marker: "circle", words: each.group };
   const [px, py] = [x.at(each.slenderness_ratio), y.at(each.coefficient)];

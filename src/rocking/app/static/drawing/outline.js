@@ -3,13 +3,14 @@
 import { svg } from "/app/dom.js";
 import { highest } from "/app/extremes.js";
 
-/** The path text of rings of points. */
+/** The path text of rings of points. @param {Ring[]} rings @param {Viewport} view */
 export const pathOf = (rings, view) =>
   rings.map(
     (ring) => `M${ring.map(([x, y]) => `${round(view.x(x))} ${round(view.y(y))}`).join("L")}Z`
   ).join("");
 
-/** One path for each region; a lighter region is drawn fainter. */
+/** One path for each region; a lighter region is drawn fainter.
+ * @param {Region[]} regions @param {Viewport} view @param {Attributes} [attributes] */
 export const regionPaths = (regions, view, attributes = {}) => {
   const densest = highest(regions.map((each) => each.density ?? 1));
   return regions.map(({ outline, holes = [], density }) =>
@@ -19,7 +20,8 @@ export const regionPaths = (regions, view, attributes = {}) => {
     }));
 };
 
-/** Every point of every outline. */
+/** Every point of every outline. @param {Region[]} regions */
 export const pointsOf = (regions) => regions.flatMap((each) => each.outline);
 
+/** @param {number} value */
 const round = (value) => Math.round(value * 100) / 100;

@@ -5,9 +5,15 @@ import { number } from "/app/format.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis } from "/drawing/axis.js";
 
+/** @typedef {{ model: string, value: number, low?: number, high?: number }} Row
+ * @typedef {{ top: number, bottom: number, left: number, width: number, rowsEnd: number }} Frame
+ * @typedef {{ width: number, domain: Point, label: string, testid?: string, title: string, extras?: (axis: Axis, frame: Frame) => Child,
+ *   extraHeight?: number, digits?: number }} RowOptions */
+
 const ROW = 34;
 
-/** Rows {model, value, low?, high?} on one axis {low, high, label}; `extras(axis, frame)` draws beneath. */
+/** Rows {model, value, low?, high?} on one axis {low, high, label}; `extras(axis, frame)` draws beneath.
+ * @param {Row[]} rows @param {RowOptions} options */
 export const rowPicture = (
   rows, { width, domain, label, testid, title, extras, extraHeight = 0, digits = 4 },
 ) => {
@@ -31,8 +37,10 @@ export const rowPicture = (
     ));
 };
 
+/** @param {Row} row @param {Axis} axis @param {{ narrow: boolean, width: number, left: number, y: number, digits: number }} where */
 const oneRow = ({ model, value, low, high }, axis, { narrow, width, left, y, digits }) => {
   const { colour, dash } = modelStyle(model);
+  /** @param {number} each */
   const inside = (each) => axis.at(Math.min(axis.high, Math.max(axis.low, each)));
   return svg("g", {},
     svg(
@@ -44,14 +52,15 @@ const oneRow = ({ model, value, low, high }, axis, { narrow, width, left, y, dig
       number(value, digits),
     ),
     low === undefined ? null : svg("path", {
-      d: `M${inside(low)} ${y}H${inside(high)}`, stroke: colour, "stroke-width": 3,
-      "stroke-dasharray": dash.join(" "), fill: "none",
+      d: `M${inside(low)} ${y}H${inside(Number(high))}`, stroke: colour, "stroke-width": 3,
+      "stroke-dasharray": dash?.join(" "), fill: "none",
     }),
     low === undefined ? null : svg("path", {
-      d: `M${inside(low)} ${y - 5}v10M${inside(high)} ${y - 5}v10`, stroke: colour, "stroke-width": 1.5,
+      d: `M${inside(low)} ${y - 5}v10M${inside(Number(high))} ${y - 5}v10`, stroke: colour, "stroke-width": 1.5,
     }),
     svg("circle", { cx: inside(value), cy: y, r: 6, fill: colour, class: "dot-halo" }));
 };
 
+/** @param {Row} row */
 const inWords = ({ value, low, high }) =>
   low === undefined ? number(value) : `${number(value)}, 95 % interval ${number(low)} to ${number(high)}`;

@@ -7,6 +7,9 @@ import { pointsOf, regionPaths } from "/drawing/outline.js";
 import { arrow, footMark, groundLine } from "/drawing/symbols.js";
 import { boxOf, viewport } from "/drawing/viewport.js";
 
+/** @typedef {{ name: string, share: number, velocities: Point[] }} StageField */
+
+/** @type {{ [stage: string]: [string, string] | undefined }} */
 export const STAGE_WORDS = {
   before: ["Before", "turning about the old foot"],
   "stage 1": ["Stage 1", "the vertical part is lost"],
@@ -14,7 +17,8 @@ export const STAGE_WORDS = {
   after: ["After", "the rest turns about the new foot"],
 };
 
-/** Draw panels for {points, stages: [{name, share, velocities}]}, all with one scale of arrows. */
+/** Draw panels for {points, stages: [{name, share, velocities}]}, all with one scale of arrows.
+ * @param {Drawn} body @param {{ points: Point[], stages: StageField[] }} field @param {string} foot @param {{ width: number }} size */
 export const stagesPicture = (body, field, foot, { width }) => {
   const columns = width < 520 ? 2 : 4;
   const panel = Math.floor((width - (columns - 1) * 12) / columns) - 18;
@@ -28,6 +32,7 @@ export const stagesPicture = (body, field, foot, { width }) => {
     ));
 };
 
+/** @param {Drawn} body @param {Point[]} points @param {StageField} stage @param {string} foot @param {{ width: number, pixels: number }} size */
 const onePanel = (body, points, { name, share, velocities }, foot, { width, pixels }) => {
   const height = Math.min(320, Math.max(220, width * 1.3));
   const view = viewport(boxOf(

@@ -2,7 +2,7 @@
 
 import { svg } from "/app/dom.js";
 
-/** The quartered circle of a centre of mass. */
+/** The quartered circle of a centre of mass. @param {number} x @param {number} y @param {number} [radius] */
 export const centreMark = (x, y, radius = 7) =>
   svg("g", { transform: `translate(${x} ${y})`, class: "centre-mark" },
     svg("circle", { r: radius, class: "centre-paper" }),
@@ -15,13 +15,14 @@ export const centreMark = (x, y, radius = 7) =>
     ),
     svg("circle", { r: radius, class: "centre-ring" }));
 
+/** @param {number} reach @param {number} radius */
 const quarter = (reach, radius) => `M0 0H${reach}A${radius} ${radius} 0 0 0 0 ${-reach}Z`;
 
-/** A triangle under a foot. */
+/** A triangle under a foot. @param {number} x @param {number} y @param {number} [size] */
 export const footMark = (x, y, size = 8) =>
   svg("path", { class: "accent-fill", d: `M${x} ${y}l${size * 0.75} ${size * 1.3}h${-size * 1.5}Z` });
 
-/** The line of the ground with its hatching. */
+/** The line of the ground with its hatching. @param {number} left @param {number} right @param {number} y */
 export const groundLine = (left, right, y) => {
   const hatches = [];
   for (let x = left + 4; x < right; x += 10) hatches.push(`M${x} ${y}l-6 7`);
@@ -30,7 +31,8 @@ export const groundLine = (left, right, y) => {
     svg("path", { class: "ground", d: `M${left} ${y}H${right}` }));
 };
 
-/** An arrow with its head, from one point by a vector; nothing if it is too short to see. */
+/** An arrow with its head, from one point by a vector; nothing if it is too short to see.
+ * @param {number} x @param {number} y @param {number} dx @param {number} dy @param {Attributes} [attributes] */
 export const arrow = (x, y, dx, dy, attributes = {}) => {
   const length = Math.hypot(dx, dy);
   if (length < 1.5) return svg("circle", { cx: x, cy: y, r: 1.5, class: "arrow-dot", ...attributes });
@@ -47,7 +49,8 @@ export const arrow = (x, y, dx, dy, attributes = {}) => {
   });
 };
 
-/** The arc of an angle measured from the vertical, at a corner. */
+/** The arc of an angle measured from the vertical, at a corner.
+ * @param {number} x @param {number} y @param {number} radius @param {number} angle */
 export const arc = (x, y, radius, angle) => {
   const end = [x + radius * Math.sin(angle), y - radius * Math.cos(angle)];
   return svg(
@@ -59,11 +62,14 @@ export const arc = (x, y, radius, angle) => {
   );
 };
 
-/** Words beside something, on a halo so that they stay readable over lines. */
+/** Words beside something, on a halo so that they stay readable over lines.
+ * @param {number} x @param {number} y @param {string} text @param {Attributes} [attributes] */
 export const words = (x, y, text, attributes = {}) => svg(
   "text", { x: r(x), y: r(y), class: "halo", ...attributes }, text,
 );
 
+/** @param {number} x @param {number} y */
 const place = (x, y) => `${r(x)} ${r(y)}`;
 
+/** @param {number} value */
 const r = (value) => Math.round(value * 10) / 10;

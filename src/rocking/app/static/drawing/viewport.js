@@ -1,6 +1,7 @@
 /** From lengths (y up) to pixels (y down), to scale, centred. */
 
-/** A viewport that fits a box of lengths into pixels: {x, y, scale, back}. */
+/** A viewport that fits a box of lengths into pixels: {x, y, scale, back}.
+ * @param {Box} box @param {{ width: number, height: number, margin?: Partial<Box> }} size @returns {Viewport} */
 export const viewport = (box, { width, height, margin }) => {
   const sides = { left: 12, right: 12, top: 12, bottom: 12, ...margin };
   const inner = { width: width - sides.left - sides.right, height: height - sides.top - sides.bottom };
@@ -17,7 +18,8 @@ export const viewport = (box, { width, height, margin }) => {
   };
 };
 
-/** A viewport about a point in the middle of the pixels. */
+/** A viewport about a point in the middle of the pixels.
+ * @param {number[]} point @param {number} scale @param {{ width: number, height: number }} size @returns {Viewport} */
 export const viewportAt = ([x, y], scale, { width, height }) => ({
   scale,
   x: (length) => width / 2 + scale * (length - x),
@@ -25,7 +27,7 @@ export const viewportAt = ([x, y], scale, { width, height }) => ({
   back: (px, py) => [x + (px - width / 2) / scale, y + (height / 2 - py) / scale],
 });
 
-/** The box around points. */
+/** The box around points. @param {number[][]} points */
 export const boxOf = (points) => {
   const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
   for (const [x, y] of points) {
@@ -37,14 +39,14 @@ export const boxOf = (points) => {
   return box;
 };
 
-/** A round step so that about `count` of them fill the span. */
+/** A round step so that about `count` of them fill the span. @param {number} span @param {number} count */
 export const roundStep = (span, count) => {
   const rough = span / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  return [1, 2, 5, 10].map((each) => each * power).find((each) => each >= rough);
+  return [1, 2, 5, 10].map((each) => each * power).find((each) => each >= rough) ?? 10 * power;
 };
 
-/** Multiples of a step inside a range. */
+/** Multiples of a step inside a range. @param {number} low @param {number} high @param {number} step */
 export const multiples = (low, high, step) => {
   const found = [];
   for (
