@@ -7,7 +7,8 @@ const HEADROOM = 14;
 /** Returns a camera; `fit` places it, and its fields are then read by the drawing in every frame. */
 export const newCamera = () => ({ width: 0, height: 0, ratio: 1, scale: 1, middle: 0, floor: 0 });
 
-/** Places the camera so that a box of metres fills a canvas of so many CSS pixels. */
+/** Places the camera so that a box of metres fills a canvas of so many CSS pixels.
+ * @param {Camera} camera @param {Reach} box @param {number} width @param {number} height @param {number} ratio */
 export const fit = (camera, box, width, height, ratio) => {
   const wide = (box.right - box.left) * (1 + 2 * MARGIN);
   const tall = box.high * (1 + MARGIN) - Math.min(box.low, 0);
@@ -19,11 +20,13 @@ export const fit = (camera, box, width, height, ratio) => {
   camera.floor = height - FLOOR + Math.min(box.low, 0) * camera.scale;
 };
 
-/** Returns the horizontal pixel of a place [m], when the camera has gone along by `ridden`. */
+/** Returns the horizontal pixel of a place [m], when the camera has gone along by `ridden`.
+ * @param {Camera} camera @param {number} metres @param {number} ridden */
 export const pixelOf = (camera, metres, ridden) =>
   0.5 * camera.width + (metres - camera.middle - ridden) * camera.scale;
 
-/** Sets a pen to the frame of a body that has turned about its foot on a ground that has moved. */
+/** Sets a pen to the frame of a body that has turned about its foot on a ground that has moved.
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {number} rotation @param {number[]} feet @param {number} moved @param {number} ridden */
 export const holdBody = (pen, camera, rotation, feet, moved, ridden) => {
   const pivot = rotation > 0 ? feet[1] : feet[0];
   const k = camera.scale * camera.ratio;

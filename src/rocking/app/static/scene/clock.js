@@ -24,7 +24,7 @@ export class Clock {
     this.running = false;
   }
 
-  /** Goes on by the time between two frames [ms]; a page that was hidden does not jump. */
+  /** Goes on by the time between two frames [ms]; a page that was hidden does not jump. @param {number} stamp */
   tick(stamp) {
     if (this.before >= 0) this.now += Math.min((stamp - this.before) / 1000, LONGEST_FRAME) * this.speed;
     this.before = stamp;
@@ -34,7 +34,7 @@ export class Clock {
     }
   }
 
-  /** Goes to an instant [s]. */
+  /** Goes to an instant [s]. @param {number} instant */
   seek(instant) {
     this.now = Math.min(Math.max(instant, 0), this.end);
     this.before = -1;

@@ -17,11 +17,13 @@ const PLAY = "M3 1.5v13l11-6.5z";
 const PAUSE = "M3 1.5h3.6v13H3zM9.4 1.5H13v13H9.4z";
 const DEGREES = 180 / Math.PI;
 
+/** @param {number} value @param {number} digits */
 const fixed = (value, digits) => {
   const text = Math.abs(value).toFixed(digits);
   return value < 0 && Number(text) > 0 ? `\u2212${text}` : text;
 };
 
+/** @param {string} label @param {string[][]} options @param {string} value @param {string} testid @param {(value: string) => unknown} onChange */
 const choice = (label, options, value, testid, onChange) => {
   const items = options.map(([key, text]) => el("option", { value: key }, text));
   const select = el("select", { "data-testid": testid }, ...items);
@@ -30,6 +32,7 @@ const choice = (label, options, value, testid, onChange) => {
   return el("label", { class: "scene-choice" }, el("span", {}, label), select);
 };
 
+/** @param {() => unknown} onToggle @returns {[HTMLButtonElement, (running: boolean) => void]} */
 const playButton = (onToggle) => {
   const path = svg("path", { d: PLAY, fill: "currentColor" });
   const icon = svg("svg", { viewBox: "0 0 16 16", width: "16", height: "16", "aria-hidden": "true" }, path);
@@ -41,6 +44,7 @@ const playButton = (onToggle) => {
     words,
   );
   button.addEventListener("click", onToggle);
+  /** @param {boolean} running */
   const tellRunning = (running) => {
     path.setAttribute("d", running ? PAUSE : PLAY);
     words.textContent = running ? "Pause" : "Play";
@@ -49,6 +53,7 @@ const playButton = (onToggle) => {
   return [button, tellRunning];
 };
 
+/** @param {(share: number) => unknown} onSeek */
 const scrubber = (onSeek) => {
   const range = el("input", {
     type: "range",
@@ -64,7 +69,8 @@ const scrubber = (onSeek) => {
   return range;
 };
 
-/** Returns the controls: their element, and how to tell them what is so. */
+/** Returns the controls: their element, and how to tell them what is so.
+ * @param {{ onToggle: () => unknown, onSeek: (share: number) => unknown, onSpeed: (speed: number) => unknown, onGround: (mode: string) => unknown }} acts */
 export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const [button, tellRunning] = playButton(onToggle);
   const range = scrubber(onSeek);
@@ -83,6 +89,7 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
       choice("Ground", GROUNDS, "true", "scene-ground", onGround),
     ),
   );
+  /** @param {number} now @param {number} end @param {number} rotation @param {number} share */
   const tell = (now, end, rotation, share) => {
     range.value = String(end > 0 ? (1000 * now) / end : 0);
     time.textContent = `${now.toFixed(3)} s`;
@@ -90,6 +97,7 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
     const degrees = fixed(rotation * DEGREES, 1);
     range.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds, ${degrees} degrees`);
   };
+  /** @param {string} mode @param {number} times @param {boolean} rides */
   const tellGround = (mode, times, rides) => {
     const far = "the ground moves far: the picture rides with it";
     const magnified = times === 1 ? "" : `ground and body shift ${times} times as far as in truth`;

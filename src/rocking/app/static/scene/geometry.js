@@ -1,6 +1,7 @@
 /** Where the points of a rocking body are: positive rotation is clockwise, about the right foot. */
 
-/** Returns where a point of the body is once the body has turned about the foot that it stands on. */
+/** Returns where a point of the body is once the body has turned about the foot that it stands on.
+ * @param {number} x @param {number} y @param {number} rotation @param {number[]} feet */
 export const turned = (x, y, rotation, feet) => {
   const pivot = rotation > 0 ? feet[1] : feet[0];
   const c = Math.cos(rotation);
@@ -8,7 +9,8 @@ export const turned = (x, y, rotation, feet) => {
   return [pivot + c * (x - pivot) + s * y, -s * (x - pivot) + c * y];
 };
 
-/** Returns every vertex and mass point of a shape, its feet and its centre, as [[x, y]]. */
+/** Returns every vertex and mass point of a shape, its feet and its centre, as [[x, y]].
+ * @param {Pick<Shape, "regions" | "feet" | "points" | "centre">} shape */
 export const cornersOf = (shape) => {
   const corners = shape.regions.flatMap((region) => region.outline);
   const feet = shape.feet.map((x) => [x, 0]);
@@ -17,7 +19,7 @@ export const cornersOf = (shape) => {
 
 const DIRECTIONS = 48;
 
-/** Returns the few points of many that reach farthest, one for each of some directions. */
+/** Returns the few points of many that reach farthest, one for each of some directions. @param {number[][]} corners */
 export const farthest = (corners) => {
   const found = new Set();
   for (let k = 0; k < DIRECTIONS; k += 1) {
@@ -30,6 +32,7 @@ export const farthest = (corners) => {
   return [...found];
 };
 
+/** @param {number[][]} corners @param {number[]} rotations @param {number[]} feet @param {number[]} shifts */
 const reached = (corners, rotations, feet, shifts) => {
   const box = { left: Infinity, right: -Infinity, low: 0, high: -Infinity };
   rotations.forEach((rotation, k) => {
@@ -44,7 +47,8 @@ const reached = (corners, rotations, feet, shifts) => {
   return box;
 };
 
-/** Returns the box {left, right, low, high} [m] that holds the body in all these poses. */
+/** Returns the box {left, right, low, high} [m] that holds the body in all these poses.
+ * @param {Pick<Shape, "regions" | "feet" | "points" | "centre">} shape @param {{ rotation: number, ground: number }[]} poses */
 export const boxOf = (shape, poses) => {
   const corners = farthest(cornersOf(shape));
   const rotations = [0, ...poses.map(({ rotation }) => rotation)];

@@ -3,16 +3,17 @@ import { holdBody, pixelOf } from "/scene/camera.js";
 
 const STEPS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 const HATCH = 14;
+/** @type {number[]} */
 const NO_DASH = [];
 const TICKS = new Map();
 
-/** Metres between two ticks of the ruler at so many pixels a metre. */
+/** Metres between two ticks of the ruler at so many pixels a metre. @param {number} scale */
 export const tickStep = (scale) => {
   for (let k = 0; k < STEPS.length; k += 1) if (STEPS[k] * scale > 72) return STEPS[k];
   return 5000;
 };
 
-/** A place on the ruler in words. */
+/** A place on the ruler in words. @param {number} value @param {number} step */
 export const tickText = (value, step) => {
   const key = Math.round(value / step) * step;
   let text = TICKS.get(key);
@@ -25,10 +26,11 @@ export const tickText = (value, step) => {
   return text;
 };
 
-/** Sets a pen to CSS pixels. */
+/** Sets a pen to CSS pixels. @param {CanvasRenderingContext2D} pen @param {Camera} camera */
 export const holdScreen = (pen, camera) => pen.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
 
-/** Draws the ground with hatches that move with it, and a ruler that stands still. */
+/** Draws the ground with hatches that move with it, and a ruler that stands still.
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} moved @param {number} ridden */
 export const drawGround = (pen, camera, colours, moved, ridden) => {
   holdScreen(pen, camera);
   const { width, height, floor, scale } = camera;
@@ -52,6 +54,7 @@ export const drawGround = (pen, camera, colours, moved, ridden) => {
   drawRuler(pen, camera, colours, ridden, tickStep(scale));
 };
 
+/** @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} ridden @param {number} step */
 const drawRuler = (pen, camera, colours, ridden, step) => {
   const half = (0.5 * camera.width) / camera.scale;
   const middle = camera.middle + ridden;
@@ -70,7 +73,8 @@ const drawRuler = (pen, camera, colours, ridden, step) => {
   pen.stroke();
 };
 
-/** Draws the body whose history is followed: filled, with its centre of mass. */
+/** Draws the body whose history is followed: filled, with its centre of mass.
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Shape} shape @param {Colours} colours @param {number} rotation @param {number} moved @param {number} ridden @param {string} colour */
 export const drawBody = (pen, camera, shape, colours, rotation, moved, ridden, colour) => {
   holdBody(pen, camera, rotation, shape.feet, moved, ridden);
   pen.lineWidth = 1.8 / camera.scale;
@@ -87,6 +91,7 @@ export const drawBody = (pen, camera, shape, colours, rotation, moved, ridden, c
   drawCentre(pen, camera, shape, colours);
 };
 
+/** @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Shape} shape @param {Colours} colours */
 const drawPoints = (pen, camera, shape, colours) => {
   if (!shape.points.length) return;
   pen.beginPath();
@@ -104,6 +109,7 @@ const drawPoints = (pen, camera, shape, colours) => {
   }
 };
 
+/** @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Shape} shape @param {Colours} colours */
 const drawCentre = (pen, camera, shape, colours) => {
   const arm = 7 / camera.scale;
   const x = shape.centre[0];
@@ -118,7 +124,8 @@ const drawCentre = (pen, camera, shape, colours) => {
   pen.stroke();
 };
 
-/** Draws another model's body as an outline in its colour and dash. */
+/** Draws another model's body as an outline in its colour and dash.
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Shape} shape @param {Actor} ghost @param {number} rotation @param {number} moved @param {number} ridden */
 export const drawGhost = (pen, camera, shape, ghost, rotation, moved, ridden) => {
   holdBody(pen, camera, rotation, shape.feet, moved, ridden);
   pen.strokeStyle = ghost.colour;
@@ -129,6 +136,7 @@ export const drawGhost = (pen, camera, shape, ghost, rotation, moved, ridden) =>
   pen.setLineDash(NO_DASH);
 };
 
+/** @param {CanvasRenderingContext2D} pen @param {Shape} shape */
 const drawStick = (pen, shape) => {
   pen.beginPath();
   pen.moveTo(shape.feet[0], 0);
@@ -138,7 +146,8 @@ const drawStick = (pen, shape) => {
   pen.stroke();
 };
 
-/** Draws the ring of an impact at a foot; `age` runs from 0 to 1. */
+/** Draws the ring of an impact at a foot; `age` runs from 0 to 1.
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} x @param {number} age @param {string} words @param {number} wide */
 export const drawFlash = (pen, camera, colours, x, age, words, wide) => {
   holdScreen(pen, camera);
   pen.globalAlpha = 1 - 0.8 * age;

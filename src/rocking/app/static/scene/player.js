@@ -12,10 +12,11 @@ const READOUT_MS = 66;
 
 /** A rocking body that one can play, slow down and scrub. */
 export class Player {
-  constructor(onInstant = () => {}) {
+  constructor(onInstant = (/** @type {number} */ _) => {}) {
     this.onInstant = onInstant;
     this.clock = new Clock();
     this.touched = false;
+    this.play = /** @type {Play | null} */ (null);
     this.lead = 0;
     this.groundMode = "true";
     this.told = 0;
@@ -41,7 +42,7 @@ export class Player {
     onTheme(() => this.repaint());
   }
 
-  /** Takes a new answer; what was being played goes on at the same instant. */
+  /** Takes a new answer; what was being played goes on at the same instant. @param {Play} play @param {number} lead */
   show(play, lead) {
     this.play = play;
     this.lead = lead;
@@ -54,7 +55,7 @@ export class Player {
     this.draw();
   }
 
-  /** Shows the ground as it moves, larger than it moves, or rides with it. */
+  /** Shows the ground as it moves, larger than it moves, or rides with it. @param {string} mode */
   setGround(mode) {
     this.groundMode = mode;
     if (!this.play) return;
@@ -62,7 +63,7 @@ export class Player {
     this.controls.tellGround(mode, this.stage.factor, this.stage.rides);
   }
 
-  /** Runs at so many seconds of the history in a second of the screen. */
+  /** Runs at so many seconds of the history in a second of the screen. @param {number} speed */
   setSpeed(speed) {
     this.clock.speed = speed;
     if (!this.clock.running) this.draw();
@@ -92,7 +93,7 @@ export class Player {
     this.tell();
   }
 
-  /** Goes to an instant [s] and stops there. */
+  /** Goes to an instant [s] and stops there. @param {number} instant */
   seek(instant) {
     this.touched = true;
     this.clock.seek(instant);
@@ -100,7 +101,7 @@ export class Player {
     this.draw();
   }
 
-  /** Shows an instant that a pointer rests on elsewhere, unless the animation runs. */
+  /** Shows an instant that a pointer rests on elsewhere, unless the animation runs. @param {number} instant */
   glance(instant) {
     if (this.clock.running || !this.play) return;
     this.clock.seek(instant);
@@ -108,7 +109,7 @@ export class Player {
     this.draw();
   }
 
-  /** Draws one frame and asks for the next. */
+  /** Draws one frame and asks for the next. @param {number} stamp */
   frame(stamp) {
     if (!this.clock.running) return;
     const started = performance.now();
@@ -125,7 +126,7 @@ export class Player {
     else this.controls.tellRunning(false);
   }
 
-  /** The instant that is shown as a picture of its own; `names` are the models in words. */
+  /** The instant that is shown as a picture of its own; `names` are the models in words. @param {string[]} names */
   still(names) {
     return sceneStill(this.stage, this.clock.now, `The body at ${this.clock.now.toFixed(3)} s`, names);
   }
@@ -158,7 +159,7 @@ export class Player {
     this.draw();
   }
 
-  /** Moves by keys while the stage has the focus. */
+  /** Moves by keys while the stage has the focus. @param {KeyboardEvent} event */
   onKey(event) {
     const { now, end, speed } = this.clock;
     const stride = event.shiftKey ? 0.5 : Math.max(speed, 0.1) / 30;

@@ -1,7 +1,8 @@
 /** Answers of the API as tracks that the scene plays. */
 import { Track } from "/scene/track.js";
 
-/** Returns one model's history for the scene; of a body that overturned with the fall until it lies on the ground. */
+/** Returns one model's history for the scene; of a body that overturned with the fall until it lies on the ground.
+ * @param {Server.ResponseFacts} answer @param {Look} style @returns {Actor} */
 export const actorOf = (answer, style) => {
   const { series, fall, impacts = [] } = answer;
   const [left, right] = fall.lying;
@@ -21,7 +22,8 @@ export const actorOf = (answer, style) => {
   };
 };
 
-/** Returns rotations over the slenderness angle of the side that the body leans to. */
+/** Returns rotations over the slenderness angle of the side that the body leans to.
+ * @param {number[]} rotation @param {{ sides: Server.Sides | Server.RockingSides }} body */
 export const sharesOf = (rotation, body) => {
   const right = body.sides.right.slenderness_angle_rad;
   const left = body.sides.left.slenderness_angle_rad;

@@ -2,11 +2,13 @@
 
 import { highest } from "/app/extremes.js";
 
+/** @param {Path2D} path @param {number[][]} ring */
 const ringInto = (path, ring) => {
   ring.forEach(([x, y], k) => (k ? path.lineTo(x, y) : path.moveTo(x, y)));
   path.closePath();
 };
 
+/** @param {{ outline: number[][], holes: number[][][] }} region */
 const pathOf = (region) => {
   const path = new Path2D();
   ringInto(path, region.outline);
@@ -17,10 +19,10 @@ const pathOf = (region) => {
 /**
  * Returns the shape of a body of the API: regions with their shade, mass points, feet and centre in metres, the
  * ground at y = 0 and the middle between the feet at x = 0.
- */
+ * @param {Server.DrawnBody} body @returns {Shape} */
 export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
-  const feet = Array.isArray(base[0]) ? base.map(([x]) => x) : base;
-  const middle = 0.5 * (feet[0] + feet[1]);
+  const middle = 0.5 * (base[0] + base[1]);
+  /** @param {number[][]} ring */
   const moved = (ring) => ring.map(([x, y]) => [x - middle, y - ground]);
   const densest = highest(outline.map(({ density }) => density || 0), 0);
   const heaviest = highest(points.map(([, , mass]) => mass || 0), 0);
@@ -32,7 +34,7 @@ export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
   return {
     regions: regions.map((region) => ({ ...region, path: pathOf(region) })),
     points: points.map(([x, y, mass]) => [x - middle, y - ground, heaviest > 0 ? mass / heaviest : 1]),
-    feet: feet.map((x) => x - middle),
+    feet: base.map((x) => x - middle),
     centre: [centre[0] - middle, centre[1] - ground],
   };
 };

@@ -10,6 +10,7 @@ const FLASH = 0.4;
 const FAR = 1.5;
 const VISIBLE = 0.25;
 
+/** @param {Actor[]} actors @param {Track} ground @param {number} factor @param {number} end */
 const posesOf = (actors, ground, factor, end) => {
   const poses = [];
   for (const { rotation } of actors) {
@@ -21,27 +22,34 @@ const posesOf = (actors, ground, factor, end) => {
   return poses;
 };
 
-/** Returns how much larger than true the ground has to move so that one sees it: 1, 2, 5, 10, ... */
+/** Returns how much larger than true the ground has to move so that one sees it: 1, 2, 5, 10, ...
+ * @param {number} travel @param {number} size */
 export const visibleFactor = (travel, size) => {
   if (!(travel > 0)) return 1;
   const wanted = (VISIBLE * size) / travel;
   if (wanted <= 1) return 1;
   const tens = 10 ** Math.floor(Math.log10(wanted));
-  return [5, 2, 1].find((one) => one * tens <= wanted) * tens;
+  return ([5, 2].find((one) => one * tens <= wanted) ?? 1) * tens;
 };
 
 /** Draws the scene of one instant. */
 export class Stage {
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
-    this.pen = canvas.getContext("2d");
+    this.pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.camera = newCamera();
-    this.colours = {};
-    this.play = null;
+    this.colours = /** @type {Colours} */ ({});
+    this.play = /** @type {Play | null} */ (null);
+    this.lead = 0;
+    this.factor = 1;
+    this.rides = false;
+    this.box = /** @type {Reach} */ ({ left: 0, right: 0, low: 0, high: 0 });
     this.wide = 0;
   }
 
-  /** Takes {shape, actors, ground, end}, which actor is solid, and how the ground is shown. */
+  /** Takes {shape, actors, ground, end}, which actor is solid, and how the ground is shown.
+   * @param {Play} play @param {number} lead @param {string} groundMode */
   show(play, lead, groundMode) {
     this.play = play;
     this.lead = lead;
@@ -76,7 +84,7 @@ export class Stage {
     readColours(this.canvas, this.colours);
   }
 
-  /** Draws an instant [s]; flashes last as long for the eye at any speed. */
+  /** Draws an instant [s]; flashes last as long for the eye at any speed. @param {number} now @param {number} speed */
   draw(now, speed) {
     if (!this.play || !this.camera.width) return;
     const { pen, camera, colours, play } = this;
@@ -91,20 +99,23 @@ export class Stage {
     }
     const lead = play.actors[this.lead];
     drawBody(pen, camera, play.shape, colours, lead.rotation.at(now), moved, ridden, lead.colour);
-    if (!calm()) this.flash(lead, now, moved, ridden, Math.max(FLASH * speed, 0.005));
+    if (!calm()) this.flash(play, now, moved, ridden, Math.max(FLASH * speed, 0.005));
   }
 
-  /** Draws the ring of the last impact, if it is recent. */
-  flash(actor, now, moved, ridden, lasts) {
+  /** Draws the ring of the last impact, if it is recent.
+   * @param {Play} play @param {number} now @param {number} moved @param {number} ridden @param {number} lasts */
+  flash(play, now, moved, ridden, lasts) {
+    const actor = play.actors[this.lead];
     const times = actor.impactTimes;
     let k = times.length - 1;
     while (k >= 0 && times[k] > now) k -= 1;
     if (k < 0 || now - times[k] > lasts) return;
-    const foot = this.play.shape.feet[actor.impactFeet[k]];
+    const foot = play.shape.feet[actor.impactFeet[k]];
     const x = pixelOf(this.camera, foot + moved, ridden);
     const age = (now - times[k]) / lasts;
     drawFlash(this.pen, this.camera, this.colours, x, age, actor.impactWords[k], this.wide);
   }
 }
 
+/** @param {Reach} box */
 const boxSize = (box) => [box.right - box.left, box.high - box.low];

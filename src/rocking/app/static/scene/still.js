@@ -7,11 +7,15 @@ import { pixelOf } from "/scene/camera.js";
 import { turned } from "/scene/geometry.js";
 import { tickStep, tickText } from "/scene/pictures.js";
 
+/** @typedef {Camera & { moved: number, ridden: number, colours: Colours }} Frame */
+
 const [HEAD, ROW, HATCH] = [30, 18, 14];
 
-/** The instant that a stage shows, under a title; `names` are the models in words. */
+/** The instant that a stage shows, under a title; `names` are the models in words.
+ * @param {import("/scene/stage.js").Stage} stage @param {number} now @param {string} title @param {string[]} names */
 export const sceneStill = (stage, now, title, names) => {
-  const { camera, play, colours } = stage;
+  const { camera, colours } = stage;
+  const play = /** @type {Play} */ (stage.play);
   const moved = stage.factor * play.ground.at(now);
   const frame = { ...camera, moved, ridden: stage.rides ? moved : 0, colours };
   const lines = play.actors.map(({ colour: paint, dash }, k) => ({ label: names[k], colour: paint, dash }));
@@ -34,11 +38,14 @@ export const sceneStill = (stage, now, title, names) => {
       bodyOf(frame, play.shape, lead, lead.rotation.at(now), true)));
 };
 
+/** @param {number} value */
 const round = (value) => Math.round(value * 100) / 100;
 
+/** @param {Frame} frame @param {number} x @param {number} y */
 const placed = (frame, x, y) =>
   `${round(pixelOf(frame, x + frame.moved, frame.ridden))} ${round(frame.floor - y * frame.scale)}`;
 
+/** @param {Frame} frame */
 const groundOf = (frame) => {
   const { width, height, floor, colours, moved, ridden } = frame;
   const hatches = [];
@@ -54,6 +61,7 @@ const groundOf = (frame) => {
   ];
 };
 
+/** @param {Frame} frame */
 const rulerOf = (frame) => {
   const { width, height, scale, middle, ridden, colours } = frame;
   const step = tickStep(scale);
@@ -71,9 +79,12 @@ const rulerOf = (frame) => {
   });
 };
 
-/** The one that is followed is filled and has its centre; the others are outlines in their dash. */
+/** The one that is followed is filled and has its centre; the others are outlines in their dash.
+ * @param {Frame} frame @param {Shape} shape @param {Actor} actor @param {number} rotation @param {boolean} filled */
 const bodyOf = (frame, shape, actor, rotation, filled) => {
-  const at = ([x, y]) => placed(frame, ...turned(x, y, rotation, shape.feet));
+  /** @param {number[]} point */
+  const at = ([x, y]) => placed(frame, .../** @type {Point} */ (turned(x, y, rotation, shape.feet)));
+  /** @param {number[][]} points */
   const ring = (points) => `M${points.map(at).join("L")}Z`;
   const look = filled
     ? { fill: frame.colours.body, "stroke-width": 1.8 }
@@ -89,10 +100,12 @@ const bodyOf = (frame, shape, actor, rotation, filled) => {
     filled ? [dotsOf(frame, shape, at), crossOf(frame, at(shape.centre))] : null);
 };
 
+/** @param {Frame} frame @param {Shape} shape @param {(point: number[]) => string} at */
 const dotsOf = ({ colours }, { points }, at) => points.map(([x, y, share]) => {
   const [cx, cy] = at([x, y]).split(" ");
   return svg("circle", { cx, cy, r: round(3 + 6 * Math.sqrt(share)), fill: colours.ink });
 });
 
+/** @param {Frame} frame @param {string} place */
 const crossOf = ({ colours }, place) =>
   svg("path", { d: `M${place}m-7 0h14m-7 -7v14`, stroke: colours.ink, "stroke-width": 1.5, fill: "none" });

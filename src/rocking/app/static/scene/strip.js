@@ -10,12 +10,18 @@ const BOTTOM = 20;
 
 /** A picture of the histories that one drags along. */
 export class Strip {
+  /** @param {HTMLCanvasElement} canvas @param {(instant: number) => unknown} onSeek */
   constructor(canvas, onSeek) {
     this.canvas = canvas;
-    this.pen = canvas.getContext("2d");
+    this.pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.still = document.createElement("canvas");
-    this.colours = {};
-    this.play = null;
+    this.colours = /** @type {Colours} */ ({});
+    this.play = /** @type {Play} */ (/** @type {unknown} */ (null)); // until `show`
+    this.lead = 0;
+    this.span = 1;
+    this.ratio = 1;
+    this.width = 0;
+    this.height = 0;
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       onSeek(this.instantOf(event));
@@ -25,7 +31,7 @@ export class Strip {
     });
   }
 
-  /** Takes what is played, and which model is the solid one. */
+  /** Takes what is played, and which model is the solid one. @param {Play} play @param {number} lead */
   show(play, lead) {
     this.play = play;
     this.lead = lead;
@@ -56,25 +62,25 @@ export class Strip {
     if (this.width) this.drawStill();
   }
 
-  /** Returns the instant under a pointer [s]. */
+  /** Returns the instant under a pointer [s]. @param {PointerEvent} event */
   instantOf(event) {
     const x = event.clientX - this.canvas.getBoundingClientRect().left;
     return ((x - LEFT) / (this.width - LEFT - RIGHT)) * this.play.end;
   }
 
-  /** Returns the pixel of an instant. */
+  /** Returns the pixel of an instant. @param {number} time */
   across(time) {
     return LEFT + ((this.width - LEFT - RIGHT) * time) / this.play.end;
   }
 
-  /** Returns the pixel of a rotation over alpha. */
+  /** Returns the pixel of a rotation over alpha. @param {number} share */
   up(share) {
     const half = 0.5 * (this.height - TOP - BOTTOM);
     return TOP + half - (half * share) / this.span;
   }
 
   drawStill() {
-    const pen = this.still.getContext("2d");
+    const pen = /** @type {CanvasRenderingContext2D} */ (this.still.getContext("2d"));
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     pen.clearRect(0, 0, this.width, this.height);
     pen.font = "11px system-ui, sans-serif";
@@ -88,6 +94,7 @@ export class Strip {
     pen.restore();
   }
 
+  /** @param {CanvasRenderingContext2D} pen */
   drawAxes(pen) {
     pen.fillStyle = this.colours.soft;
     pen.textAlign = "right";
@@ -111,6 +118,7 @@ export class Strip {
     pen.fillText(words(axis), 0.5 * (LEFT + this.width), this.height - 5);
   }
 
+  /** @param {CanvasRenderingContext2D} pen @param {Actor} actor @param {number} thick */
   drawTrace(pen, { share, colour, dash }, thick) {
     pen.beginPath();
     for (let k = 0; k < share.time.length; k += 1) {
@@ -123,7 +131,7 @@ export class Strip {
     pen.setLineDash([]);
   }
 
-  /** Draws the strip with the line at an instant [s]. */
+  /** Draws the strip with the line at an instant [s]. @param {number} now */
   draw(now) {
     if (!this.play || !this.width) return;
     const { pen } = this;

@@ -2,7 +2,8 @@
 
 const NAMES = ["ink", "soft", "line", "body", "ground", "hatch", "impact", "fall"];
 
-/** Reads the colours into an object that the drawing keeps. */
+/** Reads the colours into an object that the drawing keeps.
+ * @param {Element} element @param {any} [into] */
 export const readColours = (element, into = {}) => {
   const style = getComputedStyle(element);
   for (const name of NAMES) into[name] = style.getPropertyValue(`--scene-${name}`).trim() || "#808080";

@@ -1,4 +1,5 @@
-/** A history in typed arrays that is asked for its value at any instant without making garbage. */
+/** A history in typed arrays that is asked for its value at any instant without making garbage.
+ * @param {Float64Array} time */
 
 const increasing = (time) => {
   for (let k = 1; k < time.length; k += 1) if (time[k] < time[k - 1]) return false;
@@ -7,6 +8,7 @@ const increasing = (time) => {
 
 /** Values over time, straight between the samples and held at the ends. */
 export class Track {
+  /** @param {ArrayLike<number>} time @param {ArrayLike<number>} values */
   constructor(time, values) {
     if (!time.length || time.length !== values.length) {
       throw new Error("a track needs as many values as instants, and one at least");
@@ -22,7 +24,8 @@ export class Track {
     return this.time[this.time.length - 1];
   }
 
-  /** Returns the value at an instant; quick when the instants that are asked for follow each other. */
+  /** Returns the value at an instant; quick when the instants that are asked for follow each other.
+   * @param {number} instant */
   at(instant) {
     const { time, values } = this;
     const last = time.length - 1;
@@ -36,7 +39,7 @@ export class Track {
     return values[k] + ((values[k + 1] - values[k]) * (instant - time[k])) / width;
   }
 
-  /** Returns the last sample that is not after an instant. */
+  /** Returns the last sample that is not after an instant. @param {number} instant */
   search(instant) {
     let low = 0;
     let high = this.time.length - 1;
@@ -56,7 +59,7 @@ export class Track {
   }
 }
 
-/** Returns the instant of the largest size of a track [s]. */
+/** Returns the instant of the largest size of a track [s]. @param {Track} track */
 export const peakInstant = (track) => {
   let best = 0;
   for (let k = 1; k < track.values.length; k += 1) {

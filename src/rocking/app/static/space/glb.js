@@ -1,12 +1,16 @@
 /** Reads the file in which the commands write a body in space: glTF in one piece. */
 
+/** @type {{ [kind: number]: any }} */
 const ARRAYS = { 5126: Float32Array, 5125: Uint32Array, 5121: Uint8Array };
+/** @type {{ [kind: string]: number }} */
 const WIDTHS = { SCALAR: 1, VEC3: 3, VEC4: 4 };
 
-/** What the file holds: arrays as they are in it, and what glTF has no word for, from the centre of mass, z up. */
+/** What the file holds: arrays as they are in it, and what glTF has no word for, from the centre of mass, z up.
+ * @param {ArrayBuffer} buffer @returns {SpaceModel} */
 export const readGlb = (buffer) => {
   const length = new DataView(buffer).getUint32(12, true);
   const told = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
+  /** @param {number} [number] @returns {any} */
   const array = (number) => {
     if (number === undefined) return null;
     const { bufferView, componentType, count, type } = told.accessors[number];

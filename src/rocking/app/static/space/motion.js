@@ -12,20 +12,25 @@ import { Scene } from "/space/scene.js";
 const WORTH = 0.01; // of the largest loss
 const TOLD = 100; // between two looks at words and curve while it is played [ms]
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
+/** @type {{ [key: string]: number }} */
+const STRIDES = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 const LEGEND = [["holds", "touches the ground and holds"], ["slides", "slides"], ["plumb", "centre of mass and plumb line"]];
 
 // Impacts that are marked: of thousands, only those that lose something worth seeing.
+/** @param {{ time_s: number, energy_before_J: number, energy_after_J: number }[]} impacts */
 const marked = (impacts) => {
   const losses = impacts.map((each) => each.energy_before_J - each.energy_after_J);
   const most = highest(losses);
   return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time_s: at }) => at);
 };
 
-/** The motion that a question found, with its controls. */
+/** The motion that a question found, with its controls.
+ * @param {{ question: Server.WholeQuestion, answer: any }} props */
 export const MotionScene = ({ question, answer }) => {
   const [now, running, words] = [useSignal(0), useSignal(false), useSignal("The motion is being loaded.")];
   const speed = useSignal("1");
-  const kept = useRef({ clock: new Clock(), played: null, chart: null, told: 0 }).current;
+  /** @type {{ clock: Clock, played: Played, chart: Chart, told: number }} */
+  const kept = useRef(/** @type {any} */ ({ clock: new Clock(), played: null, chart: null, told: 0 })).current;
   const curve = useRef(null);
   const { clock } = kept;
   const tell = () => {
@@ -33,6 +38,7 @@ export const MotionScene = ({ question, answer }) => {
     words.value = kept.played.words(clock.now);
     kept.chart.point(clock.now);
   };
+  /** @param {number} instant */
   const seek = (instant) => {
     if (!kept.played) return;
     clock.seek(instant);
@@ -41,6 +47,7 @@ export const MotionScene = ({ question, answer }) => {
     kept.played.show(clock.now);
     tell();
   };
+  /** @param {number} stamp */
   const frame = (stamp) => {
     if (!clock.running) return;
     const begun = performance.now();
@@ -66,10 +73,11 @@ export const MotionScene = ({ question, answer }) => {
     running.value = clock.running;
     requestAnimationFrame(frame);
   };
+  /** @param {SpaceStage} stage */
   const standing = (stage) => {
     kept.played = new Played(stage.three, stage, answer);
     clock.end = kept.played.end;
-    const { time, tilt } = stage.model.motion;
+    const { time, tilt } = kept.played.motion;
     kept.chart = lineChart(curve.current, {
       title: "Tilt from the pose at the start", height: 150, x: { label: "time", unit: "s" }, y: { label: "tilt", unit: "\u00b0" },
       series: [{ label: "tilt", colour: "--accent" }],
@@ -78,7 +86,7 @@ export const MotionScene = ({ question, answer }) => {
     kept.chart.setMarks({ vertical: marked(answer.impacts) });
     kept.chart.plot.over.addEventListener("click", () => {
       const at = kept.chart.plot.cursor.left;
-      if (at >= 0) seek(kept.chart.plot.posToVal(at, "x"));
+      if (at !== undefined && at >= 0) seek(kept.chart.plot.posToVal(at, "x"));
     });
     seek(0);
   };
@@ -95,7 +103,7 @@ export const MotionScene = ({ question, answer }) => {
       <input type="range" class="scene-time" min="0" max=${clock.end || 1} step="any" value=${now.value} aria-label="Instant"
         aria-valuetext=${words.value} data-testid="space-time" onInput=${(event) => seek(Number(event.target.value))}
         onKeyDown=${(event) => {
-          const stride = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+          const stride = STRIDES[event.key];
           if (!stride) return;
           event.preventDefault();
           seek(clock.now + (stride * (event.shiftKey ? 0.5 : 0.05)));

@@ -2,7 +2,8 @@
 
 const DEGREES = 180 / Math.PI;
 
-/** The place in ordered times of the last that is not after an instant; -1 before all of them. */
+/** The place in ordered times of the last that is not after an instant; -1 before all of them.
+ * @param {number} count @param {(k: number) => number} at @param {number} instant */
 export const lastBefore = (count, at, instant) => {
   let [low, high] = [-1, count];
   while (high - low > 1) {
@@ -15,19 +16,22 @@ export const lastBefore = (count, at, instant) => {
 
 /** A motion as the server computed it, asked for its state at any instant between two poses of it. */
 export class Played {
+  /** @param {any} three @param {import("/space/stage.js").Stage} stage @param {any} answer */
   constructor(three, stage, answer) {
     this.stage = stage;
-    this.motion = stage.model.motion;
+    this.motion = /** @type {SpaceMotion} */ (stage.model.motion);
     this.contacts = answer.contacts;
     this.fell = answer.outcome === "overturned" ? (answer.overturning_time_s ?? Infinity) : Infinity;
-    this.end = this.motion.time.at(-1);
-    this.interval = null;
-    [this.one, this.other] = [new three.Quaternion(), new three.Quaternion()];
+    this.end = this.motion.time.at(-1) ?? 0;
+    this.tilt = 0;
+    this.interval = /** @type {{ vertices: number[], sliding: number[] } | null} */ (null);
+    this.one = new three.Quaternion();
+    this.other = new three.Quaternion();
     this.centre = [0, 0, 0];
     this.turn = [0, 0, 0, 1];
   }
 
-  /** Put the body where it is at an instant [s], and draw it. */
+  /** Put the body where it is at an instant [s], and draw it. @param {number} instant */
   show(instant) {
     const { time, turn, place, tilt } = this.motion;
     const last = time.length - 1;
@@ -42,15 +46,16 @@ export class Played {
     this.stage.draw();
   }
 
+  /** @param {number} instant */
   touch(instant) {
     const interval = this.contacts[lastBefore(this.contacts.length, (i) => this.contacts[i].start_s, instant)] ?? null;
     if (interval === this.interval) return;
     this.interval = interval;
     const { vertices = [], sliding = [] } = interval ?? {};
-    this.stage.touch(vertices.filter((each) => !sliding.includes(each)), sliding);
+    this.stage.touch(vertices.filter((/** @type {number} */ each) => !sliding.includes(each)), sliding);
   }
 
-  /** What is seen at an instant that was shown. */
+  /** What is seen at an instant that was shown. @param {number} instant */
   words(instant) {
     const { vertices = [], sliding = [] } = this.interval ?? {};
     const points = `on ${vertices.length} point${vertices.length === 1 ? "" : "s"}`;
@@ -61,4 +66,5 @@ export class Played {
   }
 }
 
+/** @param {number} one @param {number} other @param {number} share */
 const between = (one, other, share) => one + (other - one) * share;

@@ -10,18 +10,21 @@ import { Stage } from "/space/stage.js";
 
 const LIBRARY = "/vendor/three/three.module.min.js"; // for this view alone, when there is something to show
 const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
+/** @type {[string, Aim | null, number?][]} */
 const VIEWS = [
   ["From the front", { turned: -Math.PI / 2, raised: 0.15 }], ["From the side", { turned: 0, raised: 0.15 }],
   ["From above", { turned: -Math.PI / 2, raised: 1.5 }], ["Nearer", null, CLOSER], ["Farther", null, 1 / CLOSER],
 ];
 
-/** The picture of a question's body; `onStage` is told of the stage once it stands, `onSpace` is what that key does. */
+/** The picture of a question's body; `onStage` is told of the stage once it stands, `onSpace` is what that key does.
+ * @param {{ question: Server.WholeQuestion, words: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
 export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
   const canvas = useRef(null);
   const stage = useSignal(null);
   const trouble = useSignal("");
   const about = useRef(freshId("scene")).current;
   useEffect(() => {
+    /** @type {Stage | null} */
     let made = null;
     let gone = false;
     const watcher = new ResizeObserver(() => made?.resize());
@@ -44,13 +47,17 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
       made?.dispose();
     };
   }, []);
+  /** @param {Aim} to */
   const look = (to) => {
     stage.value?.look(to);
     stage.value?.draw();
   };
+  /** @param {number} across @param {number} up */
   const turn = (across, up) => stage.value
     && look({ turned: stage.value.turned + across, raised: stage.value.raised + up });
+  /** @param {number} times */
   const nearer = (times) => stage.value && look({ near: stage.value.near * times });
+  /** @param {KeyboardEvent} event */
   const keys = (event) => {
     const does = {
       ArrowLeft: () => turn(-BY_KEY, 0), ArrowRight: () => turn(BY_KEY, 0),
@@ -75,7 +82,7 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
         }}></canvas>
       <div class="toolbar" role="group" aria-label="Look">
         ${VIEWS.map(([name, to, times]) => html`<${Button} kind="quiet" key=${name}
-          onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times))}>${name}<//>`)}
+          onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times ?? 1))}>${name}<//>`)}
       </div>
       <ul class="space-legend" aria-label="What is marked">
         ${stage.value?.model.mended && html`<li><span class="space-key mended" aria-hidden="true"></span>closed by the repair</li>`}

@@ -10,6 +10,7 @@ const FINEST = 2; // pixels of a canvas for one of the page
 
 /** The picture of one body; draws when it is told to. */
 export class Stage {
+  /** @param {any} three @param {HTMLCanvasElement} canvas @param {SpaceModel} model */
   constructor(three, canvas, model) {
     this.three = three;
     this.canvas = canvas;
@@ -20,10 +21,15 @@ export class Stage {
     this.scene = new three.Scene();
     this.camera = new three.PerspectiveCamera(VIEW, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
+    /** @type {[any, string][]} */
     this.paints = []; // [material, variable of the page]
     this.body = new three.Group();
     this.scene.add(this.body);
+    this.touching = /** @type {any[]} */ ([]);
     this.build();
+    this.turned = 0;
+    this.raised = 0;
+    this.near = 1;
     this.look(FIRST);
     this.repaint();
   }
@@ -54,7 +60,7 @@ export class Stage {
     this.place(null, [0, 0, model.height]);
   }
 
-  /** Faces that closed holes: a colour of their own, and their edges. */
+  /** Faces that closed holes: a colour of their own, and their edges. @param {Float32Array} corners */
   patch(corners) {
     const { three, body } = this;
     const faces = new three.BufferGeometry().setAttribute("position", new three.BufferAttribute(corners, 3));
@@ -93,18 +99,20 @@ export class Stage {
       this.painted(new three.MeshBasicMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }), "--surface-2"),
     );
     scene.add(plane);
-    for (const [name, x, y] of [["x", 1, 0], ["y", 0, 1]]) {
+    for (const [name, x, y] of /** @type {[string, number, number][]} */ ([["x", 1, 0], ["y", 0, 1]])) {
       this.line([[0, 0, 0], [1.15 * this.size * x, 1.15 * this.size * y, 0]], "--space-axis");
       this.label(name, [1.2 * this.size * x, 1.2 * this.size * y, 0.01 * this.size], scene, 0.035);
     }
     this.clear = new three.Color();
   }
 
+  /** @param {any} material @param {string} paint */
   painted(material, paint) {
     this.paints.push([material, paint]);
     return material;
   }
 
+  /** @param {number[][]} points @param {string} paint @param {any} [into] @param {boolean} [seenThrough] */
   line(points, paint, into = this.scene, seenThrough = false) {
     const { three } = this;
     const geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
@@ -115,7 +123,8 @@ export class Stage {
     return line;
   }
 
-  /** Marks on the body that keep their size on the screen. */
+  /** Marks on the body that keep their size on the screen.
+   * @param {number[][]} places @param {string} shape @param {string} paint */
   dots(places, shape, paint) {
     const { three } = this;
     const seenThrough = shape === "dot";
@@ -130,7 +139,7 @@ export class Stage {
     return points;
   }
 
-  /** Vertices of the hull of which some are shown; none at first. */
+  /** Vertices of the hull of which some are shown; none at first. @param {string} paint */
   contacts(paint) {
     if (!this.model.hull) return null;
     const { three } = this;
@@ -152,7 +161,7 @@ export class Stage {
     return Math.min(window.devicePixelRatio || 1, FINEST);
   }
 
-  /** Show which vertices of the hull hold, and which slide. */
+  /** Show which vertices of the hull hold, and which slide. @param {number[]} holding @param {number[]} sliding */
   touch(holding, sliding) {
     [holding, sliding].forEach((vertices, k) => {
       const { geometry } = this.touching[k];
@@ -162,7 +171,8 @@ export class Stage {
     });
   }
 
-  /** Put the body into place: its attitude (x, y, z, s), null for as it is in the file, and its centre [m]. */
+  /** Put the body into place: its attitude (x, y, z, s), null for as it is in the file, and its centre [m].
+   * @param {ArrayLike<number> | null} turn @param {number[]} centre */
   place(turn, centre) {
     if (turn) this.body.quaternion.fromArray(turn);
     this.body.position.fromArray(centre);
@@ -178,7 +188,8 @@ export class Stage {
     ends.needsUpdate = true;
   }
 
-  /** Draw a support polygon on the ground, in place of the base that the body has in its file. */
+  /** Draw a support polygon on the ground, in place of the base that the body has in its file.
+   * @param {number[][]} corners */
   standOn(corners) {
     const { three } = this;
     this.base.visible = false;
@@ -187,7 +198,8 @@ export class Stage {
     this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
   }
 
-  /** Words on a plate, of a size on the screen. */
+  /** Words on a plate, of a size on the screen.
+   * @param {string} words @param {number[]} place @param {any} into @param {number} size */
   label(words, place, into, size) {
     const { three } = this;
     const label = new three.Sprite(new three.SpriteMaterial({
@@ -200,7 +212,7 @@ export class Stage {
     into.add(label);
   }
 
-  /** Number edges on the body. */
+  /** Number edges on the body. @param {SpaceEdge[]} edges */
   number(edges) {
     for (const { name, from, to } of edges) {
       this.line([from, to], "--space-holds", this.body, true);
@@ -209,7 +221,7 @@ export class Stage {
     this.dots(edges.map(({ from }) => from), "dot", "--space-base");
   }
 
-  /** Colour the body by its landscape, or not. */
+  /** Colour the body by its landscape, or not. @param {boolean} on */
   colourful(on) {
     this.skin.vertexColors = on && Boolean(this.model.colours);
     this.skin.needsUpdate = true;
@@ -217,7 +229,7 @@ export class Stage {
   }
 
   /** Look from a direction: from x towards y, and above the ground [rad]; near: times the first distance. */
-  look({ turned = this.turned, raised = this.raised, near = this.near ?? 1 }) {
+  look({ turned = this.turned, raised = this.raised, near = this.near }) {
     this.turned = turned;
     this.raised = Math.min(HIGHEST, Math.max(LOWEST, raised));
     this.near = Math.min(4, Math.max(0.15, near));
@@ -260,7 +272,7 @@ export class Stage {
 
   /** Give back what the graphics card holds. */
   dispose() {
-    this.scene.traverse((each) => {
+    this.scene.traverse((/** @type {any} */ each) => {
       each.geometry?.dispose();
       each.material?.map?.dispose();
       each.material?.dispose();
@@ -270,4 +282,5 @@ export class Stage {
   }
 }
 
+/** @param {number[][]} points */
 const loop = (points) => (points.length ? [...points, points[0]] : []);

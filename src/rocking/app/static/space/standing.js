@@ -9,26 +9,34 @@ import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 
 const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a question about a file that has no axes of its own
+/** @typedef {SpaceStage & { setIn: (pose: SpacePose) => void, settleIn: (pose: SpacePose) => void }} Setting */
+
 const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
 const FEW = 12; // poses that are listed
 const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
 const COLOURS = [["rise", "how high the centre is where that point is lowest"], ["plain", "none"]];
 // what only rounding left is nothing
+/** @param {number} value @param {number} most */
 const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
+/** @param {number | null | undefined} value */
 const millimetres = (value) => (value === null || value === undefined ? "\u2013" : number(1000 * value, 3));
 
-/** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another. */
+/** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another.
+ * @param {{ question: Server.WholeQuestion, answer: any, onPose: (pose: number, up: number[]) => unknown, children: any }} props */
 export const Standing = ({ question, answer, onPose, children }) => {
   const pose = useSignal(String(answer.stands_in));
   const colours = useSignal("rise");
+  /** @type {{ current: Setting | null }} */
   const stage = useRef(null);
   const shown = Number(pose.value);
   // the hardest to leave first
   const poses = [...answer.stable].sort((one, other) => (other.barrier_m ?? Infinity) - (one.barrier_m ?? Infinity));
+  /** @param {string} number_ */
   const settle = (number_) => {
     pose.value = number_;
     stage.current?.settleIn(stage.current.model.poses[Number(number_)]);
   };
+  /** @param {SpaceStage} made */
   const built = (made) => {
     stage.current = settling(made);
     for (const kind of ["summit", "saddle", "stable"]) {
@@ -36,7 +44,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
       made.dots(marks.slice(0, MOST).map(({ place }) => before(place, made.size)), kind, `--space-${kind}`);
     }
     made.colourful(true);
-    made.setIn(made.model.poses[shown]);
+    stage.current.setIn(made.model.poses[shown]);
   };
   const here = answer.stable[shown];
   const most = answer.stable.at(-1).energy_J;
@@ -62,7 +70,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
         stage.current?.colourful(next === "rise");
       } }} options=${COLOURS} />
     </div>
-    ${answer.rings.map((each) => html`<p key=${each.tilt_rad}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
+    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt_rad}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
       its axis ${number((each.tilt_rad * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.height_m)} mm high.</p>`)}
     ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
@@ -72,7 +80,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, and its support polygon`} />
     <h3>What it takes to topple it, by direction</h3>
     <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
-      rows=${answer.directions.map((each) => [
+      rows=${answer.directions.map((/** @type {any} */ each) => [
         number((each.azimuth_rad * 180) / Math.PI, 3), millimetres(each.straight_rise_m), millimetres(each.lowest_rise_m),
         number(each.uplift_acceleration_m_s2, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
     <h3>Its poses, the hardest to leave first</h3>
@@ -81,14 +89,17 @@ export const Standing = ({ question, answer, onPose, children }) => {
         joules(each.energy_J, most), millimetres(each.nearest_edge_m)])} />
     ${poses.length > FEW && html`<p class="field-help">And ${poses.length - FEW} more, which a rise of
       ${millimetres(poses[FEW].barrier_m)} mm or less leaves.</p>`}
-    ${answer.notes.map((note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
+    ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 
 // A place a little before the surface, where a mark is not cut in halves by it.
+/** @param {number[]} place @param {number} size */
 const before = (place, size) => place.map((each) => each * (1 + (0.03 * size) / Math.hypot(...place)));
 
 // A stage on which a body is lifted, turned and set down.
-const settling = (stage) => {
+/** @param {SpaceStage} made @returns {Setting} */
+const settling = (made) => {
+  const stage = /** @type {Setting} */ (made);
   const [from, to] = [new stage.three.Quaternion(), new stage.three.Quaternion()];
   let ticket = 0;
   stage.setIn = ({ turn, height, support }) => {
@@ -105,6 +116,7 @@ const settling = (stage) => {
     from.copy(stage.body.quaternion);
     to.fromArray(pose.turn);
     const [begun, before] = [performance.now(), stage.body.position.z];
+    /** @param {number} stamp */
     const step = (stamp) => {
       const share = Math.min(1, Math.max(0, (stamp - begun) / SETTLES));
       if (mine !== ticket || !stage.canvas.isConnected) return;

@@ -2,9 +2,10 @@
 
 const SIDE = 64;
 
+/** @param {any} three @param {(pen: CanvasRenderingContext2D) => unknown} draw */
 const drawn = (three, draw) => {
   const canvas = Object.assign(document.createElement("canvas"), { width: SIDE, height: SIDE });
-  const pen = canvas.getContext("2d");
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   pen.translate(SIDE / 2, SIDE / 2);
   pen.lineJoin = "round";
   draw(pen);
@@ -13,6 +14,7 @@ const drawn = (three, draw) => {
   return texture;
 };
 
+/** @param {CanvasRenderingContext2D} pen @param {Point[]} points */
 const path = (pen, points) => {
   pen.beginPath();
   points.forEach((each) => pen.lineTo(...each));
@@ -20,16 +22,21 @@ const path = (pen, points) => {
 };
 
 // As the picture of the equilibria marks them; white takes the colour of the material.
+/** @type {{ [shape: string]: (pen: CanvasRenderingContext2D) => unknown }} */
 const SHAPES = {
+  /** @param {CanvasRenderingContext2D} pen */
   dot: (pen) => { pen.beginPath(); pen.arc(0, 0, 20, 0, 7); },
+  /** @param {CanvasRenderingContext2D} pen */
   stable: (pen) => { pen.beginPath(); pen.arc(0, 0, 20, 0, 7); },
+  /** @param {CanvasRenderingContext2D} pen */
   summit: (pen) => path(pen, [[0, -24], [23, 18], [-23, 18]]),
+  /** @param {CanvasRenderingContext2D} pen */
   saddle: (pen) => path(pen, [
     [-24, -15], [-15, -24], [0, -9], [15, -24], [24, -15], [9, 0], [24, 15], [15, 24], [0, 9], [-15, 24], [-24, 15], [-9, 0],
   ]),
 };
 
-/** A mark: dot, stable, saddle or summit. */
+/** A mark: dot, stable, saddle or summit. @param {any} three @param {string} shape */
 export const markTexture = (three, shape) => drawn(three, (pen) => {
   SHAPES[shape](pen);
   pen.lineWidth = 8;
@@ -39,7 +46,7 @@ export const markTexture = (three, shape) => drawn(three, (pen) => {
   pen.fill();
 });
 
-/** A number on a plate. */
+/** A number on a plate. @param {any} three @param {string} words */
 export const labelTexture = (three, words) => drawn(three, (pen) => {
   pen.beginPath();
   pen.arc(0, 0, 28, 0, 7);
