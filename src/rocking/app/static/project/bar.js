@@ -4,9 +4,10 @@ import { html, render, useEffect, useRef } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 import { ProjectDialog } from "/project/dialog.js";
 
+/** @type {{ [state: string]: string }} */
 const SAVED = { saved: "saved", saving: "saving \u2026", unsaved: "not saved" };
 
-/** Show the line, and keep it up to date. */
+/** Show the line, and keep it up to date. @param {HTMLElement} place @param {Projects} projects @param {App} app */
 export const mountProject = (place, projects, app) => {
   render(html`<${Bar} projects=${projects} app=${app} />`, place);
   document.addEventListener("keydown", (event) => {
@@ -18,14 +19,17 @@ export const mountProject = (place, projects, app) => {
   });
 };
 
+/** @param {KeyboardEvent} event @returns {"undo" | "redo" | null} */
 const wayOf = ({ key, ctrlKey, metaKey, shiftKey, altKey }) => {
   if (!(ctrlKey || metaKey) || altKey) return null;
   if (key.toLowerCase() === "z") return shiftKey ? "redo" : "undo";
   return key.toLowerCase() === "y" ? "redo" : null;
 };
 
-const isTyping = (target) => target.matches?.("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
+/** @param {EventTarget | null} target */
+const isTyping = (target) => /** @type {HTMLElement | null} */ (target)?.matches?.("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
 
+/** @param {{ projects: Projects, app: App }} props */
 const Bar = ({ projects, app }) => {
   const dialog = useRef(null);
   const { here, saving, clash } = projects;
@@ -47,15 +51,18 @@ const Bar = ({ projects, app }) => {
     ${clash.value && html`<${Clash} projects=${projects} />`}`;
 };
 
+/** @param {{ sign: string, label: string, on: boolean, go: () => unknown }} props */
 const Step = ({ sign, label, on, go }) => html`
   <button type="button" class="button quiet icon" aria-label=${label} title=${label} aria-disabled=${!on}
     onClick=${() => on && go()}><span aria-hidden="true">${sign}</span></button>`;
 
+/** @param {{ projects: Projects }} props */
 const Clash = ({ projects }) => {
   const dialog = useRef(null);
   useEffect(() => dialog.current.showModal(), []);
   // A browser closes it at a second Escape whatever is said: it comes back until something is chosen.
   const stay = () => projects.clash.value && dialog.current?.showModal();
+  /** @param {boolean} mine */
   const settle = (mine) => () => projects.settle(mine);
   return html`
     <dialog ref=${dialog} class="over" aria-labelledby="clash-title" data-testid="clash"

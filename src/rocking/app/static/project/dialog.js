@@ -5,11 +5,14 @@ import { Button } from "/parts/fields.js";
 
 const FEW = 12;
 
+/** @param {string} time */
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 
-/** The dialog; `handle.current.openIt()` opens it. */
+/** The dialog; `handle.current.openIt()` opens it.
+ * @param {{ projects: Projects, app: App, handle: { current: unknown } }} props */
 export const ProjectDialog = ({ projects, app, handle }) => {
   const dialog = useRef(null);
+  /** @type {Signal<Server.Projects & Server.History>} */
   const lists = useRef(signal({ projects: [], deleted: [], states: [] })).current;
   const all = useRef(signal(false)).current;
   const shown = useRef(signal(false)).current;
@@ -20,6 +23,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     lists.value = { ...there, ...past };
   };
   // What goes wrong is said, and the lists are what the server has in any case.
+  /** @param {() => unknown} work @param {boolean} [close] */
   const act = (work, close = false) => async () => {
     try {
       await work();
@@ -38,6 +42,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     }),
   };
   const here = projects.here.value;
+  /** @param {any} event */
   const named = async (event) => {
     event.preventDefault();
     const field = event.target.elements.name;
@@ -46,12 +51,15 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     await act(() => (event.target.dataset.for === "rename" ? projects.rename(name) : projects.begin(name)))();
     if (event.target.dataset.for !== "rename") field.value = "";
   };
+  /** @param {any} event */
   const bring = async (event) => {
     const [file] = event.target.files;
     event.target.value = "";
     if (file) await act(() => projects.bring(file))();
   };
+  /** @param {Server.ProjectFacts} one */
   const take = (one) => act(() => app.download(`projects/${one.id}/file`, undefined, "project.zip"));
+  /** @param {Server.ProjectFacts} one */
   const remove = (one) => act(async () => {
     await app.call(`projects/${one.id}`, { method: "DELETE" });
     app.say(`${one.name} was deleted; it can be brought back below.`);
@@ -110,7 +118,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <ul class="project-list" aria-label="Deleted">
             ${lists.value.deleted.map((one) => html`
               <li key=${one.id}>
-                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.deleted)}</span></p>
+                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.deleted ?? "")}</span></p>
                 <${Act} text="Bring back" one=${one}
                   go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
               </li>`)}
@@ -119,9 +127,11 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     </dialog>`;
 };
 
+/** @param {{ text: string, one: Server.ProjectFacts, go: () => unknown }} props */
 const Act = ({ text, one, go }) => html`
   <${Button} aria-label=${`${text}: ${one.name}`} onClick=${go}>${text}<//>`;
 
+/** @param {{ for: string, label: string, value: string, text: string, onSubmit: (event: any) => unknown }} props */
 const NameForm = ({ for: what, label, value, text, onSubmit }) => html`
   <form class="project-form" data-for=${what} onSubmit=${onSubmit}>
     <div class="field">

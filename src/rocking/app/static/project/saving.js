@@ -5,22 +5,30 @@ import { formsOf, inputsOf } from "/app/shape.js";
 
 const OPEN = "rocking.project";
 const PAUSE = 400; // after the last change, before it is saved [ms]
+/** @typedef {{ inputs: Server.Inputs }} Own */
+
+/** @type {{ [key: string]: string | undefined }} */
 const WORDS = {
   body: "body", motion: "motion", restitution: "restitution", response: "start", settings: "gravity", decide: "Decide",
   inventory: "Inventory", measure: "Measure", records: "Records", space: "In space", bed: "contact bed",
 };
 
-/** The keeper of the open project; `first` is what a new one holds. */
+/** The keeper of the open project; `first` is what a new one holds. @param {App} app @param {Server.Inputs} first */
 export const createProjects = (app, first) => {
-  const here = signal(null);
+  /** @type {Signal<Server.ProjectFacts>} */
+  const here = signal(null); // until `start`
   const saving = signal("saved");
+  /** @type {Signal<{ theirs: Server.WholeProject, mine: Own } | null>} */
   const clash = signal(null);
   const channel = "BroadcastChannel" in globalThis ? new BroadcastChannel("rocking.projects") : null;
+  /** @type {Set<string>} */
   const changed = new Set();
   let timer = 0;
   let taking = false;
+  /** @type {Own | null} */
   let last = null; // what was saved last
   let sent = []; // what is on its way, or went on one from which no answer came
+  /** @type {Promise<any>} */
   let line = Promise.resolve();
 
   // What is lent from elsewhere is on the screen, and not in the project.
@@ -29,6 +37,7 @@ export const createProjects = (app, first) => {
     const forms = app.forms.get();
     return { inputs: aside?.mine ? aside.inputs : app.inputs.get(), ...(Object.keys(forms).length ? { forms } : {}) };
   };
+  /** @param {any} facts */
   const known = (facts) => {
     const { document, ...rest } = facts;
     here.value = rest;
@@ -39,6 +48,7 @@ export const createProjects = (app, first) => {
   const note = () =>
     remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });
+  /** @param {any} document */
   const show = (document) => {
     taking = true;
     app.inputs.take(inputsOf(document?.inputs) ?? first);
@@ -50,13 +60,16 @@ export const createProjects = (app, first) => {
     note();
   };
   // What was typed while an answer was on its way is a state of its own, not lost.
+  /** @param {any} document */
   const showUnlessTyped = (document) => {
     if (changed.size) save();
     else show(document);
   };
   let leaving = false; // what is sent then outlives the page
+  /** @param {string} what @param {unknown} [json] @returns {Promise<any>} */
   const ask = (what, json) => app.call(`projects/${here.value.id}${what}`, { json, keepalive: leaving });
   // One after the other: every change names the version that it follows.
+  /** @type {<Of>(work: () => Promise<Of>) => Promise<Of>} */
   const inLine = (work) => {
     line = line.then(work, work);
     return line;
@@ -87,6 +100,7 @@ export const createProjects = (app, first) => {
       else if (!["offline", "forbidden"].includes(error.kind)) app.say(`Not saved: ${error.message}`, "error");
     }
   });
+  /** @param {Own} mine */
   const differ = async (mine) => {
     let theirs = await ask("");
     if (theirs.deleted) {
@@ -112,6 +126,7 @@ export const createProjects = (app, first) => {
     if (!done) save(); // as above
   };
 
+  /** @param {string} what */
   const step = (what) => async () => {
     await save();
     return inLine(async () => {
@@ -124,6 +139,7 @@ export const createProjects = (app, first) => {
     });
   };
   // Another project takes the place of this one only when all of this one is saved.
+  /** @param {() => Promise<Server.WholeProject>} get */
   const change = async (get) => {
     await save();
     if (changed.size || clash.value) throw new Error("What you typed could not be saved yet; it stays here.");
@@ -133,10 +149,12 @@ export const createProjects = (app, first) => {
       else show(known(facts));
     });
   };
+  /** @param {string} id */
   const open = (id) => change(() => app.call(`projects/${id}`));
 
   app.inputs.subscribe((_, keys) => !app.inputs.aside()?.mine && touched(keys));
   app.forms.subscribe((view) => touched([view]));
+  /** @param {Iterable<string>} keys */
   const touched = (keys) => {
     if (taking || !here.value) return;
     // To ask again for what is shown changes nothing.
@@ -166,10 +184,14 @@ export const createProjects = (app, first) => {
     redo: step("redo"),
     /** Try again to save what could not be saved. */
     again: () => save(),
-    /** Begin another project: with the usual start, or with what is on the screen. */
+    /** Begin another project: with the usual start, or with what is on the screen.
+     * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
+    /** @param {string} id @param {string} name */
     copy: (id, name) => change(() => app.call("projects", { json: { name, copy_of: id } })),
+    /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
+    /** @param {string} name */
     rename: async (name) => {
       await save();
       return inLine(async () => {
@@ -177,6 +199,7 @@ export const createProjects = (app, first) => {
         tell();
       });
     },
+    /** @param {number} state */
     restore: async (state) => {
       await save();
       return inLine(async () => {
@@ -184,8 +207,10 @@ export const createProjects = (app, first) => {
         tell();
       });
     },
-    /** Of a project that was changed elsewhere too: show what is there, or keep what is on the screen as a copy. */
+    /** Of a project that was changed elsewhere too: show what is there, or keep what is on the screen as a copy.
+     * @param {boolean} keepMine */
     settle: (keepMine) => inLine(async () => {
+      if (!clash.value) return;
       const { theirs } = clash.value;
       try {
         const facts = keepMine
@@ -196,7 +221,8 @@ export const createProjects = (app, first) => {
         app.say(`Not saved: ${error.message}`, "error");
       }
     }),
-    /** Open the project of this tab, else the one that was changed last, else a first one. */
+    /** Open the project of this tab, else the one that was changed last, else a first one.
+     * @param {Server.Inputs | null} fromLink */
     start: async (fromLink) => {
       const { projects } = await app.call("projects");
       const kept = remembered();
@@ -238,6 +264,7 @@ const isOwn = (theirs, version, sent = []) =>
   theirs.version === version + 1 && sent.some((each) => same(each, theirs.document));
 
 // The order of keys says nothing.
+/** @param {any} one @param {any} other */
 const same = (one, other) => {
   const [first, second] = [one, other].map((each) => JSON.stringify([inputsOf(each?.inputs), formsOf(each?.forms)]));
   return first === second;
@@ -245,12 +272,13 @@ const same = (one, other) => {
 
 const remembered = () => {
   try {
-    return JSON.parse(sessionStorage.getItem(OPEN));
+    return JSON.parse(sessionStorage.getItem(OPEN) ?? "null");
   } catch {
     return null;
   }
 };
 
+/** @param {{ id: string, version: number, more: boolean }} facts */
 const remember = (facts) => {
   try {
     sessionStorage.setItem(OPEN, JSON.stringify(facts));

@@ -5,9 +5,12 @@ import { computed, signal } from "/parts/preact.js";
 const [SOON, EVERY] = [100, 500]; // between looks at a question that is being answered, the first and the last [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
-/** The questions of some commands in the open project; what is asked is of the first if nothing else is said. */
+/** The questions of some commands in the open project; what is asked is of the first if nothing else is said.
+ * @param {App} app @param {...string} commands */
 export const createQuestions = (app, ...commands) => {
+  /** @type {Signal<Server.WholeQuestion | null>} */
   const shown = signal(null);
+  /** @type {Signal<Server.QuestionFacts[]>} */
   const all = signal([]);
   let timer = 0;
   let ticket = 0;
@@ -18,6 +21,7 @@ export const createQuestions = (app, ...commands) => {
     const { questions } = await app.call("questions");
     all.value = questions.filter((each) => commands.includes(each.command) && each.project === here());
   };
+  /** @param {string} id @param {number} [mine] @param {number} [pause] */
   const follow = async (id, mine = (ticket += 1), pause = SOON) => {
     clearTimeout(timer);
     const question = await app.call(`questions/${id}`).catch((error) => {
@@ -29,7 +33,9 @@ export const createQuestions = (app, ...commands) => {
     if (question && ENDED.has(question.state)) await look();
     else timer = setTimeout(() => follow(id, mine, Math.min(EVERY, 1.5 * pause)).catch(tell), pause);
   };
+  /** @param {any} error */
   const tell = (error) => app.say(error.message, "error");
+  /** @type {<Given extends any[]>(work: (...given: Given) => Promise<unknown>) => (...given: Given) => Promise<unknown>} */
   const safely = (work) => (...given) => work(...given).catch(tell);
 
   return {
@@ -45,42 +51,45 @@ export const createQuestions = (app, ...commands) => {
       await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
-      shown.value = { ...question, answer: null };
+      shown.value = { ...question, answer: null, toml: "" };
       await follow(question.id);
     }),
-    open: safely(async (id) => {
+    open: safely(async (/** @type {string} */ id) => {
       shown.value = null;
       await follow(id);
     }),
     stop: safely(async () => {
+      if (!shown.value) return;
       await app.call(`questions/${shown.value.id}/stop`, { method: "POST" });
       await follow(shown.value.id);
     }),
-    remove: safely(async (id) => {
+    remove: safely(async (/** @type {string} */ id) => {
       await app.call(`questions/${id}`, { method: "DELETE" });
       if (shown.value?.id === id) shown.value = null;
       await look();
     }),
-    /** Send a file; resolves to its hash, and the plain name that tables call it. */
+    /** Send a file; resolves to its hash, and the plain name that tables call it. @param {File} file */
     send: async (file) => {
       const kept = await app.call("files", { method: "POST", body: await file.arrayBuffer(), query: { name: file.name } });
       atHand.set(kept.record, file);
       return { name: apart(kept.file_name, kept.record), sha: kept.record };
     },
-    take: (name) => app.download(`questions/${shown.value.id}/${name}`, undefined, name),
+    /** @param {string} name */
+    take: (name) => app.download(`questions/${shown.value?.id}/${name}`, undefined, name),
   };
 };
 
 const atHand = new Map();
 
-/** A file that this tab has sent, by its hash; undefined of any other. */
+/** A file that this tab has sent, by its hash; undefined of any other. @param {string} sha */
 export const fileAtHand = (sha) => atHand.get(sha);
 
 // Names that answers have.
 const TAKEN = /^(inventory|table|report|picture|space|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;
+/** @param {string} name @param {string} sha */
 const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : name);
 
-/** The motion of the inputs as a question has it, and the files that it needs. */
+/** The motion of the inputs as a question has it, and the files that it needs. @param {Server.Inputs} inputs */
 export const motionOf = (inputs) => {
   if (!inputs.motion) return null;
   const { record, file_name: name, ...rest } = inputs.motion;
@@ -89,6 +98,7 @@ export const motionOf = (inputs) => {
   return { tables: { motion: { record: called, ...rest } }, files: { [called]: record } };
 };
 
+/** @param {string | null | undefined} name @param {string} record */
 const plainName = (name, record) => {
   const ending = /\.[A-Za-z0-9]{1,8}$/.exec(name ?? "")?.[0] ?? ".txt";
   return `record-${record.slice(0, 12)}${ending}`;

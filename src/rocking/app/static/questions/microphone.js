@@ -7,6 +7,7 @@ export const record = async () => {
   const context = new AudioContext();
   await context.audioWorklet.addModule("/questions/microphone-worklet.js");
   const node = new AudioWorkletNode(context, "rocking-recorder");
+  /** @type {Float32Array[]} */
   const pieces = [];
   node.port.onmessage = ({ data }) => pieces.push(data);
   context.createMediaStreamSource(stream).connect(node);
@@ -20,9 +21,11 @@ export const record = async () => {
   };
 };
 
+/** @param {Float32Array[]} pieces @param {number} rate */
 const wave = (pieces, rate) => {
   const count = pieces.reduce((sum, each) => sum + each.length, 0);
   const view = new DataView(new ArrayBuffer(44 + 2 * count));
+  /** @param {number} at @param {string} text */
   const words = (at, text) => [...text].forEach((mark, k) => view.setUint8(at + k, mark.charCodeAt(0)));
   words(0, "RIFF");
   view.setUint32(4, 36 + 2 * count, true);

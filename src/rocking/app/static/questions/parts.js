@@ -5,13 +5,16 @@ import { parseNumber } from "/app/format.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong } from "/parts/fields.js";
 
-/** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them. */
+/** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them.
+ * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
 export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).current;
 
-/** The keys that were filled in, as a table has them; what is no number is left for the server to refuse. */
+/** The keys that were filled in, as a table has them; what is no number is left for the server to refuse.
+ * @param {{ [key: string]: string }} texts @param {{ [key: string]: Server.KeyFacts }} known */
 export const filled = (texts, known) => Object.fromEntries(Object.entries(texts).filter(([, text]) => text.trim()).map(
   ([key, text]) => [key, valueOf(text.trim(), known[key].kind)],
 ));
+/** @param {string} text @param {string} kind */
 const valueOf = (text, kind) => {
   if (kind === "true or false") return text === "true";
   if (kind === "any") return numbersOf(text.replace(/^\[(.*)\]$/, "$1")) ?? text;
@@ -19,25 +22,30 @@ const valueOf = (text, kind) => {
   if (!kind.startsWith("list")) return parseNumber(text) ?? text;
   return partsOf(text).map((part) => parseNumber(part) ?? part);
 };
+/** @param {string} text */
 const partsOf = (text) => {
   const parts = text.trim().split(/\s*;\s*|,\s+|\s+/);
   return parts.length > 1 ? parts : text.split(",");
 };
 // One number, or several; null where something is none.
+/** @param {string} text */
 const numbersOf = (text) => {
   const found = parseNumber(text) ?? partsOf(text).map(parseNumber);
   return Array.isArray(found) && found.includes(null) ? null : found;
 };
 
-/** The endings of record files of every format, and of what they come in. */
+/** The endings of record files of every format, and of what they come in. @param {App} app */
 export const recordEndings = ({ info }) => [
   ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
 ].join(",");
 
-/** Files by dropping or choosing; `files` is a signal of what was sent. */
+/** Files by dropping or choosing; `files` is a signal of what was sent.
+ * @param {{ label: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, questions: Questions, app: App }} props */
 export const FileDrop = ({ files, many = false, questions, app, help, ...more }) => {
   const sending = useSignal("");
+  /** @param {File[]} chosen */
   const take = async (chosen) => {
+    /** @type {SentFile[]} */
     let sent = [];
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
@@ -68,6 +76,7 @@ export const FileDrop = ({ files, many = false, questions, app, help, ...more })
 const AT_ONCE = 6; // files that are sent beside one another
 
 // What stands of a question: being answered, refused, or its answer.
+/** @param {{ questions: Questions, answer: any }} props */
 const Outcome = ({ questions, answer: Answer }) => {
   const question = questions.shown.value;
   const heading = useRef(null);
@@ -89,6 +98,7 @@ const Outcome = ({ questions, answer: Answer }) => {
     </section>`;
 };
 
+/** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
 const Waiting = ({ questions, question }) => html`
   <div class="waiting-line" role="status">
     <progress aria-label="Being answered"></progress>
@@ -96,15 +106,18 @@ const Waiting = ({ questions, question }) => html`
     <${Button} onClick=${questions.stop}>Stop<//>
   </div>`;
 
+/** @type {{ [name: string]: string | undefined }} */
 const WORDS = {
   pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
   "results.json": "All numbers (JSON)",
 };
+/** @param {string} name */
 const wordsOf = (name) => {
-  const ending = name.split(".").at(-1);
+  const ending = name.replace(/^.*\./s, "");
   return name.startsWith("record.") ? `Record (${ending.toUpperCase()})` : WORDS[name] ?? WORDS[ending];
 };
 
+/** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
 const Files = ({ questions, question }) => html`
   <div class="toolbar" role="group" aria-label="Take away">
     ${question.files.map((name) => html`<${Button} key=${name} onClick=${() => questions.take(name)}>
@@ -116,11 +129,12 @@ const Files = ({ questions, question }) => html`
     <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
-/** The picture of an answer, if it has one. */
+/** The picture of an answer, if it has one. @param {{ question: Server.WholeQuestion, alt: string }} props */
 export const Drawing = ({ question, alt }) => question.files.includes("picture.svg")
   && html`<img class="drawing" src=${`/api/questions/${question.id}/picture.svg`} alt=${alt} />`;
 
 // Earlier questions of the project.
+/** @param {{ questions: Questions }} props */
 const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">
     <h2 id="earlier-title">Asked before</h2>
@@ -134,24 +148,26 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
-/** A refusal of the server as fields know it: the key that it names, and its words. */
+/** A refusal of the server as fields know it: the key that it names, and its words. @param {string} message */
 export const refusedOf = (message) => ({
   key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1].toLowerCase(), words: sentence(message),
 });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
- * asking, as words or as {key, words} of a field. */
+ * asking, as words or as {key, words} of a field.
+ * @param {{ title: string, lead: string, questions: Questions, wrong: Wrong, onSubmit: (event: any) => unknown, answer: any, children: any }} props */
 export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => {
   const form = useRef(null);
   const asked = useSignal(0);
   const { value: question } = questions.shown;
-  const refused = useMemo(() => {
+  const refused = useMemo(/** @returns {{ key?: string, words?: string }} */ () => {
     if (wrong) return typeof wrong === "string" ? { words: wrong } : wrong;
     return question?.state === "refused" ? refusedOf(question.message) : {};
   }, [asked.value, wrong, question?.id, question?.state]);
   useEffect(() => {
     if (refused.key && asked.value && (wrong || !isTyping())) toWrong(form.current);
   }, [refused]);
+  /** @param {any} event */
   const submit = (event) => {
     asked.value += 1;
     onSubmit(event);
