@@ -3,10 +3,13 @@
 import { batch, signal } from "/parts/preact.js";
 
 /** Ask `path` of the API: `question()` says what, null where nothing moves; only what `keys` name matters.
- * A part of the time is asked with `detail` beside it; an answer that `keeps` outlasts a refusal. */
+ * A part of the time is asked with `detail` beside it; an answer that `keeps` outlasts a refusal.
+ * @param {App} app @param {string} name @param {string[]} keys @param {() => object | null} question
+ * @param {{ path?: string, detail?: object, keeps?: boolean }} [how] @returns {Asked<any>} */
 export const createAnswer = (app, name, keys, question, { path = "response", detail = {}, keeps = false } = {}) => {
   const [answer, refused, part] = [signal(null), signal(null), signal(null)];
   let [visible, dirty, queued] = [false, true, false];
+  /** @param {any} found @param {Refusal | null} [error] */
   const become = (found, error = null) => batch(() => {
     [answer.value, refused.value, part.value] = [found, error, null];
   });
@@ -37,7 +40,7 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
   return {
     answer, refused, part,
     ask,
-    /** Ask again for the part of the time that the figures show; null shows all of it. */
+    /** Ask again for the part of the time that the figures show; null shows all of it. @param {Point | null} window */
     look: async (window) => {
       const whole = answer.value;
       part.value = window && { window };

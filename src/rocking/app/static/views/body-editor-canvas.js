@@ -18,14 +18,18 @@ const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body f
 const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
   + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
 
-/** The board, in an element: {follow, zoom, pan, fit, focus}. */
+/** The board, in an element: {follow, zoom, pan, fit, focus}. @param {Editor} editor @param {HTMLElement} element */
 export const createCanvas = (editor, element) => {
   const board = svg("svg", {
     class: "picture board", role: "group", tabindex: "0", "data-testid": "board", "aria-label": ABOUT,
   });
   const wrong = el("p", { class: "board-refusal", "aria-hidden": "true", hidden: true });
   element.prepend(board, wrong);
-  let [view, width, drag] = [null, 0, null];
+  let view = /** @type {Viewport} */ (/** @type {unknown} */ (null)); // until it has a width
+  let width = 0;
+  /** @type {any} */
+  let drag = null;
+  /** @type {{ middle: number[], scale: number } | null} */
   let look = null; // {middle, scale} once zoomed or panned; until then the whole body is shown
   let units = editor.units();
 
@@ -36,7 +40,7 @@ export const createCanvas = (editor, element) => {
     if (units !== editor.units()) [look, units] = [null, editor.units()];
     if (look) view = viewportAt(look.middle, look.scale, { width, height: HEIGHT });
     else if (!drag) view = fitted(regions, width, editor.state.photo);
-    const focused = document.activeElement?.dataset?.place;
+    const focused = /** @type {HTMLElement | null} */ (document.activeElement)?.dataset?.place;
     editor.state.grid = gridStep(view, editor.state.step);
     const place = editor.refusal();
     const rings = ringsNamed(place, regions);
@@ -51,34 +55,42 @@ export const createCanvas = (editor, element) => {
     board.toggleAttribute("data-photo", Boolean(editor.state.photo));
     if (
       focused && element.contains(document.activeElement) === false
-    ) board.querySelector(`[data-place="${focused}"]`)?.focus({ preventScroll: true });
+    ) focusOn(focused);
   };
 
+  /** @param {string} key */
+  const focusOn = (key) => /** @type {SVGElement | null} */ (board.querySelector(`[data-place="${key}"]`))?.focus({ preventScroll: true });
   const middle = () => view.back(width / 2, HEIGHT / 2);
+  /** @param {number[]} point @param {number} [scale] */
   const lookAt = (point, scale = view.scale) => {
     const whole = fitted(editor.regions(), width, editor.state.photo).scale;
     look = { middle: point, scale: Math.min(NEAREST * whole, Math.max(FARTHEST * whole, scale)) };
     editor.tell();
   };
-  /** Nearer by a factor; the point stays where it is. */
+  /** Nearer by a factor; the point stays where it is. @param {number} factor @param {number[]} [point] */
   const zoom = (factor, point = chosenPoint(editor, view, width) ?? middle()) => {
     const [x, y] = [view.x(point[0]), view.y(point[1])];
     lookAt(middle(), view.scale * factor);
     pan(x - view.x(point[0]), y - view.y(point[1]));
   };
+  /** @param {number} dx @param {number} dy */
   const pan = (dx, dy) => lookAt(view.back(width / 2 - dx, HEIGHT / 2 - dy));
   const fit = () => {
     look = null;
     editor.tell();
   };
+  /** @param {MouseEvent} event */
   const pixelOf = (event) => {
     const box = board.getBoundingClientRect();
     return [((event.clientX - box.left) * width) / box.width, ((event.clientY - box.top) * HEIGHT) / box.height];
   };
-  const pointOf = (event) => view.back(...pixelOf(event));
+  /** @param {MouseEvent} event */
+  const pointOf = (event) => view.back(.../** @type {Point} */ (pixelOf(event)));
+  /** @param {number[]} point */
   const neat = (point) => editor.snapped(point).map((each) => tidy(each, 9));
 
   const fingers = new Map();
+  /** @param {any} event */
   const begin = (event) => {
     const regions = editor.regions();
     const point = pointOf(event);
@@ -96,7 +108,7 @@ export const createCanvas = (editor, element) => {
     } else drag = { from: pixelOf(event) };
     if (!drag.place) return board.focus({ preventScroll: true });
     editor.select(drag.place);
-    board.querySelector(`[data-place="${keyOf(drag.place)}"]`)?.focus({ preventScroll: true });
+    focusOn(keyOf(drag.place));
   };
   board.addEventListener("pointerdown", (event) => {
     if (event.button > 0) return;
@@ -125,16 +137,18 @@ export const createCanvas = (editor, element) => {
     drag.begun = true;
     return editor.adjust(model.moved(editor.regions(), drag.place, neat(pointOf(event))), drag.place);
   });
+  /** @param {number} id @param {number[]} before @param {number[]} now */
   const pinch = (id, before, now) => {
     const other = [...fingers].find(([each]) => each !== id)?.[1];
     if (!other) return;
+    /** @param {number[]} each */
     const spread = (each) => Math.hypot(each[0] - other[0], each[1] - other[1]);
     const held = view.back((before[0] + other[0]) / 2, (before[1] + other[1]) / 2);
     if (spread(before) > 8 && spread(now) > 8) zoom(spread(now) / spread(before), held);
     pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
   };
   for (const end of ["pointerup", "pointercancel"]) {
-    board.addEventListener(end, (event) => {
+    board.addEventListener(end, (/** @type {any} */ event) => {
       fingers.delete(event.pointerId);
       if (!drag || (drag.pinch && fingers.size)) return;
       drag = null;
@@ -149,12 +163,13 @@ export const createCanvas = (editor, element) => {
     zoom(ZOOM ** (-event.deltaY / (event.deltaMode ? 3 : 100)), pointOf(event));
   }, { passive: false });
   board.addEventListener("focusin", (event) => {
-    const key = event.target.dataset?.place;
+    const key = /** @type {HTMLElement} */ (event.target).dataset?.place;
     if (!key) return;
     if (key !== keyOf(editor.state.place)) editor.select(placeOf(key));
     const point = model.ringAt(editor.regions(), editor.state.place)[editor.state.place.vertex];
     if (!inSight(view, width, point)) lookAt(point);
   });
+  /** @type {{ [key: string]: (() => unknown) | undefined }} */
   const views = {
     PageUp: () => zoom(ZOOM), PageDown: () => zoom(1 / ZOOM), Home: fit,
     "Control+ArrowLeft": () => pan(60, 0), "Control+ArrowRight": () => pan(-60, 0),
@@ -177,11 +192,13 @@ export const createCanvas = (editor, element) => {
   return { follow, zoom, pan, fit, focus: () => board.focus() };
 };
 
+/** @param {SVGSVGElement} board @param {number} width */
 const set = (board, width) => {
   board.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
-  board.setAttribute("height", HEIGHT);
+  board.setAttribute("height", String(HEIGHT));
 };
 
+/** @param {Region[]} regions @param {number} width @param {any} photo */
 const fitted = (regions, width, photo) => {
   const corners = photo ? [[photo.x, photo.y], [photo.x + photo.scale * photo.width, photo.y + photo.scale * photo.height]] : [];
   const box = boxOf([...regions.flatMap((each) => each.outline), ...corners]);
@@ -194,26 +211,32 @@ const fitted = (regions, width, photo) => {
 
 // The step that is drawn is the step that is snapped to: the typed one, doubled and so on while its cells are too
 // small to see; without one, a round step whose cells are seen.
+/** @param {Viewport} view @param {number | null | undefined} typed */
 const gridStep = (view, typed) => {
   if (!typed) return tidy(roundStep(CELL / view.scale, 1));
   const times = [1, 2, 5].flatMap((each) => Array.from({ length: 12 }, (_, power) => each * 10 ** power));
-  return tidy(typed * times.sort((one, two) => one - two).find((each) => typed * each * view.scale >= CELL / 3));
+  return tidy(typed * (times.sort((one, two) => one - two).find((each) => typed * each * view.scale >= CELL / 3) ?? 1));
 };
 
+/** @param {Viewport} view @param {number} width @param {number[]} point */
 const inSight = (view, width, [x, y]) =>
   view.x(x) >= 0 && view.x(x) <= width && view.y(y) >= 0 && view.y(y) <= HEIGHT;
 
+/** @param {Editor} editor @param {Viewport} view @param {number} width */
 const chosenPoint = (editor, view, width) => {
   const { place, tool } = editor.state;
   const point = tool ? tool.cursor : model.ringAt(editor.regions(), place)?.[place.vertex];
   return point && inSight(view, width, point) ? point : null;
 };
 
+/** @param {Viewport} view @param {number} width @param {number} step */
 const gridLines = (view, width, step) => {
   const [[left, top], [right, bottom]] = [view.back(0, 0), view.back(width, HEIGHT)];
   const many = [1, 2, 5, 10, 20, 50, 100].find((each) => each * step * view.scale >= 60) ?? 100;
+  /** @param {number} value */
   const told = (value) => Math.round(value / step) % many === 0;
   const digits = Math.max(4, Math.ceil(Math.log10(Math.max(Math.abs(left), Math.abs(right), Math.abs(top)) / step)) + 1);
+  /** @param {number} value @param {string} zero @param {string} d */
   const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : told(value) ? "grid-line told" : "grid-line", d });
   return svg("g", { "aria-hidden": "true", "data-step": step },
     multiples(left, right, step).map((value) => [
@@ -229,12 +252,14 @@ const gridLines = (view, width, step) => {
     ]));
 };
 
+/** @param {any} photo @param {Viewport} view */
 const photograph = (photo, view) => photo && svg("image", {
   href: photo.url, x: view.x(photo.x), y: view.y(photo.y + photo.scale * photo.height), opacity: photo.opacity,
   width: photo.scale * photo.width * view.scale, height: photo.scale * photo.height * view.scale,
   preserveAspectRatio: "none", "aria-hidden": "true",
 });
 
+/** @param {Editor} editor @param {Viewport} view */
 const statics = (editor, view) => {
   const facts = editor.facts();
   if (!facts) return null;
@@ -244,6 +269,7 @@ const statics = (editor, view) => {
     centreMark(view.x(facts.centre_m[0] / metres), view.y(facts.centre_m[1] / metres)));
 };
 
+/** @param {Region[]} regions @param {Viewport} view */
 const edges = (regions, view) =>
   model.ringsOf(regions).flatMap(({ region, ring, points }) =>
     points.map(([x, y], vertex) => {
@@ -255,6 +281,7 @@ const edges = (regions, view) =>
     }));
 
 // The edge after the chosen vertex, with its dimensions beside it.
+/** @param {Editor} editor @param {Region[]} regions @param {Viewport} view */
 const picked = (editor, regions, view) => {
   const { from, to, length, angle } = model.edgeAt(regions, editor.state.place);
   const [[x1, y1], [x2, y2]] = [from, to].map(([x, y]) => [view.x(x), view.y(y)]);
@@ -267,6 +294,7 @@ const picked = (editor, regions, view) => {
 };
 
 // Where the server says that it cannot be: a ring about the point, a line at its height, or the outlines it names.
+/** @param {any} place @param {Ring[]} rings @param {Viewport} view @param {number} width */
 const refused = (place, rings, view, width) => {
   if (!place) return null;
   const marks = place.y === undefined ? rings.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
@@ -276,17 +304,20 @@ const refused = (place, rings, view, width) => {
   return svg("g", { "data-testid": "board-refusal", "aria-hidden": "true" }, marks);
 };
 
+/** @param {any} place @param {Ring[]} rings @param {Viewport} view */
 const refusedPoint = (place, rings, view) => {
   if (!place) return null;
   if (place.y !== undefined) return [place.x ?? view.back(0, 0)[0], place.y];
-  const box = rings.length && boxOf(rings.at(-1));
+  const box = rings.length && boxOf(rings[rings.length - 1]);
   return box ? [(box.left + box.right) / 2, (box.bottom + box.top) / 2] : null;
 };
 
-const ringsNamed = (place, regions) => (place?.regions ?? []).map((index) => regions[index]).filter(Boolean)
-  .map((each) => each.holes?.[place.hole] ?? each.outline);
+/** @param {any} place @param {Region[]} regions */
+const ringsNamed = (place, regions) => (place?.regions ?? []).map((/** @type {number} */ index) => regions[index]).filter(Boolean)
+  .map((/** @type {Region} */ each) => each.holes?.[place.hole] ?? each.outline);
 
 // The words of the refusal beside its mark; whoever does not see it hears them from the alert below.
+/** @param {HTMLElement} note @param {Editor} editor @param {Viewport} view @param {number} width @param {number[] | null} point */
 const putWords = (note, editor, view, width, point) => {
   note.hidden = !point;
   if (!point) return;
@@ -299,11 +330,12 @@ const putWords = (note, editor, view, width, point) => {
   const [low, off] = [y > HEIGHT / 2, room > 110 ? 0 : 18];
   Object.assign(note.style, {
     [side]: `${room > 110 ? width - room : 8}px`, [other]: "auto", maxWidth: `${room > 110 ? Math.min(240, room) : 160}px`,
-    top: low ? "auto" : `${y + off}px`, bottom: low ? `${note.parentElement.clientHeight - y + off}px` : "auto",
+    top: low ? "auto" : `${y + off}px`, bottom: low ? `${(note.parentElement?.clientHeight ?? 0) - y + off}px` : "auto",
   });
   if (note.textContent !== editor.refusalWords()) fill(note, editor.refusalWords());
 };
 
+/** @param {Editor} editor @param {Region[]} regions @param {Viewport} view */
 const vertices = (editor, regions, view) => {
   const chosen = keyOf(editor.state.place);
   return model.ringsOf(regions).flatMap(({ region, ring, points }) =>
@@ -319,9 +351,11 @@ const vertices = (editor, regions, view) => {
 };
 
 // Points set so far, and where the next one would be.
+/** @param {Editor} editor @param {Viewport} view */
 const toolMarks = (editor, view) => {
   const { tool } = editor.state;
   if (!tool) return null;
+  /** @param {number[]} point */
   const at = ([x, y]) => `${view.x(x)} ${view.y(y)}`;
   return svg("g", { class: "tool-marks", "data-testid": "tool-marks", "aria-hidden": "true" },
     tool.points.length > 1 && svg("path", { class: "accent-line", d: `M${tool.points.map(at).join("L")}` }),
@@ -329,6 +363,7 @@ const toolMarks = (editor, view) => {
     tool.cursor && svg("path", { class: "cursor", d: "M-12 0H12M0 -12V12", transform: `translate(${at(tool.cursor)})` }));
 };
 
+/** @param {any} event @param {Editor} editor @param {() => number[]} start */
 const onKey = (event, editor, start) => {
   const key = event.target.dataset?.place;
   if (event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey)) {
@@ -345,18 +380,21 @@ const onKey = (event, editor, start) => {
   return action(editor, placeOf(key), event.shiftKey ? 10 : 1);
 };
 
+/** @param {number} dx @param {number} dy @returns {(editor: Editor, place: Place, times: number) => void} */
 const shifted = (dx, dy) => (editor, place, times) => {
   const [x, y] = model.ringAt(editor.regions(), place)[place.vertex];
   const by = editor.step() * times;
   editor.change(model.moved(editor.regions(), place, [tidy(x + dx * by), tidy(y + dy * by)]), place);
 };
 
+/** @param {Editor} editor @param {Place} place */
 const drop = (editor, place) => {
   const next = model.removed(editor.regions(), place);
   if (next === editor.regions()) return editor.say("A polygon keeps at least three vertices.", "warning");
   return editor.change(next, { ...place, vertex: Math.max(0, place.vertex - 1) });
 };
 
+/** @param {Editor} editor @param {Place} place */
 const add = (editor, place) => {
   const { from, to } = model.edgeAt(editor.regions(), place);
   editor.change(
@@ -365,13 +403,16 @@ const add = (editor, place) => {
   );
 };
 
+/** @type {{ [key: string]: ((editor: Editor, place: Place, times: number) => unknown) | undefined }} */
 const actions = {
   ArrowLeft: shifted(-1, 0), ArrowRight: shifted(1, 0), ArrowUp: shifted(0, 1), ArrowDown: shifted(0, -1),
   Delete: drop, Backspace: drop, Insert: add, "+": add,
 };
 
+/** @param {Place} place */
 const keyOf = ({ region, ring, vertex }) => `${region}:${ring}:${vertex}`;
 
+/** @param {string} key @returns {Place} */
 const placeOf = (key) => {
   const [region, ring, vertex] = key.split(":").map(Number);
   return { region, ring, vertex };

@@ -3,69 +3,75 @@
 import { highest, lowest, spanOf } from "/app/extremes.js";
 // A place is {region, ring, vertex}: ring -1 is the outline, others are holes.
 
-/** The ring at a place. */
+/** The ring at a place. @param {Region[]} regions @param {{ region: number, ring: number }} place @returns {Ring} */
 export const ringAt = (regions, { region, ring }) =>
-  ring < 0 ? regions[region]?.outline : regions[region]?.holes?.[ring];
+  /** @type {Ring} */ (ring < 0 ? regions[region]?.outline : regions[region]?.holes?.[ring]);
 
-/** Every ring with its place. */
+/** Every ring with its place. @param {Region[]} regions */
 export const ringsOf = (regions) =>
   regions.flatMap((each, region) =>
     [each.outline, ...(each.holes ?? [])].map((points, index) => ({ region, ring: index - 1, points })));
 
-/** Move one vertex. */
+/** Move one vertex. @param {Region[]} regions @param {Place} place @param {number[]} point */
 export const moved = (regions, place, point) =>
   withRing(regions, place, (ring) => ring.map((each, index) => (index === place.vertex ? point : each)));
 
-/** A new vertex after one. */
+/** A new vertex after one. @param {Region[]} regions @param {Place} place @param {number[]} point */
 export const inserted = (regions, place, point) =>
-  withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, point));
+  withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, /** @type {Point} */ (point)));
 
-/** Without one vertex; a triangle keeps all three. */
+/** Without one vertex; a triangle keeps all three. @param {Region[]} regions @param {Place} place */
 export const removed = (regions, place) =>
   ringAt(regions, place).length <= 3
     ? regions
     : withRing(regions, place, (ring) => ring.toSpliced(place.vertex, 1));
 
-/** Without a whole ring; the last region stays. */
+/** Without a whole ring; the last region stays. @param {Region[]} regions @param {Place} place @returns {Region[]} */
 export const withoutRing = (regions, { region, ring }) => {
   if (ring < 0) return regions.length > 1 ? regions.toSpliced(region, 1) : regions;
   return regions.with(
-    region, tidied({ ...regions[region], holes: regions[region].holes.toSpliced(ring, 1) }),
+    region, tidied({ ...regions[region], holes: regions[region].holes?.toSpliced(ring, 1) }),
   );
 };
 
-/** With one more region. */
+/** With one more region.
+ * @param {Region[]} regions @param {Ring} outline @param {number | null} [density] @returns {Region[]} */
 export const withRegion = (regions, outline, density) =>
   [...regions, density === undefined ? { outline } : { outline, density }];
 
-/** With one more hole in a region. */
+/** With one more hole in a region. @param {Region[]} regions @param {number} region @param {Ring} hole */
 export const withHole = (regions, region, hole) =>
   regions.with(region, { ...regions[region], holes: [...(regions[region].holes ?? []), hole] });
 
-/** With another density of a region; null takes it away. */
+/** With another density of a region; null takes it away.
+ * @param {Region[]} regions @param {number} region @param {number | null} density @returns {Region[]} */
 export const withDensity = (regions, region, density) =>
   regions.with(region, tidied({ ...regions[region], density: density ?? undefined }));
 
-/** Shifted so that the lowest point stands on y = 0. */
+/** Shifted so that the lowest point stands on y = 0.
+ * @param {Region[]} regions @param {Exact} [exact] @returns {Region[]} */
 export const onTheGround = (regions, exact = (value) => value) => {
   const low = lowest(regions.flatMap((each) => each.outline).map((point) => point[1]));
+  /** @param {Ring} ring */
   const shift = (ring) => ring.map(([x, y]) => [x, exact(y - low)]);
   return regions.map(
     (each) => tidied({ ...each, outline: shift(each.outline), holes: each.holes?.map(shift) })
   );
 };
 
-/** A hole in the middle of an outline, a quarter of its size. */
+/** A hole in the middle of an outline, a quarter of its size.
+ * @param {Ring} outline @param {Exact} [exact] @returns {Ring} */
 export const middleHole = (outline, exact = (value) => value) => {
   const [xs, ys] = [0, 1].map((axis) => outline.map((point) => point[axis]));
   const [x, y] = [xs, ys].map((each) => each.reduce((sum, value) => sum + value, 0) / each.length);
   const [dx, dy] = [xs, ys].map((each) => spanOf(each) / 8);
   return [
     [x - dx, y - dy], [x + dx, y - dy], [x + dx, y + dy], [x - dx, y + dy],
-  ].map((point) => point.map(exact));
+  ].map((point) => /** @type {Point} */ (point.map(exact)));
 };
 
-/** The edge after a vertex: both ends, its length and its angle from the horizontal in degrees. */
+/** The edge after a vertex: both ends, its length and its angle from the horizontal in degrees.
+ * @param {Region[]} regions @param {Place} place */
 export const edgeAt = (regions, place) => {
   const ring = ringAt(regions, place);
   const [from, to] = [ring[place.vertex], ring[(place.vertex + 1) % ring.length]];
@@ -73,7 +79,8 @@ export const edgeAt = (regions, place) => {
   return { from, to, length: Math.hypot(dx, dy), angle: (Math.atan2(dy, dx) * 180) / Math.PI };
 };
 
-/** With another length or angle of an edge: its second end moves. */
+/** With another length or angle of an edge: its second end moves.
+ * @param {Region[]} regions @param {Place} place @param {{ length: number, angle: number }} edge @param {Exact} [exact] */
 export const withEdge = (regions, place, { length, angle }, exact = (value) => value) => {
   const { from } = edgeAt(regions, place);
   const turn = (angle * Math.PI) / 180;
@@ -81,7 +88,8 @@ export const withEdge = (regions, place, { length, angle }, exact = (value) => v
   return moved(regions, { ...place, vertex: (place.vertex + 1) % ringAt(regions, place).length }, end);
 };
 
-/** An edge as an arc that rises by so much out of the ring: {regions, chords, error}, the error at most what is asked. */
+/** An edge as an arc that rises by so much out of the ring: {regions, chords, error}, the error at most what is asked.
+ * @param {Region[]} regions @param {Place} place @param {number} rise @param {number} most @param {Exact} [exact] */
 export const withArc = (regions, place, rise, most, exact = (value) => value) => {
   const { from, to, length } = edgeAt(regions, place);
   const radius = (length ** 2 / 4 + rise ** 2) / (2 * Math.abs(rise));
@@ -93,7 +101,7 @@ export const withArc = (regions, place, rise, most, exact = (value) => value) =>
   const points = Array.from({ length: chords - 1 }, (_, k) => {
     const at = ((k + 1) / chords - 0.5) * whole;
     const [along, up] = [length / 2 + radius * Math.sin(at), out * (radius * Math.cos(at) - radius + Math.abs(rise))];
-    return [from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map((each) => exact(each));
+    return /** @type {Point} */ ([from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map((each) => exact(each)));
   });
   const next = withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, ...points));
   return { regions: next, chords, error: radius * (1 - Math.cos(whole / (2 * chords))) };
@@ -101,17 +109,20 @@ export const withArc = (regions, place, rise, most, exact = (value) => value) =>
 
 const MOST_CHORDS = 1000;
 
-/** Twice the area of a ring, positive if it runs counter-clockwise. */
+/** Twice the area of a ring, positive if it runs counter-clockwise. @param {Ring} ring */
 const signedArea = (ring) => ring.reduce((sum, [x, y], index) => {
   const [nextX, nextY] = ring[(index + 1) % ring.length];
   return sum + x * nextY - nextX * y;
 }, 0);
 
-/** A section turned left for right about its middle, its feet and its centre too. */
+/** A section turned left for right about its middle, its feet and its centre too.
+ * @param {any} section @param {Region[]} regions @param {Exact} [exact] */
 export const mirrored = (section, regions, exact = (value) => value) => {
   const xs = regions.flatMap((each) => each.outline).map((point) => point[0]);
   const sum = lowest(xs) + highest(xs);
+  /** @param {number} x */
   const turned = (x) => exact(sum - x);
+  /** @param {Ring} points */
   const ring = (points) => points.map(([x, y]) => [turned(x), y]).reverse();
   const { feet, centre } = section;
   return {
@@ -122,10 +133,12 @@ export const mirrored = (section, regions, exact = (value) => value) => {
   };
 };
 
-/** A ring and its image beyond an edge as one: half a profile becomes the whole. */
+/** A ring and its image beyond an edge as one: half a profile becomes the whole.
+ * @param {Region[]} regions @param {Place} place @param {Exact} [exact] */
 export const doubled = (regions, place, exact = (value) => value) => {
   const { from, to, length } = edgeAt(regions, place);
   const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  /** @param {number[]} point */
   const image = ([x, y]) => {
     const along = (x - from[0]) * ux + (y - from[1]) * uy;
     return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map((each) => exact(each));
@@ -136,9 +149,12 @@ export const doubled = (regions, place, exact = (value) => value) => {
   });
 };
 
-/** The place of the vertex nearest to a point within reach, of equals the chosen one; null if there is none. */
+/** The place of the vertex nearest to a point within reach, of equals the chosen one; null if there is none.
+ * @param {Region[]} regions @param {number[]} point @param {number} reach @param {Place} chosen @returns {Place | null} */
 export const nearest = (regions, [x, y], reach, chosen) => {
-  let [best, found] = [reach, null];
+  let best = reach;
+  /** @type {Place | null} */
+  let found = null;
   for (const { region, ring, points } of ringsOf(regions)) {
     points.forEach((point, vertex) => {
       const away = Math.hypot(point[0] - x, point[1] - y);
@@ -149,20 +165,26 @@ export const nearest = (regions, [x, y], reach, chosen) => {
   return found;
 };
 
-/** Round a point to a grid; a step of nothing leaves it. */
+/** Round a point to a grid; a step of nothing leaves it.
+ * @param {number[]} point @param {number} step @param {Exact} [exact] */
 export const snapped = (point, step, exact = (value) => value) =>
   step > 0 ? point.map((value) => exact(Math.round(value / step) * step)) : point;
 
 /** The past and the future of a value. */
 export const createHistory = (most = 200) => {
+  /** @type {any[]} */
   let past = [];
+  /** @type {any[]} */
   let future = [];
   return {
+    /** @param {any} value */
     keep: (value) => {
       past = [...past, value].slice(-most);
       future = [];
     },
+    /** @param {(found: any) => any} nowLike */
     undo: (nowLike) => travel(past, future, nowLike),
+    /** @param {(found: any) => any} nowLike */
     redo: (nowLike) => travel(future, past, nowLike),
     clear: () => [past, future] = [[], []],
     canUndo: () => past.length > 0,
@@ -171,6 +193,7 @@ export const createHistory = (most = 200) => {
 };
 
 // What is left behind is kept as the value that takes its place was.
+/** @param {any[]} from @param {any[]} to @param {(found: any) => any} nowLike */
 const travel = (from, to, nowLike) => {
   if (!from.length) return null;
   const found = from.pop();
@@ -178,14 +201,16 @@ const travel = (from, to, nowLike) => {
   return found;
 };
 
+/** @param {Region[]} regions @param {{ region: number, ring: number }} place @param {(ring: Ring) => any} change @returns {Region[]} */
 const withRing = (regions, { region, ring }, change) => {
   const each = regions[region];
   const next = ring < 0
     ? { ...each, outline: change(each.outline) }
-    : { ...each, holes: each.holes.with(ring, change(each.holes[ring])) };
+    : { ...each, holes: each.holes?.with(ring, change(each.holes[ring])) };
   return regions.with(region, next);
 };
 
+/** @param {any} region @returns {Region} */
 const tidied = (region) =>
-  Object.fromEntries(Object.entries(region).filter(([key, value]) =>
-    value !== undefined && !(key === "holes" && !value.length)));
+  /** @type {any} */ (Object.fromEntries(Object.entries(region).filter(([key, value]) =>
+    value !== undefined && !(key === "holes" && !value.length))));

@@ -6,10 +6,11 @@ import { Button, NumberField, Switch } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
 import * as model from "/views/body-editor-model.js";
 
-/** What is done with the whole drawing; `children` are the tools. */
+/** What is done with the whole drawing; `children` are the tools. @param {{ editor: Editor, children?: any }} props */
 export const Tools = ({ editor, children }) => {
   const { history, state } = editor;
   // a button that becomes disabled would drop the focus; one that says that it is keeps it
+  /** @param {"undo" | "redo"} direction @param {string} words @param {boolean} can */
   const travel = (direction, words, can) => html`
     <${Button} aria-disabled=${can ? null : "true"} onClick=${() => editor.travel(direction)}>${words}<//>`;
   return html`<div class="toolbar">
@@ -22,15 +23,19 @@ export const Tools = ({ editor, children }) => {
   </div>`;
 };
 
-/** The chosen vertex, the grid and the densities, in numbers. */
+/** The chosen vertex, the grid and the densities, in numbers. @param {{ editor: Editor }} props */
 export const Details = ({ editor }) => {
   const { place, snap, step } = editor.state;
+  /** @type {Region[]} */
   const regions = editor.regions();
   const point = model.ringAt(regions, place)[place.vertex];
-  const put = (index) => (value) => editor.change(model.moved(editor.regions(), place, point.with(index, value)));
-  const weigh = (index) => (value) => editor.weigh(model.withDensity(editor.regions(), index, value), value);
-  const set = (key) => (value) => {
-    editor.state[key] = value;
+  /** @param {number} index */
+  const put = (index) => (/** @type {number} */ value) => editor.change(model.moved(editor.regions(), place, point.with(index, value)));
+  /** @param {number} index */
+  const weigh = (index) => (/** @type {number | null} */ value) => editor.weigh(model.withDensity(editor.regions(), index, value), value);
+  /** @param {"snap" | "step"} key */
+  const set = (key) => (/** @type {any} */ value) => {
+    Object.assign(editor.state, { [key]: value });
     editor.tell();
   };
   return html`
@@ -49,7 +54,9 @@ export const Details = ({ editor }) => {
 };
 
 // A new region stands on top of the others, as wide as they are and a quarter as high.
+/** @param {Editor} editor */
 const newRegion = (editor) => {
+  /** @type {Region[]} */
   const regions = editor.regions();
   const points = regions.flatMap((each) => each.outline);
   const [xs, ys] = [0, 1].map((axis) => points.map((each) => each[axis]));
@@ -58,13 +65,15 @@ const newRegion = (editor) => {
   const whole = [lowest(xs), highest(xs)];
   const [left, right] = ridge.length > 1 ? [lowest(ridge), highest(ridge)] : whole;
   const high = tidy(top + (top - lowest(ys)) / 4, 6);
+  /** @type {Ring} */
   const outline = [[left, top], [right, top], [right, high], [left, high]];
   editor.change(
-    model.withRegion(regions, outline, regions.at(-1).density),
+    model.withRegion(regions, outline, regions[regions.length - 1].density),
     { region: regions.length, ring: -1, vertex: 0 },
   );
 };
 
+/** @param {Editor} editor */
 const newHole = (editor) => {
   const { region } = editor.state.place;
   const regions = editor.regions();
@@ -74,6 +83,7 @@ const newHole = (editor) => {
   );
 };
 
+/** @param {Editor} editor */
 const removePart = (editor) => {
   const { region } = editor.state.place;
   const next = model.withoutRing(editor.regions(), editor.state.place);

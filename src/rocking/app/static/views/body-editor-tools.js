@@ -7,16 +7,22 @@ import { Button, Frame, NumberField, Slider, toWrong, wrongIn } from "/parts/fie
 import * as model from "/views/body-editor-model.js";
 import { asHole, asOutline, asRegion } from "/views/body-paste.js";
 
+/** @type {{ [key: string]: number[] | undefined }} */
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
 const HOW = {
   pen: "Click, or move the cursor with the arrow keys and press Space: one point after another. Enter, or a click on the first, closes the outline; Escape leaves.",
   scale: "Set two points on the picture whose distance is known; arrow keys and Space do it too.",
 };
 
-/** What a point and a key do while a tool is held: the arrow keys move a cursor, Space sets a point where it stands. */
+/** What a point and a key do while a tool is held: the arrow keys move a cursor, Space sets a point where it stands.
+ * @param {Editor} editor */
 export const createTool = (editor) => {
+  const held = () => /** @type {NonNullable<Editor["state"]["tool"]>} */ (editor.state.tool);
+  /** @param {string} words */
   const say = (words) => (editor.told.value = words);
   const tell = () => {
-    const { points, cursor } = editor.state.tool;
+    const { points, cursor } = held();
     say(`${points.length} points set${cursor ? `; the cursor stands at x ${number(cursor[0], 7)}, y ${number(cursor[1], 7)} ${editor.units()}` : ""}.`);
     editor.tell();
   };
@@ -25,6 +31,7 @@ export const createTool = (editor) => {
     say("");
     editor.tell();
   };
+  /** @param {"pen" | "scale"} kind */
   const take = (kind) => {
     if (editor.state.tool?.kind === kind) return leave();
     editor.state.tool = { kind, points: [], cursor: null };
@@ -32,39 +39,43 @@ export const createTool = (editor) => {
     editor.board.focus();
     return editor.tell();
   };
+  /** @param {(editor: Editor, points: Ring) => string | void} [use] */
   const close = (use = asOutline) => {
-    const { points } = editor.state.tool;
+    const { points } = held();
     if (points.length < 3) return say("An outline needs three points.");
     leave();
     say(use(editor, points) ?? `${points.length} points added.`);
     return editor.board.focus();
   };
   const measured = () => {
-    if (editor.state.tool.points.length < 2) return say("Two points are needed.");
+    if (held().points.length < 2) return say("Two points are needed.");
     say("Now type how far apart they are, and apply it.");
-    return document.querySelector("[name=known-length]").focus();
+    return /** @type {HTMLElement | null} */ (document.querySelector("[name=known-length]"))?.focus();
   };
+  /** @type {{ [kind: string]: () => unknown }} */
   const done = { pen: close, scale: measured };
+  /** @param {number[]} point @param {number} [reach] */
   const put = (point, reach = 0) => {
-    const { tool } = editor.state;
+    const tool = held();
     const first = tool.points[0];
     const closes = tool.kind === "pen" && tool.points.length > 2 && Math.hypot(point[0] - first[0], point[1] - first[1]) <= reach;
     if (closes) return close();
     const last = tool.points.at(-1);
     if (last && last[0] === point[0] && last[1] === point[1]) return undefined;
-    tool.points = [...(tool.kind === "scale" && tool.points.length === 2 ? [] : tool.points), point];
+    tool.points = [...(tool.kind === "scale" && tool.points.length === 2 ? [] : tool.points), /** @type {Point} */ (point)];
     tell();
     return tool.kind === "scale" && tool.points.length === 2 ? measured() : undefined;
   };
+  /** @param {string} name @param {number} times @param {() => number[]} start */
   const key = (name, times, start) => {
-    const { tool } = editor.state;
+    const tool = held();
     const by = times * editor.step();
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[name];
+    const way = WAYS[name];
     if (way) {
       const from = tool.cursor ?? editor.snapped(start());
-      tool.cursor = from.map((value, axis) => tidy(value + by * way[axis], 9));
+      tool.cursor = from.map((/** @type {number} */ value, /** @type {number} */ axis) => tidy(value + by * way[axis], 9));
       tell();
-    } else if (name === " ") put(tool.cursor ?? editor.snapped(start()).map((value) => tidy(value, 9)));
+    } else if (name === " ") put(tool.cursor ?? editor.snapped(start()).map((/** @type {number} */ value) => tidy(value, 9)));
     else if (name === "Enter") done[tool.kind]();
     else if (name === "Backspace" || name === "Delete") {
       tool.points = tool.points.slice(0, -1);
@@ -76,7 +87,7 @@ export const createTool = (editor) => {
   return { put, key, leave, take, close, say };
 };
 
-/** The pen, and the mirror. */
+/** The pen, and the mirror. @param {{ editor: Editor }} props */
 export const Pen = ({ editor }) => {
   const mirror = () => {
     editor.replace(model.mirrored(editor.section(), editor.regions(), tidy));
@@ -87,7 +98,7 @@ export const Pen = ({ editor }) => {
     <${Button} onClick=${mirror}>Mirror<//>`;
 };
 
-/** What becomes of the points of the pen. */
+/** What becomes of the points of the pen. @param {{ editor: Editor }} props */
 export const PenEnds = ({ editor: { state, tool } }) => html`
   <div class="toolbar" hidden=${state.tool?.kind !== "pen"}>
     <${Button} kind="primary" onClick=${() => tool.close()}>Close as body<//>
@@ -95,13 +106,14 @@ export const PenEnds = ({ editor: { state, tool } }) => html`
     <${Button} onClick=${() => tool.close(asHole)}>Close as hole<//>
     <${Button} onClick=${tool.leave}>Leave<//></div>`;
 
-/** The edge after the chosen vertex: its dimensions, as an arc, as a mirror. */
+/** The edge after the chosen vertex: its dimensions, as an arc, as a mirror. @param {{ editor: Editor }} props */
 export const EdgePart = ({ editor }) => {
   const box = useRef(null);
   const [rise, off, wrong] = [null, null, ""].map(useSignal);
   const { place } = editor.state;
   const { length, angle } = model.edgeAt(editor.regions(), place);
-  const change = (key) => (value) => {
+  /** @param {string} key */
+  const change = (key) => (/** @type {number} */ value) => {
     const now = model.edgeAt(editor.regions(), place);
     editor.change(model.withEdge(editor.regions(), place, { ...now, [key]: value }, tidy));
   };
@@ -118,6 +130,7 @@ export const EdgePart = ({ editor }) => {
     editor.change(made.regions);
     return editor.tool.say(`An arc of ${made.chords} chords, at most ${number(made.error)} ${editor.units()} off.`);
   };
+  /** @param {number | null} value */
   const rises = (value) => {
     rise.value = value;
     wrong.value = "";
@@ -139,15 +152,18 @@ export const EdgePart = ({ editor }) => {
     </div></details>`;
 };
 
-/** A photograph to draw on. It stays in this browser: it is drawn from the file itself, and nothing of it is sent or kept. */
+/** A photograph to draw on. It stays in this browser: it is drawn from the file itself, and nothing of it is sent or kept.
+ * @param {{ editor: Editor }} props */
 export const PhotoPart = ({ editor }) => {
   const { state: { photo, tool }, tool: { say } } = editor;
   const [box, opacity, known, wrong] = [useRef(null), useSignal(0.6), useSignal(null), useSignal("")];
+  /** @param {any} next */
   const show = (next) => {
     if (editor.state.photo) URL.revokeObjectURL(editor.state.photo.url);
     editor.state.photo = next;
     editor.tell();
   };
+  /** @param {any} event */
   const load = async ({ target: { files: [given] } }) => {
     if (!given) return;
     const [url, image] = [URL.createObjectURL(given), new Image()];
@@ -159,19 +175,22 @@ export const PhotoPart = ({ editor }) => {
       say("This file is no picture that the browser can show.");
       return;
     }
-    const around = boxOf(editor.regions().flatMap((each) => each.outline));
+    const around = boxOf(editor.regions().flatMap((/** @type {Region} */ each) => each.outline));
     const [width, height] = [image.naturalWidth, image.naturalHeight];
     say("The picture is as high as the body. Give it a scale.");
     show({ url, width, height, x: around.left, y: around.bottom, scale: (around.top - around.bottom) / height, opacity: opacity.value });
   };
-  const put = (key) => (value) => {
+  /** @param {string} key */
+  const put = (key) => (/** @type {number} */ value) => {
     Object.assign(photo, { [key]: value });
     editor.tell();
   };
+  /** @param {number} value */
   const fade = (value) => {
     opacity.value = value;
     put("opacity")(value);
   };
+  /** @param {number} value */
   const measure = (value) => {
     known.value = value;
     wrong.value = "";

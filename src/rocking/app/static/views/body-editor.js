@@ -11,7 +11,7 @@ import { PastePart } from "/views/body-paste.js";
 import { regionsOf, shapeOf, weighed } from "/views/body-shapes.js";
 import { METRES, inUnits } from "/views/body-units.js";
 
-/** The editor of a polygon; of any other shape it is out of sight. */
+/** The editor of a polygon; of any other shape it is out of sight. @param {{ editor: Editor }} props */
 export const Editor = ({ editor }) => {
   const drawn = editor.drawn.value; // every part is drawn anew with it
   const [shown, there] = [editor.shown(), editor.regions().length > 0];
@@ -29,6 +29,7 @@ export const Editor = ({ editor }) => {
     </div>`;
 };
 
+/** @type {[string, string, (board: any) => unknown][]} */
 const VIEWS = [
   ["+", "Zoom in", (board) => board.zoom(1.5)], ["\u2212", "Zoom out", (board) => board.zoom(1 / 1.5)],
   ["\u2922", "Show the whole body", (board) => board.fit()],
@@ -36,6 +37,7 @@ const VIEWS = [
   ["\u2191", "Pan up", (board) => board.pan(0, 80)], ["\u2193", "Pan down", (board) => board.pan(0, -80)],
 ];
 
+/** @param {{ editor: Editor }} given */
 const Board = ({ editor }) => {
   const box = useRef(null);
   useLayoutEffect(() => {
@@ -47,16 +49,19 @@ const Board = ({ editor }) => {
 };
 
 // The picture stays where it was on the body; points that were set in the former unit are gone.
+/** @param {any} state @param {number} factor */
 const changeUnits = (state, factor) => {
   state.tool = null;
   if (state.photo) for (const key of ["x", "y", "scale"]) state.photo[key] *= factor;
 };
 
-/** What is drawn and how it changes: `tell()` draws it anew; the tools and the board ask it for everything. */
+/** What is drawn and how it changes: `tell()` draws it anew; the tools and the board ask it for everything.
+ * @param {App} app */
 export const createEditor = (app) => {
   const history = model.createHistory();
   const [drawn, told] = [signal(0), signal("")];
   // Photograph and tool are this browser's alone: they are no part of the body.
+  /** @type {any} */
   const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
@@ -67,50 +72,58 @@ export const createEditor = (app) => {
     return { section, regions: regions(), units: of, whole };
   };
   const step = () => state.grid ?? state.step ?? 0.05;
+  /** @type {Editor} */
   const editor = {
-    state, history, regions, step, drawn, told, board: null,
-    tool: null,
+    state, history, regions, step, drawn, told, board: /** @type {any} */ (null), // until it is drawn
+    tool: /** @type {any} */ (null), // at the end
     shown: () => shapeOf(body()) === "section",
     section: () => body().section,
     units: () => body().units,
     facts: () => app.body.get(),
     metres: () => METRES[body().units],
-    refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
+    refusal: () => inUnitsOf(/** @type {any} */ (app.body.error())?.place, METRES[body().units]),
     refusalWords: () => app.body.error()?.message ?? "",
+    /** @param {Region[]} next @param {Place} [place] */
     change: (next, place = state.place) => {
       history.keep(now());
       editor.adjust(next, place);
     },
+    /** @param {Region[]} next @param {Place} [place] */
     adjust: (next, place = state.place) => {
       state.place = place;
-      app.inputs.set("body.section.region", weighed(next, body().section));
+      app.inputs.set("body.section.region", weighed(next, /** @type {any} */ (body().section ?? {})));
       editor.tell();
     },
-    /** Regions of another density, which takes the place of a mass. */
+    /** Regions of another density, which takes the place of a mass. @param {Region[]} next @param {number | null} density */
     weigh: (next, density) => {
       if (density !== null) app.inputs.set("body.section.mass", undefined);
       editor.change(next);
     },
+    /** @param {object} section */
     replace: (section) => {
       history.keep(now({ whole: true }));
       editor.show(section, { region: 0, ring: -1, vertex: 0 });
     },
+    /** @param {object} section @param {Place} place */
     show: (section, place) => {
       state.place = place;
       app.inputs.set("body.section", section);
       editor.tell();
     },
     keep: () => history.keep(now()),
+    /** @param {Place} place */
     select: (place) => {
       state.place = place;
       editor.tell();
     },
+    /** @param {number[]} point */
     snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
+    /** @param {"undo" | "redo"} direction */
     travel: (direction) => {
       const found = history[direction](now);
       if (!found) return;
       const table = found.whole ? found.section : { region: found.regions };
-      const { section } = inUnits({ units: found.units, section: table }, body().units);
+      const { section } = /** @type {any} */ (inUnits)({ units: found.units, section: table }, body().units);
       const place = withinReach(found.regions, state.place);
       if (found.whole) editor.show(section, place);
       else editor.adjust(section.region, place);
@@ -131,17 +144,19 @@ export const createEditor = (app) => {
   return editor;
 };
 
+/** @param {any} place @param {number} metres */
 const inUnitsOf = (place, metres) => place && {
   ...place, x: place.x === undefined ? undefined : place.x / metres, y: place.y === undefined ? undefined : place.y / metres,
 };
 
 // Regions written as text (WKT) become points as soon as someone draws on them.
+/** @param {any} section @param {Server.DescribedBody | null} facts @param {Unit} units @returns {Region[]} */
 const editable = (section, facts, units) => {
   const given = section?.region ?? [];
-  return given.every((each) => each.outline) ? given : regionsOf(facts, units);
+  return given.every((/** @type {Region} */ each) => each.outline) ? given : regionsOf(facts, units);
 };
 
-/** The nearest place that exists after a change. */
+/** The nearest place that exists after a change. @param {Region[]} regions @param {Place} place */
 export const withinReach = (regions, { region, ring, vertex }) => {
   const atRegion = Math.min(region, regions.length - 1);
   const atRing = Math.min(ring, (regions[atRegion].holes?.length ?? 0) - 1);

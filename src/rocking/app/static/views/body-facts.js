@@ -6,7 +6,7 @@ import { sameSides } from "/drawing/body-picture.js";
 import { Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 
-/** The table of facts. */
+/** The table of facts. @param {{ app: App, facts: Server.DescribedBody }} props */
 export const Facts = ({ app, facts: body }) => {
   const { left, right } = body.sides;
   const differ = !sameSides(body.sides);
@@ -15,7 +15,9 @@ export const Facts = ({ app, facts: body }) => {
     "Quantity", ...(differ ? ["Left", "Right"] : ["Value"]).map((label) => ({ label, digits: 5, numeric: true })),
     { label: "Unit", numeric: false, nowrap: true },
   ];
+  /** @param {string} label @param {string} unit @param {(side: Server.SideFacts) => number} read */
   const row = (label, unit, read) => [label, ...sides.map(read), unit];
+  /** @param {string} label @param {string} unit @param {number} value */
   const whole = (label, unit, value) => [label, ...sides.map(() => value), unit];
   const feet = body.feet_m.map((foot) => settled(foot, body));
   const rows = [
@@ -38,15 +40,17 @@ export const Facts = ({ app, facts: body }) => {
 };
 
 // What rounding left of a zero is a zero: smaller than the body by fifteen powers of ten.
+/** @param {number} length @param {Server.DescribedBody} body */
 const settled = (length, { sides }) =>
   (Math.abs(length) < 1e-14 * sides.right.semi_diagonal_m ? 0 : length);
 
-/** Warnings in plain words, or what stands in their place. */
+/** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
   ${warnings.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}
   ${!warnings.length && html`<${Note} kind="good" words=${`It uplifts at ${upliftWords(body)} of ground acceleration.`} />`}
   ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
 
+/** @param {Pick<Server.DescribedBody, "sides" | "gravity_m_s2">} body */
 const upliftWords = ({ sides, gravity_m_s2: gravity }) => {
   const least = Math.min(sides.left.uplift_acceleration_m_s2, sides.right.uplift_acceleration_m_s2);
   return `${quantity(least, "m/s2", 3)} (${quantity(least / gravity, "g", 3)})`;

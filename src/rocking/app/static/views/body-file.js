@@ -8,7 +8,7 @@ import { METRES } from "/views/body-units.js";
 
 const UNITS = [["", "as the file says"], ...Object.keys(METRES).map((unit) => [unit, unit])];
 
-/** The place to drop a file, and its unit where the file does not say it. */
+/** The place to drop a file, and its unit where the file does not say it. @param {{ app: App }} props */
 export const BodyFile = ({ app }) => {
   const box = useRef(null);
   const held = useRef({}); // the file, its content, and the body that it became
@@ -32,12 +32,14 @@ export const BodyFile = ({ app }) => {
       toWrong(box.current);
     }
   };
+  /** @param {File[]} files */
   const take = ([file]) => {
     held.current = { file };
     name.value = file.name;
     return read();
   };
   // The file is kept: another unit reads it again, unless the body was changed since by hand.
+  /** @param {string} unit */
   const inUnit = (unit) => {
     units.value = unit;
     const { file, placed } = held.current;

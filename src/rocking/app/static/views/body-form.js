@@ -8,17 +8,21 @@ import { METRES, fromMetres, inUnits } from "/views/body-units.js";
 const UNITS = Object.keys(METRES).map((unit) => [unit, unit]);
 const FROM_FILE = [["mass_points", "Mass points (from a file)"]];
 
-/** The fields of a body; the one that the server refused is marked too, until the body changes. */
+/** The fields of a body; the one that the server refused is marked too, until the body changes.
+ * @param {{ app: App, body: Server.BodyInput, refusal: any }} props */
 export const Form = ({ app, body, refusal }) => {
   const [kept, replaced] = [useRef(new Map()).current, useRef({}).current];
   const shape = shapeOf(body);
   const { units } = body;
+  /** @param {string} next */
   const become = (next) => {
     kept.set(shape, body);
     const before = kept.get(next);
     app.inputs.set("body", before ? renamed(inUnits(before, units), body.name) : asShape(body, next, app.body.get()));
   };
-  const put = (key) => (value) => app.inputs.set("body", withKey(app.inputs.get().body, key, value, replaced));
+  /** @param {string} key */
+  const put = (key) => (/** @type {any} */ value) => app.inputs.set("body", withKey(app.inputs.get().body, key, value, replaced));
+  /** @param {string} key */
   const error = (key) => (refusal?.field === key ? refusal.message : "");
   const own = `${shape} ${units}`; // other fields, however alike
   return html`<div class="stack">
@@ -32,21 +36,27 @@ export const Form = ({ app, body, refusal }) => {
   </div>`;
 };
 
+/** @param {Server.BodyInput} body @param {string | null} [name] */
 const renamed = ({ name: _, ...body }, name) => (name ? { ...body, name } : body);
 
 // What the solver takes, in metres; other sizes are slips of the keyboard or of the unit.
 const [LEAST, MOST] = [1e-9, 1e9];
 
+/** @param {Unit} unit */
 const sizeLimits = (unit) => {
   const [min, max] = [LEAST, MOST].map((length) => fromMetres(length, unit));
   return METRES[unit] ? { above: 0, min, max } : { above: 0 };
 };
 
+/** @param {{ shape: string, units: Unit, table: any, put: (key: string) => (value: any) => void, error: (key: string) => string }} props */
 const Sizes = ({ shape, units, table, put, error }) => {
   const limits = sizeLimits(units);
+  /** @param {string} key @param {string} label @param {object} [more] */
   const field = (key, label, more) => html`<${NumberField} key=${key} label=${label} value=${table[key]} on=${put(key)}
     error=${error(key)} ...${more} />`;
+  /** @param {string} key @param {string} label @param {string} unit @param {string} help */
   const known = (key, label, unit, help) => field(key, label, { unit, help, above: 0, optional: true });
+  /** @param {string} key @param {string[]} labels @param {string} help @param {string} alone */
   const pair = (key, labels, help, alone) => html`<${Pair} key=${key} labels=${labels} unit=${units} help=${help} alone=${alone}
     value=${table[key]} on=${put(key)} error=${error(key)} />`;
   return html`
@@ -64,7 +74,9 @@ const Sizes = ({ shape, units, table, put, error }) => {
 };
 
 // Two numbers that stand together or not at all: what is typed of them, until both are there or both are gone.
+/** @param {{ labels: string[], value?: number[] | null, on: (pair: any) => void, help: string, alone: string, error: string, unit: string }} props */
 const Pair = ({ labels, value, on, help, alone, error, ...more }) => {
+  /** @type {{ current: (number | null)[] }} */
   const typed = useRef([null, null]);
   const seen = useRef("");
   if (seen.current !== String(value)) {
@@ -73,13 +85,15 @@ const Pair = ({ labels, value, on, help, alone, error, ...more }) => {
     else if (!typed.current.includes(null)) typed.current = [null, null];
   }
   const [, draw] = useState();
-  const take = (index) => (given) => {
+  /** @param {number} index */
+  const take = (index) => (/** @type {number | null} */ given) => {
     const pair = typed.current.with(index, given);
     typed.current = pair;
     draw({});
     if (pair[0] === null && pair[1] === null) on(null);
     else if (!pair.includes(null)) on(pair);
   };
+  /** @param {number} index */
   const lonely = (index) => typed.current[index] === null && typed.current[1 - index] !== null;
   return labels.map((label, index) => html`<${NumberField} key=${label} label=${label} value=${typed.current[index]} on=${take(index)}
     optional help=${index ? help : ""} error=${lonely(index) ? alone : index ? "" : error} ...${more} />`);

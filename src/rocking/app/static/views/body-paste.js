@@ -5,15 +5,17 @@ import { Button, Field, toWrong } from "/parts/fields.js";
 import * as model from "/views/body-editor-model.js";
 import { parsePoints } from "/views/body-points.js";
 
+/** @type {[string, string, (editor: Editor, points: Ring) => string | void][]} */
 const USES = [
-  ["Use as outline", "primary", (...given) => asOutline(...given)], ["Add as region", "", (...given) => asRegion(...given)],
-  ["Add as hole", "", (...given) => asHole(...given)],
+  ["Use as outline", "primary", (editor, points) => asOutline(editor, points)], ["Add as region", "", (editor, points) => asRegion(editor, points)],
+  ["Add as hole", "", (editor, points) => asHole(editor, points)],
 ];
 
-/** The part of the editor that takes pasted points. */
+/** The part of the editor that takes pasted points. @param {{ editor: Editor }} props */
 export const PastePart = ({ editor }) => {
   const box = useRef(null);
   const [text, told, fault] = ["", "", ""].map(useSignal);
+  /** @param {string} given */
   const read = (given) => {
     const { points, fault: wrong } = parsePoints(given);
     text.value = given;
@@ -21,6 +23,7 @@ export const PastePart = ({ editor }) => {
     told.value = wrong ? "" : `${points.length} points read, in ${editor.units()}.`;
     return wrong ? null : points;
   };
+  /** @param {(editor: Editor, points: Ring) => string | void} make */
   const use = (make) => {
     const points = read(text.value);
     if (!points) return toWrong(box.current);
@@ -37,7 +40,7 @@ export const PastePart = ({ editor }) => {
     </div></details>`;
 };
 
-/** Points as the whole body; what was done, in words. */
+/** Points as the whole body; what was done, in words. @param {Editor} editor @param {Ring} points */
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
   editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
@@ -45,13 +48,13 @@ export const asOutline = (editor, points) => {
   return lost ? `${words} ${lost}` : words;
 };
 
-/** Points as one more region. */
+/** Points as one more region. @param {Editor} editor @param {Ring} points */
 export const asRegion = (editor, points) => {
   const regions = editor.regions();
-  editor.change(model.withRegion(regions, points, regions.at(-1).density), { region: regions.length, ring: -1, vertex: 0 });
+  editor.change(model.withRegion(regions, points, regions[regions.length - 1].density), { region: regions.length, ring: -1, vertex: 0 });
 };
 
-/** Points as a hole of the chosen region. */
+/** Points as a hole of the chosen region. @param {Editor} editor @param {Ring} points */
 export const asHole = (editor, points) => {
   const [regions, { region }] = [editor.regions(), editor.state.place];
   editor.change(
@@ -60,13 +63,15 @@ export const asHole = (editor, points) => {
 };
 
 // What is typed of the material stays; what belonged to the former outline does not.
+/** @param {any} section @param {Region} region @param {Ring} outline */
 const replaced = ({ depth, mass }, { density }, outline) => ({
   region: [density === undefined ? { outline } : { outline, density }],
   ...(depth === undefined ? {} : { depth }),
   ...(mass === undefined ? {} : { mass }),
 });
 
-/** What of the former body is gone, in words; nothing if it had no more than its outline. */
+/** What of the former body is gone, in words; nothing if it had no more than its outline.
+ * @param {any} section @param {Region[]} regions */
 const lostWords = (section, regions) => {
   const holes = regions.flatMap((each) => each.holes ?? []).length;
   const others = regions.length - 1;

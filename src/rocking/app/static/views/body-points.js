@@ -2,11 +2,13 @@
 
 import { parseNumber } from "/app/format.js";
 
-/** Read points from text: {points, fault}. A first line of headings is passed over. */
+/** Read points from text: {points, fault}. A first line of headings is passed over.
+ * @param {string} text @returns {{ points: Ring, fault: string }} */
 export const parsePoints = (text) => {
+  /** @type {Ring} */
   const points = [];
   const lines = text.split(/\r?\n/).map(
-    (line, index) => [line.trim().replace(/[[\](){}]/g, " ").replace(/[,;]\s*$/, "").trim(), index + 1]
+    /** @returns {[string, number]} */ (line, index) => [line.trim().replace(/[[\](){}]/g, " ").replace(/[,;]\s*$/, "").trim(), index + 1]
   );
   for (const [line, at] of lines) {
     if (!line) continue;
@@ -23,19 +25,21 @@ export const parsePoints = (text) => {
 };
 
 // What separates is asked from the surest sign to the least: a semicolon or tab, then space, then comma.
+/** @param {string} line @returns {Point | null} */
 const pairOf = (line) => {
   for (const separator of [/\s*[;\t]\s*/, /,\s+|\s+/, /,/]) {
     const parts = line.split(separator).filter(Boolean);
     if (parts.length === 2) {
       const pair = parts.map(parseNumber);
-      return pair.includes(null) ? null : pair;
+      return pair.includes(null) ? null : /** @type {Point} */ (pair);
     }
     if (parts.length > 2) return null;
   }
   return null;
 };
 
+/** @param {Ring} points */
 const open = (points) => {
-  const [first, last] = [points[0], points.at(-1)];
+  const [first, last] = [points[0], points[points.length - 1]];
   return points.length > 1 && first[0] === last[0] && first[1] === last[1] ? points.slice(0, -1) : points;
 };

@@ -5,6 +5,7 @@ import { changedAt } from "/app/inputs.js";
 import { fromMetres } from "/views/body-units.js";
 
 /** Shapes with the fields of each; a field is a length unless it says otherwise. */
+/** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
 export const SHAPES = {
   block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },
   trapezoid: {
@@ -28,16 +29,17 @@ export const SHAPES = {
   section: { words: "Polygon", fields: [] },
 };
 
-/** Which shape an Inputs body is. */
+/** Which shape an Inputs body is. @param {any} body @returns {string} */
 export const shapeOf = (body) => Object.keys(SHAPES).find((each) => body[each]) ?? (
   body.mass_points ? "mass_points" : "block"
 );
 
-/** The table that holds the sizes: the body itself for a block in its short form. */
+/** The table that holds the sizes: the body itself for a block in its short form. @param {any} body @returns {any} */
 export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
 
 /** The body with another number of its table; nothing takes it away. Mass and density say the same, and the one that was
- * typed last is meant: densities that a mass takes the place of go into `replaced`, and come back when it is gone. */
+ * typed last is meant: densities that a mass takes the place of go into `replaced`, and come back when it is gone.
+ * @param {any} body @param {string} key @param {any} value @param {{ [shape: string]: any }} replaced */
 export const withKey = (body, key, value, replaced) => {
   const shape = shapeOf(body);
   const given = value ?? undefined;
@@ -52,26 +54,32 @@ export const withKey = (body, key, value, replaced) => {
   return changedTable(next, (table) => withDensities(table, []));
 };
 
+/** @param {any} body @param {(table: any) => any} change */
 const changedTable = (body, change) => {
   const shape = shapeOf(body);
   return body[shape] ? { ...body, [shape]: change(body[shape]) } : change(body);
 };
 
-const densitiesOf = ({ density, region = [] }) => [density, ...region.map((each) => each.density)];
+/** @param {any} table */
+const densitiesOf = ({ density, region = [] }) => [density, ...region.map((/** @type {Region} */ each) => each.density)];
 
 // A table's own density and those of its regions, as long as they are the same regions; of none of them none.
+/** @param {any} table @param {any[]} [densities] */
 const withDensities = (table, [density, ...others] = []) => {
   const same = others.length === table.region?.length ? others : [];
-  const region = table.region?.map(({ density: _, ...each }, k) => clean({ ...each, density: same[k] }));
+  const region = table.region?.map((/** @type {Region} */ { density: _, ...each }, /** @type {number} */ k) => clean({ ...each, density: same[k] }));
   return clean({ ...table, density, region });
 };
 
+/** @param {any} body @param {any} feet */
 const withFeet = ({ units, name, ...block }, feet) => ({ units, ...(name ? { name } : {}), block: { ...block, feet } });
 
-/** Regions as a section may hold them: where its mass was typed they have no densities. */
+/** Regions as a section may hold them: where its mass was typed they have no densities.
+ * @param {Region[]} regions @param {{ mass?: number }} section */
 export const weighed = (regions, { mass }) => (mass === undefined ? regions : withDensities({ region: regions }).region);
 
-/** The body in another shape of about the same size. */
+/** The body in another shape of about the same size.
+ * @param {any} body @param {string} shape @param {Server.DescribedBody | null} facts */
 export const asShape = (body, shape, facts) => {
   const { units, name } = body;
   const from = tableOfShape(body);
@@ -79,6 +87,7 @@ export const asShape = (body, shape, facts) => {
   const drawn = regionsOf(facts, units);
   const density = from.mass ? undefined : from.density ?? firstDensity(body);
   const common = { depth: from.depth, density, mass: from.mass };
+  /** @type {{ [shape: string]: any }} */
   const sizes = {
     block: { width, height },
     trapezoid: { base: width, top: round(width * 0.6), height, lean: 0 },
@@ -90,8 +99,10 @@ export const asShape = (body, shape, facts) => {
   return clean(shape === "block" ? { units, name, ...table } : { units, name, [shape]: table });
 };
 
-/** The regions that the server drew, in a unit, as an editable section has them. */
+/** The regions that the server drew, in a unit, as an editable section has them.
+ * @param {Server.DescribedBody | null} facts @param {Unit} units @returns {any[]} */
 export const regionsOf = (facts, units) => {
+  /** @param {Ring} points */
   const ring = (points) => points.map(([x, y]) => [fromMetres(x, units), fromMetres(y, units)]);
   const regions = facts?.outline ?? [];
   return regions.map(({ outline, holes, density }) =>
@@ -103,11 +114,14 @@ export const regionsOf = (facts, units) => {
     ));
 };
 
+/** @param {Server.BodyInput} body */
 const firstDensity = (body) => body.section?.region?.[0]?.density;
 
+/** @param {number} width @param {number} height */
 const rectangle = (width, height) => ({ outline: [[0, 0], [width, 0], [width, height], [0, height]] });
 
 // Before the first answer there are no facts: then the sizes that are typed.
+/** @param {Server.DescribedBody | null} facts @param {Unit} units @param {any} table */
 const spans = (facts, units, { width, height }) => {
   const points = (facts?.outline ?? []).flatMap((each) => each.outline);
   if (!points.length) return [width ?? fromMetres(0.5, units), height ?? fromMetres(2, units)];
@@ -117,8 +131,10 @@ const spans = (facts, units, { width, height }) => {
   });
 };
 
+/** @param {number} value */
 const round = (value) => Number(value.toPrecision(6));
 
+/** @param {{ [key: string]: any }} table */
 const clean = (table) => Object.fromEntries(
   Object.entries(table).filter(([, value]) => value !== undefined && value !== null)
 );

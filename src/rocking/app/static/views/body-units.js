@@ -10,34 +10,40 @@ const LENGTHS = new Set([
   "holes", "points", "contact", "centre",
 ]);
 
-/** The same body with its lengths in another unit. */
+/** The same body with its lengths in another unit.
+ * @param {Server.BodyInput} body @param {Unit} units @returns {Server.BodyInput} */
 export const inUnits = (body, units) => {
   if (body.units === units) return body;
   const factor = METRES[body.units] / METRES[units];
   return { ...rescaled(body, factor), units };
 };
 
-/** A length in metres in a unit. */
+/** A length in metres in a unit. @param {number} length @param {Unit} units */
 export const fromMetres = (length, units) => exact(length, 1 / METRES[units]);
 
 // What binary arithmetic left behind is rounded away only where that is all that is rounded away.
+/** @param {number} value @param {number} factor */
 const exact = (value, factor) => {
   const neat = tidy(value * factor);
   return Math.abs(neat / factor - value) <= 4 * Number.EPSILON * Math.abs(value) ? neat : value * factor;
 };
 
+/** @param {any} table @param {number} factor @returns {any} */
 const rescaled = (table, factor) =>
   Object.fromEntries(Object.entries(table).map(([key, value]) => [
     key, LENGTHS.has(key) ? times(value, factor) : isTable(value) ? nested(value, factor) : value,
   ]));
 
+/** @param {any} value @param {number} factor @returns {any} */
 const nested = (value, factor) =>
   Array.isArray(value) ? value.map(
     (each) => (isTable(each) ? rescaled(each, factor) : each)
   ) : rescaled(value, factor);
 
+/** @param {unknown} value */
 const isTable = (value) => typeof value === "object" && value !== null;
 
+/** @param {any} value @param {number} factor @returns {any} */
 const times = (value, factor) => (
   Array.isArray(value) ? value.map((each) => times(each, factor)) : exact(value, factor)
 );

@@ -12,7 +12,7 @@ import { Form } from "/views/body-form.js";
 
 const OLDER = "The picture and the numbers are those of the last valid sizes.";
 
-/** Show the view. */
+/** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const [body, facts, refusal, faulty] = [app.inputs.get().body, app.body.get(), app.body.error(), ""].map(signal);
   const others = signal(0); // how often the whole document became another
@@ -33,6 +33,7 @@ export const mount = (section, app) => {
   return { shown: editor.tell };
 };
 
+/** @param {{ app: App, editor: Editor, body: Signal<Server.BodyInput>, others: Signal<number>, facts: Signal<Server.DescribedBody>, refusal: Signal<any>, faulty: Signal<string> }} props */
 const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
   useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields came and went
   return html`
@@ -48,6 +49,7 @@ const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
     </div>`;
 };
 
+/** @param {{ app: App, facts: Signal<Server.DescribedBody>, refusal: Signal<any>, faulty: Signal<string> }} props */
 const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, faulty: { value: faulty } }) => {
   const kind = refused || faulty ? "stale" : "";
   return html`
@@ -62,4 +64,5 @@ const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, fa
       <div class="stack" data-testid="body-facts">${facts && html`<${Facts} app=${app} facts=${facts} />`}</div><//>`;
 };
 
+/** @param {Server.DescribedBody} facts @param {number} width */
 const drawn = (facts, width) => facts && bodyPicture(facts, { width, height: 430 });

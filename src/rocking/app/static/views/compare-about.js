@@ -5,9 +5,11 @@ import { Button, Note } from "/parts/fields.js";
 import { number } from "/app/format.js";
 import { wordsOf } from "/views/response-labels.js";
 
-const familyOf = (label) => label.split("*").at(-1).split(":")[0];
+/** @param {string} label */
+const familyOf = (label) => label.replace(/^.*\*/s, "").split(":")[0];
 
-/** What the catalogue of models and the published measurements say of one of them. */
+/** What the catalogue of models and the published measurements say of one of them.
+ * @param {{ app: App, label: string, onClose: () => unknown }} props */
 export const About = ({ app, label, onClose }) => {
   const model = app.info.models.find(({ name }) => name === familyOf(label));
   const impact = useSignal(null);
@@ -31,19 +33,22 @@ export const About = ({ app, label, onClose }) => {
     </section>`;
 };
 
+/** @param {{ of: string[] }} props */
 const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((words) => html`<li key=${words}>${words}</li>`)}</ul>`
   : html`<p>None is known.</p>`);
 
+/** @param {{ found: Server.ImpactAnswered | null, name: string }} props */
 const Evidence = ({ found, name }) => {
   if (!found) return html`<p class="waiting">Computing</p>`;
   const rows = Object.entries(found.coefficients)
-    .map(([foot, all]) => [foot, all.find(({ model }) => familyOf(model) === name)]).filter(([, row]) => row);
+    .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
   if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
-  return html`${rows.map(([foot, row]) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient_of_restitution, 4)};
+  return html`${rows.map(({ foot, row }) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient_of_restitution, 4)};
       of a measured body 95 % lie from ${number(row.low_95, 4)} to ${number(row.high_95, 4)}.${" "}
       ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
     <p class="field-help">${found.measured.points.length} published measurements. ${found.measured.source}</p>`;
 };
 
+/** @param {{ of: string[] }} props */
 const Warnings = ({ of }) => of.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`);

@@ -6,7 +6,8 @@ import { Button, Choice, Note } from "/parts/fields.js";
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
 
-/** The picture of a study that compares its models, as the command line draws it, and its files. */
+/** The picture of a study that compares its models, as the command line draws it, and its files.
+ * @param {{ app: App, asked: { look: () => unknown } }} props */
 export const Studies = ({ app, asked }) => {
   const [all, chosen, drawn, refused] = [useSignal([]), useSignal(""), useSignal(""), useSignal("")];
   asked.look = async () => {
@@ -17,7 +18,9 @@ export const Studies = ({ app, asked }) => {
   };
   useEffect(() => void (refused.value = ""), [chosen.value]);
   const study = all.value.find(({ id }) => id === chosen.value);
+  /** @param {string} kind @param {string} what */
   const path = (kind, what) => `/api/studies/${study.id}/export.${kind}?what=${what}`;
+  /** @param {string} kind @param {string} what @param {string} words */
   const save = (kind, what, words) => html`<${Button} aria-label=${`${words} as ${kind.toUpperCase()}`}
     onClick=${() => app.download(path(kind, what), undefined, `${what}.${kind}`)}>${words}, ${kind.toUpperCase()}<//>`;
   return html`

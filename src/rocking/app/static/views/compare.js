@@ -16,7 +16,7 @@ import { complete } from "/views/response-controls.js";
 import { readRestitution } from "/views/response-restitution.js";
 import { Banner, inWords, outcomeOf, verdictKind } from "/views/response-words.js";
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const question = () => {
     const { body, motion, restitution, response, settings } = app.inputs.get();
@@ -30,9 +30,10 @@ export const mount = (section, app) => {
       restitution: { models: [...new Set([...known, ...own.models])], ...typed }, points: dotsOf(section),
     };
   };
+  /** @type {Asked<Server.ResponseAnswered>} */
   const asked = createAnswer(app, "compare", ["body", "motion", "restitution", "response", "settings"], question);
   const margins = createMargins(app);
-  const time = createTime(null, asked.look);
+  const time = createTime(undefined, asked.look);
   const studies = { look: () => {} };
   render(html`<${Compare} app=${app} asked=${asked} margins=${margins} time=${time} studies=${studies} />`, section);
   return {
@@ -44,16 +45,18 @@ export const mount = (section, app) => {
   };
 };
 
-/** Least factors on the motion that overturn the body, by model, as `rocking assess` finds them; of these inputs alone. */
+/** Least factors on the motion that overturn the body, by model, as `rocking assess` finds them; of these inputs alone.
+ * @param {App} app */
 const createMargins = (app) => {
   const questions = createQuestions(app, "assess");
+  /** @param {Server.Inputs} inputs */
   const keyOf = ({ body, motion, settings }) => JSON.stringify([body, motion, settings]);
   const [now, of] = [signal(keyOf(app.inputs.get())), signal("")];
   app.inputs.subscribe((inputs) => (now.value = keyOf(inputs)));
   const ended = signal(null);
   // It is no question of Decide: what was found is kept here, and it is gone from the server.
   questions.shown.subscribe((asked) => {
-    if (!["done", "refused", "stopped"].includes(asked?.state)) return;
+    if (!asked || !["done", "refused", "stopped"].includes(asked.state)) return;
     ended.value = asked;
     questions.remove(asked.id);
   });
@@ -64,7 +67,7 @@ const createMargins = (app) => {
     found: computed(() => question.value?.answer?.models ?? null),
     ask: () => {
       const inputs = app.inputs.get();
-      const { tables, files } = motionOf(inputs);
+      const { tables, files } = /** @type {NonNullable<ReturnType<typeof motionOf>>} */ (motionOf(inputs));
       [of.value, ended.value] = [keyOf(inputs), null];
       const name = `Margins of ${inputs.body.name || app.project.here.value.name}`;
       return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name, { project: "" });
@@ -72,14 +75,16 @@ const createMargins = (app) => {
   };
 };
 
+/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, margins: Margins, time: Time, studies: { look: () => unknown } }} props */
 const Compare = ({ app, asked, margins, time, studies }) => {
   const hidden = useSignal(new Set());
   const opened = useSignal(null);
   const { answer: found, refused, part } = asked;
   const answers = found.value?.answers ?? [];
-  const there = useMemo(() => answers.filter((one) => one.series), [answers]);
+  const there = useMemo(() => answers.filter((one) => "series" in one), [answers]);
   const shown = useMemo(() => there.filter(({ label }) => !hidden.value.has(label)), [there, hidden.value]);
   const lead = shown.find(({ label }) => label === opened.value)?.label;
+  /** @param {string} label */
   const toggle = (label) => {
     const next = new Set(hidden.value);
     if (!next.delete(label)) next.add(label);
@@ -92,7 +97,7 @@ const Compare = ({ app, asked, margins, time, studies }) => {
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
-      <${Banner} kind=${verdictKind(there)} sentences=${sentencesOf(found.value, there)} testid="compare-verdict" />
+      <${Banner} kind=${verdictKind(there)} sentences=${found.value && sentencesOf(found.value, there)} testid="compare-verdict" />
       <div class="compare">
         <div class="compare-models">
           <section class="card" aria-labelledby="compare-models-title"><h2 id="compare-models-title">Models</h2>
@@ -113,8 +118,10 @@ const Compare = ({ app, asked, margins, time, studies }) => {
     <${Studies} app=${app} asked=${studies} />`;
 };
 
-/** The answer in plain words, from what was computed: what most models say first. */
+/** The answer in plain words, from what was computed: what most models say first.
+ * @param {Server.ResponseAnswered} found @param {Server.ResponseFacts[]} there */
 const sentencesOf = (found, there) => {
+  /** @param {Server.ResponseFacts} answer */
   const falls = ({ outcome }) => outcome === "overturned";
   const [fallen, standing] = [there.filter(falls), there.filter((one) => !falls(one))];
   const [most, fewer] = fallen.length > standing.length ? [fallen, standing] : [standing, fallen];
@@ -128,8 +135,10 @@ const sentencesOf = (found, there) => {
   return [`${most.length} of ${there.length} models: it ${verb}; ${words}`, ...lean, ...doubts.map((each) => inWords(each, there))];
 };
 
+/** @type {Words} */
 const SHORT = { no_uplift: "is not lifted", rocked: "stands", overturned: "overturns" };
 
+/** @param {{ answers: any[], hidden: Set<string>, opened: Signal<string | null>, toggle: (label: string) => unknown, margins: Margins }} props */
 const Models = ({ answers, hidden, opened, toggle, margins }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label="Table of the models">
     <table data-testid="compare-models">
@@ -140,6 +149,7 @@ const Models = ({ answers, hidden, opened, toggle, margins }) => html`
     </table>
   </div>`;
 
+/** @param {{ answer: any, shown: boolean, opened: Signal<string | null>, toggle: (label: string) => unknown, margin: string }} props */
 const Model = ({ answer, shown, opened, toggle, margin }) => {
   const { label } = answer;
   const open = opened.value === label;
@@ -158,11 +168,13 @@ const Model = ({ answer, shown, opened, toggle, margin }) => {
   </tr>`;
 };
 
+/** @param {Server.RockingSides} sides */
 const coefficients = ({ left, right }) => {
   const [a, b] = [left, right].map(({ coefficient }) => number(coefficient, 4));
   return a === b ? b : `${a} | ${b}`;
 };
 
+/** @param {Margins} margins @param {string} label */
 const marginOf = (margins, label) => {
   const found = margins.found.value;
   if (!found) return "\u2013";
@@ -171,6 +183,7 @@ const marginOf = (margins, label) => {
   return found[key].lowest === null ? "none found" : number(found[key].lowest, 3);
 };
 
+/** @param {{ app: App, margins: Margins }} props */
 const Margins = ({ app, margins }) => {
   const { questions } = margins;
   useEffect(() => void questions.look(), []);

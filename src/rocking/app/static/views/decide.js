@@ -14,18 +14,21 @@ const FAMILIES = [
 ];
 const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", what: "assess" };
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "assess", "predict", "minimum");
   render(html`<${Decide} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
 
+/** @param {{ app: App, questions: Questions }} props */
 const Decide = ({ app, questions }) => {
   const form = useForm(app, "decide", FIRST);
   const [shaken, files, units, margin, author, date, pga, what] = Object.keys(FIRST).map((name) => form.at(name));
-  const [range, unknown] = ["range", "unknown"].map((name) => ({ get value() { return form.at(name).value || {}; }, at: (key) => form.at(name, key) }));
+  const [range, unknown] = ["range", "unknown"].map((name) => ({ get value() { return form.at(name).value || {}; }, at: /** @param {string} key */ (key) => form.at(name, key) }));
+  /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
+  /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
     if (what.value === "minimum") {
@@ -44,12 +47,12 @@ const Decide = ({ app, questions }) => {
     const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
     if (predicts) {
       const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
-      questions.ask(tables, asked.files, `How likely does ${name} overturn?`, { command: "predict" });
+      questions.ask(tables, asked.files ?? {}, `How likely does ${name} overturn?`, { command: "predict" });
       return;
     }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files, `Does ${name} stand?`);
+    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, `Does ${name} stand?`);
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
@@ -79,7 +82,8 @@ const Decide = ({ app, questions }) => {
     <//>`;
 };
 
-/** What shakes the body as a job has it, the files that it needs, and what is missing. */
+/** What shakes the body as a job has it, the files that it needs, and what is missing.
+ * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string }} said @returns {Shaking} */
 const motions = (inputs, shaken, files, { units, pga }) => {
   if (shaken === "records") {
     const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}) };
@@ -95,12 +99,13 @@ const motions = (inputs, shaken, files, { units, pga }) => {
   return motionOf(inputs) ?? { files: {}, missing: "Nothing moves the ground yet: choose a motion first." };
 };
 
-/** Ask for all accelerations at which the verdict changes; what is missing. */
+/** Ask for all accelerations at which the verdict changes; what is missing.
+ * @param {App} app @param {Questions} questions @param {any} range */
 const crossings = (app, questions, range) => {
   const { body, motion, restitution, settings } = app.inputs.get();
-  const known = motionOf({ motion });
+  const known = motionOf({ body, motion });
   if (!known) return "Nothing moves the ground yet: choose a motion first.";
-  const { record, pulse, scale, ...keys } = known.tables.motion;
+  const { record, pulse, scale, ...keys } = /** @type {Server.MotionInput} */ (known.tables.motion);
   if (!record && !pulse) return "This is asked of one record or pulse: choose one as the motion.";
   const named = record ? { records: [record], ...keys } : { pulse: [pulse], ...keys };
   const { models, values, ...one } = restitution ?? {};
@@ -113,28 +118,37 @@ const crossings = (app, questions, range) => {
   return "";
 };
 
-const Found = (given) => html`<${{ minimum: Crossings, predict: Forecast }[given.question.command] ?? Verdict} ...${given} />`;
+/** @param {Given} given */
+const Found = (given) => html`<${FOUND[given.question.command] ?? Verdict} ...${given} />`;
+
+/** @type {{ [command: string]: ((given: Given) => VNode) | undefined }} */
+const FOUND = { minimum: (given) => Crossings(given), predict: (given) => Forecast(given) };
 
 const G = 9.80665;
 const MOST = 20; // crossings in the table
+/** @type {{ [mode: number]: string | undefined }} */
 const STANDS = { "-2": "not lifted", "-1": "stays standing" };
+/** @param {number} mode */
 const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "falls, no impact" : `falls, ${mode} impact${mode === 1 ? "" : "s"}`);
 
+/** @param {Given} given */
 const Crossings = ({ answer, question }) => html`
   <p class=${`verdict ${answer.minimum_m_s2 === null ? "good" : "bad"}`} data-testid="verdict">
     ${answer.minimum_m_s2 === null ? "It overturns nowhere" : `It first overturns at a PGA of ${number(answer.minimum_m_s2 / G, 4)} g, ${number(answer.minimum_m_s2 / answer.motion.peak_acceleration_m_s2, 4)} times this motion`}.</p>
   <p>${sentence(answer.sentence)}</p>
   <${Drawing} question=${question} alt="Where the body overturns, by the acceleration of the ground" />
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
-    rows=${answer.crossings.slice(0, MOST).map((each) => [number(each.acceleration_g, 6), number(each.scale, 6), number(each.ratio, 4),
+    rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.acceleration_g, 6), number(each.scale, 6), number(each.ratio, 4),
       modeOf(each.mode_below), modeOf(each.mode_above)])} />
   <p class="field-help">Restitution: ${answer.restitution}.
     ${answer.crossings.length > MOST && ` The first ${MOST} of ${answer.crossings.length} crossings; the CSV has all of them.`}</p>`;
 
 const MARKS = { overturning: "bad", uplift: "fair" };
 
+/** @param {Given} given */
 const Verdict = ({ answer, question }) => {
-  const fallen = (each) => each.overturned.filter((one) => one === 1).length;
+  /** @param {any} each */
+  const fallen = (each) => each.overturned.filter((/** @type {number} */ one) => one === 1).length;
   const rows = Object.entries(answer.models).map(([name, each]) => [
     name, number(each.coefficients.left), number(each.coefficients.right),
     [`${fallen(each)} of ${each.overturned.length}`, fallen(each) ? "bad" : "good"],
@@ -143,7 +157,7 @@ const Verdict = ({ answer, question }) => {
   const some = Object.values(answer.models).some(fallen);
   return html`
     <p class=${`verdict ${some ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
-    ${answer.sentences.slice(1).map((words) => html`<p key=${words}>${words}</p>`)}
+    ${answer.sentences.slice(1).map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
     <${Drawing} question=${question} alt="Least factor on each motion that overturns the body, by model" />
     <h3>With each model of the impact</h3>
     <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns under", "least factor"]} rows=${rows} />
@@ -153,19 +167,24 @@ const Verdict = ({ answer, question }) => {
       ${Object.entries(answer.refused).map(([name, why]) => `${name}: ${why}`).join("; ")}</p>`}`;
 };
 
+/** @type {Words} */
 const WHAT = { uplift: "rocks", sliding: "slides", overturning: "overturns" };
+/** @param {number | null} low @param {number | null} high */
 const between = (low, high) => (low === null ? "\u2013" : `${percent(low)} to ${percent(high)}`);
 
-/** Probabilities, under these motions and if others like them came; beside them those with another restitution. */
+/** Probabilities, under these motions and if others like them came; beside them those with another restitution.
+ * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval", "with other motions like these"]}
     rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
       ...Object.entries(beside).map(([model, each]) => [`overturns, all else alike, by ${modelWords(model)}`, each])].map(([words, each]) => [
       words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
 
+/** @param {Given} given */
 const Forecast = ({ answer, question }) => {
   const { value } = answer.probability.overturning;
   const shares = Object.entries(answer.shares).sort(([, one], [, other]) => other.total - one.total);
+  /** @param {number} low @param {number} at @param {number} high */
   const share = (low, at, high) => `${number(at, 2)} (${number(low, 2)} to ${number(high, 2)})`;
   return html`
     <p class=${`verdict ${value < 0.01 ? "good" : value < 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
@@ -182,7 +201,8 @@ const Forecast = ({ answer, question }) => {
         rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.low, 3)})`,
           `${percent(e.probability_high)} (${number(e.high, 3)})`])} />`}
     <details><summary>What was assumed</summary>
-      <ul>${answer.assumed.map((words) => html`<li key=${words}>${words}</li>`)}</ul></details>`;
+      <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>`;
 };
 
+/** @param {any} value */
 const percent = (value) => `${number(100 * value, 3)}\u00a0%`;

@@ -16,12 +16,14 @@ const RANGE = ["from", "to", "count", "spacing"];
 const NOTHING = {};
 const BED = { label: "contact bed", colour: "--accent", points: true };
 
-/** What is asked of the bed and what comes out of it; `body` has the slenderness and the width. */
+/** What is asked of the bed and what comes out of it; `body` has the slenderness and the width.
+ * @param {{ app: App, body: { slenderness: number, width: number } }} props */
 export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;
   const form = useForm(app, "bed", {});
   const varied = useSignal("slenderness");
   const [found, refused, busy] = [null, {}, false].map(useSignal);
+  /** @param {any} event */
   const compute = async (event) => {
     event.preventDefault();
     busy.value = true;
@@ -35,8 +37,9 @@ export const Laboratory = ({ app, body }) => {
     }
     busy.value = false;
   };
+  /** @param {string} name */
   const field = (name) => html`<${KeyField} key=${name} name=${name} facts=${keys[name]} value=${form.at(name)}
-    ...${name in body ? { placeholder: number(body[name], 4) } : {}} />`;
+    ...${name in body ? { placeholder: number(/** @type {any} */ (body)[name], 4) } : {}} />`;
   const others = Object.keys(keys).filter((name) => name !== "varied" && !RANGE.includes(name));
   return html`<div class="question" data-testid="bed">
     <form class="stack" onSubmit=${compute} aria-label="Contact bed">
@@ -49,12 +52,13 @@ export const Laboratory = ({ app, body }) => {
     ${found.value && html`<${Emerged} found=${found.value} />`}</div>`;
 };
 
+/** @param {{ found: Server.ContactBedAnswered }} props */
 const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
   const shown = useSignal("coefficient");
   const time = useRef(createTime()).current;
   const { unit: of, values: curve } = results[shown.value];
   const beside = shown.value === "coefficient" ? Object.entries(rigid) : [];
-  const log = values[0] > 0 && values.at(-1) / values[0] > 8;
+  const log = values[0] > 0 && values[values.length - 1] / values[0] > 8;
   const words = shown.value.replaceAll("_", " ");
   const shape = {
     title: `The contact bed: ${words}`, x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },

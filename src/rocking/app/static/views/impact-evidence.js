@@ -10,7 +10,7 @@ import { rowPicture } from "/drawing/row-picture.js";
 import { Drawn, Made } from "/parts/made.js";
 import { Swatch, wordsOf } from "/views/response-labels.js";
 
-/** Pictures and legend. */
+/** Pictures and legend. @param {{ answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Evidence = ({ answer, foot }) => html`
   <div class="columns two">
     <div class="stack"><${Drawn} draw=${cloudPicture} of=${[answer, foot]} />
@@ -24,20 +24,25 @@ export const Evidence = ({ answer, foot }) => html`
   </div>
   <p class="field-help">${answer.measured.source}</p>`;
 
-/** Of the side about which the body turns before it lands on a foot. */
+/** Of the side about which the body turns before it lands on a foot.
+ * @param {Server.ImpactAnswered} answer @param {Foot} foot */
 export const slendernessOf = ({ body: { sides } }, foot) => sides[foot === "right" ? "left" : "right"].slenderness_ratio;
 
+/** @param {Server.ImpactAnswered} answer */
 const pointsOf = ({ measured }) => measured.points ?? measured;
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot */
 const rowsOf = (answer, foot) => answer.coefficients[foot].map((row) => ({
   model: row.model, value: row.coefficient_of_restitution, low: row.low_95, high: row.high_95,
 }));
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const cloudPicture = (answer, foot, width) => measuredPicture({
   measured: pointsOf(answer), curves: answer.curves ?? [], rows: rowsOf(answer, foot),
   slenderness: slendernessOf(answer, foot),
 }, { width });
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const intervalPicture = (answer, foot, width) => {
   const rows = rowsOf(answer, foot);
   const low = lowest(rows.map((row) => row.low));
@@ -48,6 +53,7 @@ const intervalPicture = (answer, foot, width) => {
   });
 };
 
+/** @param {string} group */
 const groupKey = (group) => svg(
   "svg", { class: "picture key", width: 16, height: 16, "aria-hidden": "true" },
   marker(GROUPS[group]?.marker ?? "circle", 8, 8),

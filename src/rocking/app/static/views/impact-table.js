@@ -12,7 +12,8 @@ const COLUMNS = [
   { label: "Admissible", numeric: false },
 ];
 
-/** One row for each model; copying takes every digit. */
+/** One row for each model; copying takes every digit.
+ * @param {{ app: App, answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
   const shown = rows.map((row) => [
@@ -29,7 +30,8 @@ export const Coefficients = ({ app, answer, foot }) => {
     csv=${() => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 
-/** The warnings of one foot, each with the models it concerns. */
+/** The warnings of one foot, each with the models it concerns.
+ * @param {{ answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Warnings = ({ answer, foot }) => {
   const models = answer.coefficients[foot];
   const found = new Map();

@@ -14,7 +14,7 @@ import { Evidence, slendernessOf } from "/views/impact-evidence.js";
 import { impulseRows } from "/views/impact-impulse.js";
 import { Coefficients, Warnings } from "/views/impact-table.js";
 
-/** Show the view. */
+/** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const question = () => {
     const { body, settings } = app.inputs.get();
@@ -37,6 +37,7 @@ export const mount = (section, app) => {
 const OLDER = "What is shown below belongs to the last valid inputs.";
 const FEET = [["left", "left foot"], ["right", "right foot"]];
 
+/** @param {{ app: App, asked: Asked<Server.ImpactAnswered>, faulty: Signal<string> }} props */
 const Impact = ({ app, asked, faulty }) => {
   const { answer: { value: answer }, refused } = asked;
   const wrong = refused.value?.message ?? faulty.value;
@@ -51,11 +52,13 @@ const Impact = ({ app, asked, faulty }) => {
       ${answer && html`<${Results} app=${app} answer=${answer} />`}</div>`;
 };
 
+/** @param {{ app: App, answer: Server.ImpactAnswered }} props */
 const Results = ({ app, answer }) => {
   const wanted = useSignal("right");
-  const feet = Object.keys(answer.coefficients);
-  const foot = feet.includes(wanted.value) ? wanted.value : feet[0];
+  const feet = /** @type {Foot[]} */ (Object.keys(answer.coefficients));
+  const foot = feet.find((each) => each === wanted.value) ?? feet[0];
   const of = [answer, foot];
+  /** @param {string} what */
   const tools = (what) => html`<${PictureTools} app=${app} what=${what} query=${`?onto=${foot}`} />`;
   return html`
     ${feet.length > 1 && html`<${Segmented} label="The body lands on its" options=${FEET} value=${foot}
@@ -77,6 +80,7 @@ const Results = ({ app, answer }) => {
       <${Laboratory} app=${app} body=${blockLike(answer, foot)} /><//>`;
 };
 
+/** @param {{ title: string, lead: string, draw: (answer: Server.ImpactAnswered, foot: Foot, width: number) => Child, of: any[] }} props */
 const Pictured = ({ title, lead, draw, of }) => {
   const place = useRef(null);
   const files = useMemo(
@@ -86,14 +90,17 @@ const Pictured = ({ title, lead, draw, of }) => {
     <div ref=${place}><${Drawn} draw=${draw} of=${of} /></div><${Made} node=${files} class="chart-foot" /><//>`;
 };
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const ledgerOf = (answer, foot, width) => ledgerPicture(answer.ked_energy_shares[foot], { width });
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const stagesOf = ({ body, stages: of }, foot, width) => {
   const { points_m: points, stages } = of[foot];
   const shown = stages.map(({ name, share, velocity_m_s: velocities }) => ({ name, share, velocities }));
   return stagesPicture(body, { points, stages: shown }, foot, { width });
 };
 
+/** @param {Server.ImpactAnswered} answer @param {Foot} foot */
 const blockLike = (answer, foot) => ({
   slenderness: slendernessOf(answer, foot), width: answer.body.base[1] - answer.body.base[0],
 });

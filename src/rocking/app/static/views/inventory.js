@@ -8,28 +8,33 @@ import { Rows } from "/parts/table.js";
 import { FileDrop, QuestionView, filled, useForm } from "/questions/parts.js";
 
 const FIRST = { files: [], kind: "pga", level: "0.3", family: "firm-ground", count: "200" };
+/** @type {Words} */
 const LIGHTS = { red: "bad", amber: "fair", green: "good" };
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "inventory");
   render(html`<${Inventory} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
 
+/** @param {{ app: App, questions: Questions }} props */
 const Inventory = ({ app, questions }) => {
   const form = useForm(app, "inventory", FIRST);
   const [files, kind, level, family, count] = Object.keys(FIRST).map((name) => form.at(name));
+  /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const text = useSignal(null); // the lines of the list, and the question that was asked of them
   const fixed = useSignal({}); // lines that were corrected, by their number
+  /** @param {SentFile} list */
   const corrected = async (list) => {
     if (text.value?.of.sha !== list.sha || !Object.keys(fixed.value).length) return list;
-    const lines = text.value.lines.map((line, k) => fixed.value[k + 1] ?? line);
+    const lines = text.value.lines.map((/** @type {string} */ line, /** @type {number} */ k) => fixed.value[k + 1] ?? line);
     const sent = await questions.send(new File([lines.join("\n")], list.name));
     form.at("encoding").value = "";
     return { ...sent, name: list.name };
   };
+  /** @param {Event} event */
   const ask = async (event) => {
     event.preventDefault();
     const strength = Number(level.value.replace(",", "."));
@@ -75,11 +80,13 @@ const Inventory = ({ app, questions }) => {
 };
 
 const READ = ["columns", "encoding"];
+/** @param {{ [name: string]: string }} typed */
 const listed = (typed) => Object.fromEntries(READ.map((name) => [name, typed[name] ?? ""]));
 
 const MOST = 20; // rows that are corrected at a time
 
 // Lines of a list that is text, in the encoding that the answer tells; null of a workbook, corrected where it was made.
+/** @param {SentFile} list @param {string} source */
 const linesOf = async ({ name, sha }, source) => {
   if (/\.(xlsx|ods)$/i.test(name)) return null;
   const told = / \(([\w-]+)\)$/.exec(source)?.[1] ?? "utf-8";
@@ -90,11 +97,14 @@ const linesOf = async ({ name, sha }, source) => {
     return null;
   }
 };
+/** @type {Words} */
 const NAMES = { mac_roman: "macintosh", "utf-8-sig": "utf-8", "utf-16-be": "utf-16be", "utf-16-le": "utf-16le" };
 
 // Rows of the list that were not assessed, as they stand in it.
+/** @param {{ answer: any, text: any, fixed: Signal<any> }} props */
 const Corrections = ({ answer, text, fixed }) => {
   const rows = (text?.lines && answer?.not_assessed) || [];
+  /** @param {{ row: number }} fault */
   const at = ({ row }) => ({
     get value() { return fixed.value[row] ?? text.lines[row - 1]; },
     set value(line) { fixed.value = { ...fixed.value, [row]: line }; },
@@ -102,23 +112,24 @@ const Corrections = ({ answer, text, fixed }) => {
   return rows.length > 0 && html`
     <fieldset><legend>Correct rows, and ask again</legend>
       <pre tabindex="0" aria-label="The first line of the list">${text.lines[0]}</pre>
-      ${rows.slice(0, MOST).map((each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${`Line ${each.row}`} help=${each.reason}
+      ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${`Line ${each.row}`} help=${each.reason}
         value=${at(each)} />`)}</fieldset>`;
 };
 
+/** @param {Given} given */
 const Ranking = ({ answer }) => {
   const counts = ["red", "amber", "green"].map((light) => `${answer.counts[light]} ${light}`).join(", ");
   const missing = answer.not_assessed.length;
-  const rows = answer.objects.map((each) => [
+  const rows = answer.objects.map((/** @type {any} */ each) => [
     [`${each.name}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
-    each.overturned_interval.map((end) => number(100 * end, 2)).join(" to "), each.in_words, each.what_to_do,
+    each.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2)).join(" to "), each.in_words, each.what_to_do,
   ]);
   return html`
     <p class="verdict" data-testid="verdict">${counts}${missing ? `, ${missing} not assessed` : ""}, at ${answer.hazard.level}.</p>
     ${rows.length > 0 && html`<${Rows} caption="Objects, the worst first"
       head=${["object", "light", "overturns [%]", "what it does", "what to do"]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
-      rows=${answer.not_assessed.map((each) => [each.name ? [each.name, "own"] : "no name", String(each.row), each.reason])} />`}
+      rows=${answer.not_assessed.map((/** @type {any} */ each) => [each.name ? [each.name, "own"] : "no name", String(each.row), each.reason])} />`}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:${" "}
       ${answer.columns_not_read.join(", ")}</p>
       <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;

@@ -15,13 +15,14 @@ const KINDS = [
 
 const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "identify" };
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "identify", "paper");
   render(html`<${Measure} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
 
+/** @param {{ app: App, questions: Questions }} props */
 const Measure = ({ app, questions }) => {
   const form = useForm(app, "measure", FIRST);
   const [files, kind, column, unit, known, what] = Object.keys(FIRST).map((name) => form.at(name));
@@ -40,6 +41,7 @@ const Measure = ({ app, questions }) => {
       app.say("The browser does not let this page listen: allow the microphone, or drop a file.", "error");
     }
   };
+  /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
     if (what.value === "paper") {
@@ -75,28 +77,32 @@ const Measure = ({ app, questions }) => {
     <//>`;
 };
 
+/** @param {Given} given */
 const Found = (given) => (given.question.command === "paper" ? html`<${Published} ...${given} />` : html`<${Recording} ...${given} />`);
 
+/** @type {Words} */
 const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
 
+/** @param {Given} given */
 const Published = ({ answer }) => html`
   <p class="verdict" data-testid="verdict">
-    ${`${answer.claims.filter((one) => one.verdict === "holds").length} of ${answer.claims.length} claims hold`}</p>
-  ${answer.verdict.map((words) => html`<p key=${words}>${words}</p>`)}
+    ${`${answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length} of ${answer.claims.length} claims hold`}</p>
+  ${answer.verdict.map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
   <h3>All models against all measurements</h3>
   <${Rows} caption="Models" head=${["model", "RMSE of r", "95 % interval", "bias"]}
-    rows=${answer.league.map((one) => [one.name, number(one.rmse, 3), `${number(one.rmse_low, 3)} to ${number(one.rmse_high, 3)}`,
+    rows=${answer.league.map((/** @type {any} */ one) => [one.name, number(one.rmse, 3), `${number(one.rmse_low, 3)} to ${number(one.rmse_high, 3)}`,
       number(one.bias, 2)])} />
   <h3>Claims</h3>
   <${Rows} caption="Claims" head=${["claim", "verdict"]}
-    rows=${answer.claims.map((one) => [`${one.section}: ${one.claim}`, [one.verdict, MARK[one.verdict]]])} />`;
+    rows=${answer.claims.map((/** @type {any} */ one) => [`${one.section}: ${one.claim}`, [one.verdict, MARK[one.verdict]]])} />`;
 
+/** @param {Given} given */
 const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${(answer.doubts ?? []).map((words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
+    ${(answer.doubts ?? []).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
     ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0])}
-      rows=${models.map((each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;
+      rows=${models.map((/** @type {object} */ each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;
 };

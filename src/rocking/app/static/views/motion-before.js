@@ -3,7 +3,7 @@
 const KEPT = "rocking.motion-before";
 const USUAL = { pulse: "sine:amplitude=3,period=0.8" };
 
-/** Keeps a motion to come back to. */
+/** Keeps a motion to come back to. @param {Server.MotionInput | null} [motion] */
 export const rememberMotion = (motion) => {
   if (!motion) return;
   try {
@@ -16,7 +16,7 @@ export const rememberMotion = (motion) => {
 /** Returns the motion to come back to: the last one, or a usual pulse. */
 export const motionBefore = () => {
   try {
-    return JSON.parse(sessionStorage.getItem(KEPT)) ?? USUAL;
+    return JSON.parse(sessionStorage.getItem(KEPT) ?? "null") ?? USUAL;
   } catch {
     return USUAL;
   }

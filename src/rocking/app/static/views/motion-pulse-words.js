@@ -1,13 +1,14 @@
 /** Pulses as the API writes them: `sine:amplitude=3,period=0.8`. */
 
-/** Returns [name, parameters] of the words of a pulse. */
+/** Returns [name, parameters] of the words of a pulse.
+ * @param {string} words @returns {[string, { [key: string]: number }]} */
 export const readPulse = (words) => {
   const [name, tail = ""] = words.split(/:(.*)/s);
   const pairs = tail.split(",").filter(Boolean).map((item) => item.split("="));
   return [name.trim(), Object.fromEntries(pairs.map(([key, value]) => [key.trim(), Number(value)]))];
 };
 
-/** Returns the words of a pulse. */
+/** Returns the words of a pulse. @param {string} name @param {{ [key: string]: number }} parameters */
 export const writePulse = (name, parameters) => {
   const items = Object.entries(parameters).map(([key, value]) => `${key}=${value}`);
   return items.length ? `${name}:${items.join(",")}` : name;

@@ -9,12 +9,15 @@ import { plainWords } from "/views/studies-words.js";
 const USUAL = "sine";
 const kept = new Map(); // the parameters of each pulse that were turned
 
-/** The editor of a pulse. */
+/** The editor of a pulse.
+ * @param {{ app: App, motion: Server.MotionInput | null, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Pulse = ({ app, motion, onChange }) => {
   const pulses = useMemo(() => pulsesOf(app.info), []);
   const [name, parameters] = readPulse(motion?.pulse ?? "");
   const shown = pulses.get(name);
+  /** @param {string} next */
   const choose = (next) => onChange({ pulse: writePulse(next, kept.get(next) ?? borrowed(pulses.get(next), parameters)) });
+  /** @param {string} key @param {number} value */
   const turn = (key, value) => {
     kept.set(name, { ...parameters, [key]: value });
     onChange({ pulse: writePulse(name, kept.get(name)) });
@@ -34,19 +37,22 @@ export const Pulse = ({ app, motion, onChange }) => {
     </div>`;
 };
 
-/** The pulse to begin with. */
+/** The pulse to begin with. @param {App} app */
 export const usualPulse = ({ info }) => ({ pulse: writePulse(USUAL, kept.get(USUAL) ?? borrowed(pulsesOf(info).get(USUAL), {})) });
 
+/** @param {{ summary: string }} pulse */
 const aboutOf = ({ summary }) => {
   const text = summary.replace(/^Return /, "").replaceAll("`", "");
   return plainWords(text.charAt(0).toUpperCase() + text.slice(1));
 };
 
 // amplitude and period stay when one goes from pulse to pulse
+/** @param {any} pulse @param {{ [key: string]: number }} before */
 const borrowed = (pulse, before) =>
-  Object.fromEntries(pulse.parameters.filter((one) => one.needed || one.name in before)
-    .map((one) => [one.name, before[one.name] ?? one.usual]));
+  Object.fromEntries(pulse.parameters.filter((/** @type {any} */ one) => one.needed || one.name in before)
+    .map((/** @type {any} */ one) => [one.name, before[one.name] ?? one.usual]));
 
+/** @param {any} props */
 const Parameter = ({ label, unit, low, high, whole, log, value, on }) => html`
   <div class="parameter">
     <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${whole ? 1 : (high - low) / 200} log=${log}

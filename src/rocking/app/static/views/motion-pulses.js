@@ -1,5 +1,6 @@
 /** The pulses that the server knows, as the form shows them. */
 
+/** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, whole?: boolean, usual: number } | undefined }} */
 const RANGES = {
   amplitude: { label: "Peak acceleration", low: 0.1, high: 20, log: true, usual: 3 },
   velocity: { label: "Velocity", low: 0.05, high: 3, log: true, usual: 0.6 },
@@ -9,6 +10,7 @@ const RANGES = {
   phase: { label: "Phase", low: 0, high: 6.2832, log: false, usual: 0 },
   n: { label: "Main cycles", low: 1, high: 10, log: false, whole: true, usual: 1 },
 };
+/** @type {Words} */
 const TITLES = {
   "type-a": "type A, forward",
   "type-b": "type B, forward and back",
@@ -21,13 +23,17 @@ const TITLES = {
 
 // the usual ones first
 const ORDER = ["sine", "cosine", "half-sine", "half-cosine", "rectangular", "ricker", "antisymmetric-ricker"];
+/** @param {string} name */
 const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);
 
+/** @param {string} name */
 const titleOf = (name) => TITLES[name] || name.replaceAll("-", " ");
 
+/** @param {any} given @returns {any[]} */
 const listed = (given) =>
   Array.isArray(given) ? given : Object.entries(given).map(([name, one]) => ({ name, ...one }));
 
+/** @param {any} parameter */
 const parameterOf = ({ name, unit, default: usual, ...more }) => {
   const range = RANGES[name] || { label: more.words || name, low: 0.01, high: 100, log: true, usual: 1 };
   const needed = usual === undefined || usual === null;
@@ -35,9 +41,11 @@ const parameterOf = ({ name, unit, default: usual, ...more }) => {
   return { name, unit: shown, needed, ...range, usual: needed ? range.usual : usual };
 };
 
-/** Returns the pulses by name: {title, summary, parameters: [{name, label, unit, usual, low, high, ...}]}. */
+/** Returns the pulses by name: {title, summary, parameters: [{name, label, unit, usual, low, high, ...}]}.
+ * @param {{ pulses: Server.Info["pulses"] }} info @returns {Map<string, { title: string, summary: string, parameters: any[] }>} */
 export const pulsesOf = ({ pulses }) => {
   const ordered = listed(pulses).sort((one, other) => rank(one.name) - rank(other.name));
+  /** @param {any} pulse @returns {[string, any]} */
   const told = ({ name, summary = "", parameters = {} }) => {
     return [name, { title: titleOf(name), summary, parameters: listed(parameters).map(parameterOf) }];
   };

@@ -2,17 +2,20 @@
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { Button, Choice, NumberField, toWrong, wrongIn } from "/parts/fields.js";
 
+/** @type {Words} */
 const LABELS = {
   units: "Unit of the accelerations",
   time_step: "Time between two samples",
   component: "Horizontal component",
   format: "Format of the file",
 };
+/** @type {Words} */
 const HELP = {
   units: "The file does not name it; a wrong one makes the motion up to 981 times too strong or too weak.",
   time_step: "The file does not name it.",
 };
 
+/** @type {Words} */
 const MISSING = {
   units: "Choose the unit.",
   time_step: "A number is needed here.",
@@ -20,38 +23,43 @@ const MISSING = {
   format: "Choose the format.",
 };
 
-/** Words by which a refusal names what was answered wrongly. */
+/** Words by which a refusal names what was answered wrongly. @type {{ [need: string]: RegExp | undefined }} */
 const SIGNS = {
   time_step: /time step|time between two samples/i, units: /\bunits?\b/i,
   component: /component/i, format: /format/i,
 };
 
-/** The name of a need. */
+/** The name of a need. @param {any} one @returns {string} */
 export const nameOf = (one) => one.name || one;
 
+/** @param {any} one @param {any} answer @param {any} info @returns {string[]} */
 const choicesOf = (one, answer, info) => {
   const name = nameOf(one);
   const own = one.choices || answer.choices?.[name];
-  if (own) return own.map((choice) => choice.name ?? choice);
+  if (own) return own.map((/** @type {any} */ choice) => choice.name ?? choice);
   if (name === "units") return namesOf(info.units?.acceleration ?? info.acceleration_units ?? info.units);
   if (name === "format") return namesOf(info.formats);
-  return (answer.components || []).map((component) => component.name);
+  return (answer.components || []).map((/** @type {any} */ component) => component.name);
 };
 
+/** @param {any} given @returns {string[]} */
 const namesOf = (given) =>
   Array.isArray(given) ? given.map((one) => one.name ?? one.label ?? one) : Object.keys(given || {});
 
-/** What of some needs a refusal of the server is about: {name, words}; null if about none of them. */
+/** What of some needs a refusal of the server is about: {name, words}; null if about none of them.
+ * @param {any[]} needs @param {string} words */
 export const blamedOf = (needs, words) => {
   const name = needs.map(nameOf).find((one) => SIGNS[one]?.test(words));
   return name ? { name, words } : null;
 };
 
-/** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong. */
+/** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong.
+ * @param {{ answer: any, info: Server.Info, given: any, blamed?: any, take: (given: any) => unknown, button?: any, [more: string]: any }} props */
 export const Needs = ({ answer, info, given, blamed, take, button, ...more }) => {
   const place = useRef(null);
   const [answers, wrong, pressed] = [useSignal(given), useSignal({}), useSignal(0)];
-  const fields = answer.needs.map((one) => [one, nameOf(one), choicesOf(one, answer, info)]);
+  /** @type {[any, string, string[]][]} */
+  const fields = answer.needs.map((/** @type {any} */ one) => [one, nameOf(one), choicesOf(one, answer, info)]);
   useLayoutEffect(() => {
     wrong.value = blamed ? { [blamed.name]: blamed.words } : {};
     if (blamed) toWrong(place.current);
@@ -67,21 +75,24 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
     wrong.value = Object.fromEntries(open.map(([, name]) => [name, MISSING[name] ?? "Choose one."]));
     pressed.value += 1;
   };
+  /** @param {any} event */
   const entered = (event) => {
     if (event.key !== "Enter" || !event.target.matches("input")) return;
     event.preventDefault();
     press();
   };
+  /** @param {any} need */
   const field = ([one, name, choices]) => {
     const about = {
       label: LABELS[name] || name, help: one.message || HELP[name], error: wrong.value[name], value: answers.value[name],
+      /** @param {number} value */
       on: (value) => {
         answers.value = { ...answers.value, [name]: value || undefined };
         wrong.value = { ...wrong.value, [name]: "" };
       },
     };
     return name === "time_step" ? html`<${NumberField} key=${name} ...${about} unit="s" min=${1e-6} max=${10} step=${0.005} />`
-      : html`<${Choice} key=${name} ...${about} options=${[["", "Choose"], ...choices.map((value) => [value, value])]} />`;
+      : html`<${Choice} key=${name} ...${about} options=${[["", "Choose"], ...choices.map((/** @type {string} */ value) => [value, value])]} />`;
   };
   return html`<div ref=${place} onKeyDown=${entered} ...${more}>${fields.map(field)}
     <${Button} onClick=${press} ...${button}>Read it so<//></div>`;

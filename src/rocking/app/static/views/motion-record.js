@@ -7,15 +7,21 @@ import { Components } from "/views/motion-components.js";
 import { Needs, blamedOf, nameOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
 
+/** @type {Words} */
+const FOCUSED = { read: ".record-name", unread: ".drop button" };
 const TOLD = ["format", "units", "time_step"];
 
+/** @param {any} from @param {string[]} keys @returns {any} */
 const picked = (from, keys) => Object.fromEntries(keys.filter((key) => from[key] !== undefined).map((key) => [key, from[key]]));
 
-/** What stands of the file that was given last: `take(file)` sends it, `onChange(motion)` hears when it is read. */
+/** What stands of the file that was given last: `take(file)` sends it, `onChange(motion)` hears when it is read.
+ * @param {App} app @param {(motion: Server.MotionInput) => unknown} onChange */
 export const createRecord = (app, onChange) => {
   const [said, asked, blamed, waiting, answer] = [null, null, null, false, null].map(signal);
+  /** @type {any} */
   let held = null; // the file, its content, and what was answered about it
 
+  /** @param {object} [given] */
   const send = async (given) => {
     const sent = held;
     Object.assign(sent.given, given);
@@ -30,7 +36,9 @@ export const createRecord = (app, onChange) => {
     }
   };
   // the components are chosen here, the server is not asked again
+  /** @param {any[]} needs */
   const enough = (needs) => needs.every((one) => nameOf(one) === "component") && held.given.component !== undefined;
+  /** @param {any} found */
   const took = (found) => {
     if (found.needs?.length && !enough(found.needs)) {
       said.value = { words: `${found.message.split("; say ")[0]}.`, kind: "warning" };
@@ -41,14 +49,18 @@ export const createRecord = (app, onChange) => {
     onChange({ record: found.record, file_name: found.file_name, ...picked(held.given, [...TOLD, "component"]) });
     return app.say(`${found.file_name} is read.`);
   };
+  /** @param {any} found */
   const ask = (found) => ([asked.value, blamed.value, waiting.value] = [{ answer: found, given: { ...held.given } }, null, true]);
+  /** @param {object} words @param {string} as */
   const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);
+  /** @param {string} words */
   const why = (words) => {
     const stays = app.inputs.get().motion ? " The motion stays as it was." : "";
     const named = words.startsWith(`${held.file.name}:`) ? `The file ${words}` : words;
     return { words: `${named.replace(/([^.?!])$/, "$1.")}${stays}`, kind: "error" };
   };
   // What was answered stays as it was typed, with the refusal beside the field that it is about.
+  /** @param {any} error */
   const refuse = ({ message, ...error }) => {
     if (!asked.value || error.needs?.length) {
       end(why(message), "unread");
@@ -58,6 +70,7 @@ export const createRecord = (app, onChange) => {
     blamed.value = blamedOf(asked.value.answer.needs, message);
     said.value = blamed.value ? null : why(message);
   };
+  /** @param {File} file */
   const take = (file) => {
     held = { file, content: null, given: {} };
     [asked.value, waiting.value] = [null, true];
@@ -68,10 +81,12 @@ export const createRecord = (app, onChange) => {
   return { said, asked, blamed, waiting, answer, take, send };
 };
 
-/** The editor of a record; `lost`: the server no longer has the file. */
+/** The editor of a record; `lost`: the server no longer has the file.
+ * @param {{ app: App, record: ReturnType<typeof createRecord>, motion: Server.MotionInput | null, lost: boolean, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Record = ({ app, record, motion, lost, onChange }) => {
   const { said, asked, blamed, answer } = record;
   const place = useRef(null);
+  /** @param {string} selector */
   const focus = (selector) => place.current.querySelector(selector)?.focus();
   const before = useRef([said.value, asked.value]);
   useLayoutEffect(() => {
@@ -79,7 +94,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
     before.current = [said.value, asked.value];
     if (asked.value && asked.value !== form) return focus(".record-form :is(input, select)");
     if (said.value === words || document.activeElement !== document.body) return undefined;
-    return focus({ read: ".record-name", unread: ".drop button" }[said.value?.as] ?? "none"); // what was pressed is gone
+    return focus(FOCUSED[said.value?.as] ?? "none"); // what was pressed is gone
   }, [said.value, asked.value]);
   const formats = app.info.formats.map(({ name }) => name).join(", ");
   const known = answer.value?.record === motion?.record;
@@ -87,6 +102,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   useEffect(() => {
     if (known || !motion) return;
     // what a file holds that was sent before this page was loaded; a motion that is refused says so itself
+    /** @param {Server.RecordFacts} found */
     const learn = (found) => app.inputs.get().motion?.record === motion.record && (answer.value = found);
     app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then(learn, () => {});
   }, [motion?.record]);
@@ -101,8 +117,8 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
         ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>
       <div class="record-held" data-testid="record-held">${motion && html`
-        <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || `record ${motion.record.slice(0, 12)}`}</p>
-        <${Components} names=${known ? (answer.value.components ?? []).map((one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
+        <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || `record ${motion.record?.slice(0, 12)}`}</p>
+        <${Components} names=${known ? (answer.value.components ?? []).map((/** @type {any} */ one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
       </div>
     </div>`;
 };

@@ -18,14 +18,19 @@ const G = 9.80665;
 const LOOK = "Drag across a trace to look into it with every sample; a double click shows all of it again.";
 const MEASURE = ["Measure", { label: "Value", digits: 4 }, { label: "Unit", numeric: false }];
 
+/** @param {string} text */
 const titled = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** The part of the view that shows the answer of the server; `part` is what of the time is looked into. */
+/** The part of the view that shows the answer of the server; `part` is what of the time is looked into.
+ * @param {{ app: App, answer: Server.MotionAnswered, part: any, time: Time, stale: boolean }} props */
 export const Result = ({ app, answer, part, time, stale }) => {
   const { shown, of } = answer.series;
+  /** @type {any} */
   const series = useMemo(() => (part?.series ? detailed(answer.series, part.series) : answer.series), [answer, part]);
   const measures = answer.measures.map(({ name, words, value, unit }) => [words || name, value, unit === "-" ? "" : pretty(unit)]);
+  /** @param {string} path @param {string} [name] */
   const save = (path, name = path.replaceAll("/", "-")) => app.download(path, app.inputs.get(), name);
+  /** @param {string} text @param {string} path @param {string} label */
   const saver = (text, path, label) => html`<${Button} aria-label=${label} onClick=${() => save(path)}>${text}<//>`;
   return html`
     <div class=${`motion-result ${stale ? "stale" : ""}`} data-testid="motion-result">
@@ -47,6 +52,7 @@ export const Result = ({ app, answer, part, time, stale }) => {
     </div>`;
 };
 
+/** @param {{ trace: typeof TRACES[number], series: any, part: Point | null, time: Time }} props */
 const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
   const data = useMemo(() => [series.time, series[key]], [series]);
   const shape = {
@@ -56,6 +62,7 @@ const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
   return html`<${Figure} shape=${shape} data=${data} part=${part} time=${time} />`;
 };
 
+/** @param {any} answer */
 const factsOf = (answer) => {
   const peak = answer.peak_acceleration_m_s2 ?? peakOf(answer.series.acceleration);
   const found = [
@@ -73,4 +80,5 @@ const factsOf = (answer) => {
   return found;
 };
 
+/** @param {number[]} values */
 const peakOf = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);

@@ -5,9 +5,10 @@ import { NumberField, Slider } from "/parts/fields.js";
 const LEAST = 0.1;
 const MOST = 10;
 
-/** A slider and a number that say the same factor. */
+/** A slider and a number that say the same factor. @param {{ value: number, on: (value: number) => unknown }} props */
 export const Scale = ({ value, on }) => {
   const nought = useSignal(false);
+  /** @param {number} next */
   const take = (next) => {
     nought.value = next === 0;
     if (next !== 0) on(next);

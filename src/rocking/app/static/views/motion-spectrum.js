@@ -11,13 +11,15 @@ const KINDS = {
 const WORDS = [["acceleration", "Acceleration"], ["velocity", "Velocity"], ["displacement", "Displacement"]];
 
 // a logarithmic axis has no place for a period or a value of zero
+/** @param {number[]} periods @param {number[]} values */
 const positive = (periods, values) => {
   const kept = periods.map((_, k) => k).filter((k) => periods[k] > 0 && values[k] > 0);
   return [kept.map((k) => periods[k]), kept.map((k) => values[k])];
 };
 
-/** The spectrum with a choice of what it shows. */
+/** The spectrum with a choice of what it shows. @param {{ spectrum: Server.SpectrumFacts }} props */
 export const Spectrum = ({ spectrum }) => {
+  /** @type {Signal<keyof typeof KINDS>} */
   const kind = useSignal("acceleration");
   const { label, unit, colour } = KINDS[kind.value];
   const data = useMemo(() => positive(spectrum.period, spectrum[kind.value]), [spectrum, kind.value]);

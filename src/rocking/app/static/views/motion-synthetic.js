@@ -3,6 +3,7 @@ import { html } from "/parts/preact.js";
 import { Button, Choice, NumberField, Segmented } from "/parts/fields.js";
 
 const LEVELS = [["", "As drawn"], ["pga", "To a PGA"], ["pgv", "To a PGV"]];
+/** @type {{ [key: string]: { label: string, unit: string, usual: number } }} */
 const LEVEL = {
   pga: { label: "Peak ground acceleration", unit: "m/s2", usual: 3 },
   pgv: { label: "Peak ground velocity", unit: "m/s", usual: 0.5 },
@@ -11,13 +12,16 @@ const LEVEL = {
 /** The motion to begin with. */
 export const usualSynthetic = () => ({ synthetic: "pulse-like", seed: 0, member: 0 });
 
-/** The editor of a synthetic motion. */
+/** The editor of a synthetic motion.
+ * @param {{ app: App, motion: any, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Synthetic = ({ app, motion, onChange }) => {
   if (!motion) return null;
   const { families } = app.info;
   const { pga, pgv, ...drawn } = motion;
   const kind = Object.keys(LEVEL).find((key) => motion[key] !== undefined) ?? "";
+  /** @param {Partial<Server.MotionInput>} changes */
   const change = (changes) => onChange({ ...motion, ...changes });
+  /** @param {string} label @param {"seed" | "member"} key @param {string} help */
   const whole = (label, key, help) => html`<${NumberField} label=${label} help=${help} min=${0} step=${1} whole
     value=${motion[key] ?? 0} on=${(value) => change({ [key]: value })} />`;
   return html`

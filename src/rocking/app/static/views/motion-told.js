@@ -6,12 +6,13 @@ const MOST = 500;
 
 const all = () => {
   try {
-    return JSON.parse(localStorage.getItem(KEPT)) ?? {};
+    return JSON.parse(localStorage.getItem(KEPT) ?? "null") ?? {};
   } catch {
     return {};
   }
 };
 
+/** @param {[string, any][]} entries */
 const write = (entries) => {
   try {
     localStorage.setItem(KEPT, JSON.stringify(Object.fromEntries(entries.slice(-MOST))));
@@ -20,17 +21,18 @@ const write = (entries) => {
   }
 };
 
+/** @param {string} record */
 const others = (record) => Object.entries(all()).filter(([hash]) => hash !== record);
 
-/** Returns what was answered about a record: format, units, time_step, component, vertical. */
+/** Returns what was answered about a record: format, units, time_step, component, vertical. @param {string} record */
 export const toldOf = (record) => all()[record] ?? {};
 
-/** Keeps what a motion says about its record. */
+/** Keeps what a motion says about its record. @param {any} motion */
 export const rememberTold = ({ record, ...motion }) => {
   const given = KEYS.filter((key) => motion[key] !== undefined);
   const told = Object.fromEntries(given.map((key) => [key, motion[key]]));
   if (record) write([...others(record), [record, told]]);
 };
 
-/** Forgets a record that was deleted. */
+/** Forgets a record that was deleted. @param {string} record */
 export const forgetTold = (record) => write(others(record));

@@ -18,15 +18,16 @@ const USUAL = { record: () => null, pulse: usualPulse, synthetic: usualSynthetic
 
 const LEAN = "No motion is chosen: the body is let go from a lean. Choose one here to shake it.";
 
-/** Way of a motion; none while nothing shakes the ground. */
-const wayOf = (motion) => Object.keys(EDITORS).find((way) => motion?.[way] !== undefined) || "";
+/** Way of a motion; none while nothing shakes the ground. @param {any} motion @returns {"" | keyof typeof EDITORS} */
+const wayOf = (motion) => /** @type {(keyof typeof EDITORS)[]} */ (Object.keys(EDITORS)).find((way) => motion?.[way] !== undefined) || "";
 
-/** Shows the view of the motion in a section. */
+/** Shows the view of the motion in a section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const { inputs } = app;
   const motion = signal(inputs.get().motion);
   const way = signal(wayOf(motion.value));
   const faulty = signal(false);
+  /** @type {{ [way: string]: Server.MotionInput | undefined }} */
   const kept = {};
   const question = () => {
     const { motion: given, settings } = inputs.get();
@@ -40,13 +41,14 @@ export const mount = (section, app) => {
     batch(() => ([motion.value, way.value] = [now.motion, wayOf(now.motion)]));
   });
   app.faults.subscribe(() => (faulty.value = app.faults.any({ view: "motion" })));
-  /** Makes a motion the motion; a motion and a free start exclude each other. */
+  /** Makes a motion the motion; a motion and a free start exclude each other. @param {Server.MotionInput} next */
   const set = (next) => {
     const { scale } = inputs.get().motion || {};
     inputs.set("response.free", undefined);
     inputs.set("motion", scale === undefined || next.scale !== undefined ? next : { ...next, scale });
   };
-  /** Shows the editor of a way; its last choice becomes the motion if that was another. */
+  /** Shows the editor of a way; its last choice becomes the motion if that was another.
+   * @param {keyof typeof EDITORS} next */
   const choose = (next) => batch(() => {
     const { motion: now } = inputs.get();
     if (now) kept[wayOf(now)] = now;
@@ -57,13 +59,14 @@ export const mount = (section, app) => {
   });
   const record = createRecord(app, set);
   render(html`<${Motion} app=${app} asked=${asked} motion=${motion} way=${way} faulty=${faulty} record=${record} set=${set}
-    choose=${choose} time=${createTime(null, asked.look)} />`, section);
+    choose=${choose} time=${createTime(undefined, asked.look)} />`, section);
   return asked;
 };
 
+/** @param {any} props */
 const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, set, choose, time }) => {
   const { answer: { value: answer }, refused: { value: refused }, part } = asked;
-  const Editor = EDITORS[way.value];
+  const Editor = /** @type {any} */ (EDITORS)[way.value];
   const waits = way.value === "record" && record.waiting.value;
   // what is measured is not what the form shows: another way, a file that waits, an error
   const stale = motion && (faulty.value || waits || wayOf(motion) !== way.value);
@@ -81,7 +84,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
           ${!motion && html`<${Note} words=${LEAN} /><div class="toolbar">
             <${Button} onClick=${() => set(motionBefore())}>Back to the motion before<//></div>`}
           ${refused && html`<${Note} kind="error" words=${refused.message} />`}
-          ${(answer?.warnings ?? []).map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}</div>
+          ${(answer?.warnings ?? []).map((/** @type {string} */ words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}</div>
         <div aria-live="polite" data-testid="motion-pending">
           ${stale && html`<${Note} kind="warning" words=${pendingWords(motion, faulty.value, waits)} />`}</div>
         ${answer && html`<${Result} app=${app} answer=${answer} part=${part.value} time=${time} stale=${stale} />`}
@@ -89,6 +92,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
     </div>`;
 };
 
+/** @param {Server.MotionInput} motion @param {boolean} faulty @param {boolean} waits */
 const pendingWords = (motion, faulty, waits) => {
   const file = waits ? "The new file is not read yet" : "No file is chosen yet";
   const why = faulty && !waits ? "A number is marked as wrong" : file;

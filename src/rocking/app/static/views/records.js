@@ -12,7 +12,7 @@ import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from 
 const G = 9.80665;
 const FIRST = { files: [], curve: [], steps: [], motion: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const questions = createQuestions(app, "convert", "motions");
   const All = () => html`<${Records} key=${app.project.here.value.id} app=${app} questions=${questions} />`;
@@ -20,24 +20,29 @@ export const mount = (section, app) => {
   return { shown: () => questions.reopen() };
 };
 
+/** @param {{ app: App, questions: Questions }} props */
 const Records = ({ app, questions }) => {
   const form = useForm(app, "records", FIRST);
   const wrong = useSignal("");
+  /** @type {{ files: SentFile[], curve: SentFile[], steps: RecordStep[] }} */
   const { files, curve, steps } = form.value;
   const records = files.filter((one) => !isStations(one));
   const shown = shownOf(form.value, records);
   const lists = records.filter((one) => /\.csv$/i.test(one.name));
   const single = shown !== "all" && shown !== "target";
+  /** @type {{ [key: string]: string[] | undefined }} */
   const choices = { units: app.info.units.acceleration, format: app.info.formats.map(({ name }) => name) };
+  /** @param {string} name */
   const key = (name) => html`<${KeyField} key=${name} name=${name} value=${form.at("motion", name)}
     facts=${{ ...app.info.keys.motion[name], choices: choices[name] ?? [] }} />`;
+  /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
     wrong.value = !records.length ? "No record was sent yet."
       : shown === "target" && form.value.code === "file" && !curve.length ? "The file of the spectrum was not sent yet." : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
-    const asked = single ? oneOf(form.value, app, records.find((one) => one.name === shown)) : setOf(form.value, app, shown);
+    const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
     questions.ask(asked.tables, asked.files, asked.name, { command: single ? "convert" : "motions", format: single ? form.value.format : "" });
   };
   return html`
@@ -64,36 +69,45 @@ const Records = ({ app, questions }) => {
     <//>`;
 };
 
+/** @param {{ name: string }} file */
 const isStations = ({ name }) => /\.xml$/i.test(name);
+/** @param {{ shown: string }} form @param {SentFile[]} records */
 const shownOf = ({ shown }, records) => {
   if (["all", "target"].includes(shown) || records.some(({ name }) => name === shown)) return shown;
   return records.length > 1 ? "all" : records[0]?.name ?? "";
 };
 
-/** The steps as job files and the command line have them. */
+/** The steps as job files and the command line have them. @param {RecordStep[]} steps */
 const chainOf = (steps) => steps.map(({ name, keys }) => {
   const given = Object.entries(keys).filter(([, text]) => text.trim());
   return given.length ? `${name}:${given.map(([key, text]) => `${key}=${written(text)}`).join(",")}` : name;
 });
+/** @param {string} text */
 const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " ").trim() : String(parseNumber(text)));
 
 // Which step a refusal is about: its place if it says one, else its name.
+/** @param {Questions} questions @param {{ steps: RecordStep[], asked?: string }} form */
 const faultyOf = (questions, { steps, asked }) => {
   const found = /step (?:(\d+), )?([a-z]+)[: ]/.exec(questions.shown.value?.state === "refused" ? questions.shown.value.message : "");
   if (!found || asked !== chainOf(steps).join("; ")) return null;
   const place = found[1] ? Number(found[1]) - 1 : steps.findIndex(({ name }) => name === found[2]);
-  return { place, words: sentence(questions.shown.value.message.replace(/^.*?step (?:\d+, )?/, "")) };
+  return { place, words: sentence((questions.shown.value?.message ?? "").replace(/^.*?step (?:\d+, )?/, "")) };
 };
 
+/** @param {{ app: App, form: Form, stations: SentFile[], faulty: { place: number, words: string } | null }} props */
 const Chain = ({ app, form, stations, faulty }) => {
   const known = app.info.steps;
+  /** @type {{ steps: RecordStep[] }} */
   const { steps } = form.value;
   const heading = useRef(freshId("steps")).current;
+  /** @param {RecordStep[]} next */
   const set = (next) => (form.at("steps").value = next);
+  /** @param {number} place @param {string} key */
   const keyed = (place, key) => ({
     get value() { return steps[place].keys[key] ?? ""; },
     set value(text) { set(steps.map((one, k) => (k === place ? { ...one, keys: { ...one.keys, [key]: text } } : one))); },
   });
+  /** @param {number} place */
   const by = (place) => ({
     get value() { return Object.keys(steps[place].keys)[0] ?? ""; },
     set value(key) { set(steps.map((one, k) => (k === place ? { ...one, keys: { [key]: "" } } : one))); },
@@ -102,6 +116,7 @@ const Chain = ({ app, form, stations, faulty }) => {
     get value() { return ""; },
     set value(name) { if (name) set([...steps, { name, id: freshId("step"), keys: {} }]); },
   };
+  /** @param {number} place @param {number} by */
   const moved = (place, by) => {
     const next = [...steps];
     next.splice(place + by, 0, ...next.splice(place, 1));
@@ -122,7 +137,7 @@ const Chain = ({ app, form, stations, faulty }) => {
           ${keysOf(steps[place], known[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
             facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}
         </div>
-        ${faulty?.place === place && html`<${Note} kind="error" role="alert" words=${faulty.words} />`}
+        ${faulty?.place === place && html`<${Note} kind="error" role="alert" words=${faulty?.words} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
         options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${words.toLowerCase()}`])]} />
@@ -130,11 +145,13 @@ const Chain = ({ app, form, stations, faulty }) => {
 };
 
 // All keys of a step; of one that takes a single one, that which was chosen.
+/** @param {{ keys: object }} step @param {Server.StepFacts} known */
 const keysOf = ({ keys }, { one, keys: known }) => {
   const all = Object.entries(known);
   return one ? [all.find(([key]) => key in keys) ?? all[0]] : all;
 };
 
+/** @param {{ app: App, form: Form, questions: Questions }} props */
 const Target = ({ app, form, questions }) => {
   const { code } = form.value;
   const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${words}`]);
@@ -148,21 +165,25 @@ const Target = ({ app, form, questions }) => {
       facts=${app.info.keys.motions[name]} value=${form.at("set", name)} />`)}</div>`;
 };
 
+/** @param {SentFile[]} files @param {string} [folder] */
 const shas = (files, folder = "") => Object.fromEntries(files.map((one) => [`${folder}${one.name}`, one.sha]));
 
+/** @param {any} form @param {App} app @param {SentFile} record */
 const oneOf = ({ files, steps, motion }, app, record) => ({
   tables: { motion: { record: record.name, ...filled(motion, app.info.keys.motion), ...processOf(steps) } },
   files: shas([record, ...files.filter(isStations)]),
   name: `${record.name}, before and after`,
 });
 
+/** @param {any} form @param {App} app @param {string} shown */
 const setOf = ({ files, curve, steps, motion, set, of, code, list }, app, shown) => {
-  const records = files.filter((one) => !isStations(one));
+  const records = files.filter((/** @type {SentFile} */ one) => !isStations(one));
   const { component, ...keys } = motion;
   const { mirrored, ...chosen } = filled(set, app.info.keys.motions);
   const spectrum = `${code}:${Object.entries(of[code] ?? {}).filter(([, text]) => text.trim()).map(([key, text]) => `${key}=${written(text)}`).join(",")}`;
+  /** @type {{ target?: string }} */
   const wanted = shown === "target" ? { target: code === "file" ? curve[0].name : spectrum, ...chosen } : {};
-  const named = records.some(({ name }) => name === list) ? `records/${list}` : "records";
+  const named = records.some((/** @type {SentFile} */ { name }) => name === list) ? `records/${list}` : "records";
   return {
     tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
     files: { ...shas(records, "records/"), ...shas(files.filter(isStations)), ...shas(shown === "target" && code === "file" ? curve : []) },
@@ -170,15 +191,18 @@ const setOf = ({ files, curve, steps, motion, set, of, code, list }, app, shown)
   };
 };
 
+/** @param {RecordStep[]} steps */
 const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
 
+/** @param {Given} given */
 const Answer = (given) => (given.question.command === "convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
 
 const HEAD = [["samples", "samples"], ["time_step_s", "step [s]"], ["pga_m_s2", "PGA [m/s\u00b2]"], ["pgv_m_s", "PGV [m/s]"],
   ["pgd_m", "PGD [m]"], ["end_velocity_m_s", "velocity at the end [m/s]"]];
 
+/** @param {Given} given */
 const Corrected = ({ answer, question, questions }) => {
-  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((words) => `${when}: ${words}`));
+  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ words) => `${when}: ${words}`));
   const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
     <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
@@ -188,14 +212,15 @@ const Corrected = ({ answer, question, questions }) => {
     <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
       [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
     <h3>What was done</h3>
-    <ul aria-label="What was done">${answer.provenance.map((words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
+    <ul aria-label="What was done">${answer.provenance.map((/** @type {string} */ words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
     <details><summary>What the file says</summary>
       <dl class="facts">${said.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
       ${answer.metadata.header && html`<pre tabindex="0">${answer.metadata.header}</pre>`}
     </details>`;
 };
 
-/** Keep the corrected record as a record of its own, and shake the body with it. */
+/** Keep the corrected record as a record of its own, and shake the body with it.
+ * @param {Questions} questions @param {Server.WholeQuestion} question */
 const use = async ({ app }, question) => {
   try {
     const name = `${question.name.split(",")[0].replace(/\.\w+$/, "")}-corrected.csv`;
@@ -208,14 +233,16 @@ const use = async ({ app }, question) => {
   }
 };
 
+/** @type {[string, string, number][]} */
 const SHOWN = [["pga", "PGA [g]", 1 / G], ["pgv", "PGV [m/s]", 1], ["arias", "Arias [m/s]", 1], ["d5_95", "D5-95 [s]", 1]];
 
+/** @param {Given} given */
 const Chosen = ({ answer, question }) => {
   const { records, selection, left_out: left } = answer;
   const scaled = selection && selection.factor.length === records.length;
-  const rows = records.map((row, k) => {
+  const rows = records.map((/** @type {any} */ row, /** @type {number} */ k) => {
     const seen = ["x", "y", "z"].filter((axis) => row[`pga_${axis}`] !== null);
-    const lead = [...seen].sort((a, b) => (a === "z") - (b === "z") || row[`pga_${b}`] - row[`pga_${a}`])[0];
+    const lead = [...seen].sort((a, b) => Number(a === "z") - Number(b === "z") || row[`pga_${b}`] - row[`pga_${a}`])[0];
     return [row.record, ...(scaled ? [number(selection.factor[k], 3), number(selection.misfit[k], 2)] : []),
       ...SHOWN.map(([key, , size]) => number(row[`${key}_${lead}`] * size, 4)), seen.join(" ")];
   });
@@ -225,8 +252,8 @@ const Chosen = ({ answer, question }) => {
     <${Rows} caption="Records" rows=${rows}
       head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />
     <p class="field-help">The component with the largest peak is shown; the files have all of them, and their spectra.</p>
-    ${records.some((row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
-      rows=${records.filter((row) => row.doubts).map((row) => [row.record, row.doubts])} />`}
+    ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
+      rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
-      rows=${left.map(({ file, why }) => [file, why])} />`}`;
+      rows=${left.map((/** @type {any} */ { file, why }) => [file, why])} />`}`;
 };

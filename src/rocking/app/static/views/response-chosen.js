@@ -5,20 +5,23 @@ import { readRestitution } from "/views/response-restitution.js";
 
 const wanted = signal(null);
 
-/** Returns the labels of a restitution table in the order of its answers. */
+/** Returns the labels of a restitution table in the order of its answers.
+ * @param {Server.RestitutionTable} [table] @returns {string[]} */
 export const labelsOf = (table) => {
   const { models, value, feet } = readRestitution(table);
   if (feet) return [`left ${feet[0]}, right ${feet[1]}`];
   return [...models, ...(table?.values ?? (value === null ? [] : [value])).map(String)];
 };
 
-/** Returns which of some labels is looked at; the first, which is the main model, unless another was chosen. */
+/** Returns which of some labels is looked at; the first, which is the main model, unless another was chosen.
+ * @param {string[]} labels */
 export const chosenOf = (labels) => labels.find((label) => curveKey(label) === wanted.value) ?? labels[0] ?? null;
 
-/** Looks at a model; null goes back to the main one. */
+/** Looks at a model; null goes back to the main one. @param {string | null} label */
 export const look = (label) => (wanted.value = label === null ? null : curveKey(label));
 
-/** Returns the address of a file about the model that is looked at. */
+/** Returns the address of a file about the model that is looked at.
+ * @param {string} path @param {Server.RestitutionTable} [table] */
 export const pathOfChosen = (path, table) => {
   const labels = labelsOf(table);
   const place = labels.indexOf(chosenOf(labels));

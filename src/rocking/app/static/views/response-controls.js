@@ -10,21 +10,23 @@ import { canBeScaled, scaledBody } from "/views/response-size.js";
 const [LEAN, USUAL] = [0.5, 0.9];
 const CALIBRATED = "The calibrated model is fitted to the published measurements; Impact shows its interval.";
 
-/** Lets the body go from a lean, on ground that stands still. */
+/** Lets the body go from a lean, on ground that stands still. @param {App} app */
 export const lean = (app) => {
   rememberMotion(app.inputs.get().motion);
   app.inputs.set("response.free", LEAN);
   app.inputs.set("motion", undefined);
 };
 
+/** @param {App} app */
 const shake = (app) => {
   app.inputs.set("response.free", undefined);
   app.inputs.set("motion", motionBefore());
 };
 
+/** @param {number} value */
 const clipped = (value) => Math.min(Math.max(Math.abs(value), 0.1), 10);
 
-/** The controls of the response. */
+/** The controls of the response. @param {{ app: App, inputs: Server.Inputs }} props */
 export const Controls = ({ app, inputs }) => {
   const { body, motion, restitution, response } = inputs;
   const free = response?.free ?? null;
@@ -47,11 +49,13 @@ export const Controls = ({ app, inputs }) => {
     </div>`;
 };
 
-/** Every length of the body, from the body as it was when the slider stood at one. */
+/** Every length of the body, from the body as it was when the slider stood at one.
+ * @param {{ app: App, body: Server.BodyInput }} props */
 const Size = ({ app, body }) => {
   const drawn = useRef(body);
   const factor = useRef(1);
   if (JSON.stringify(body) !== JSON.stringify(scaledBody(drawn.current, factor.current))) [drawn.current, factor.current] = [body, 1];
+  /** @param {number} next */
   const resize = (next) => {
     factor.current = next;
     app.inputs.set("body", scaledBody(drawn.current, next));
@@ -60,27 +64,32 @@ const Size = ({ app, body }) => {
     help="Against the body as it was drawn; larger ones are more stable." value=${factor.current} on=${resize} />`;
 };
 
-/** Whether a model needs no number of one's own. */
+/** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */
 export const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
 
-/** Which models of the impact are compared, with a coefficient of one's own beside them. */
+/** Which models of the impact are compared, with a coefficient of one's own beside them.
+ * @param {{ app: App, table?: Server.RestitutionTable }} props */
 const Models = ({ app, table }) => {
   const state = readRestitution(table);
   const { models, value, feet } = state;
   const refused = useSignal(0);
+  /** @param {Partial<Chosen>} changes */
   const change = (changes) => {
     const next = writeRestitution({ ...state, ...changes });
     if (next) return app.inputs.set("restitution", next);
     refused.value += 1;
     return app.say("At least one model or coefficient is needed.", "warning");
   };
+  /** @param {string} label */
   const others = (label) => models.filter((one) => one !== label);
+  /** @param {string} label */
   const lead = (label) => {
     change({ models: [label, ...others(label)] });
     look(label);
   };
-  const foot = (words, index) => html`<${NumberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet[index]}
-    on=${(given) => change({ feet: feet.map((one, k) => (k === index ? given : one)) })} />`;
+  /** @param {string} words @param {number} index */
+  const foot = (words, index) => html`<${NumberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet?.[index]}
+    on=${(given) => change({ feet: feet?.map((one, k) => (k === index ? given : one)) })} />`;
   const known = app.info.models.filter(complete).map(({ label }) => label);
   return html`
     <div class="models" data-refused=${refused.value}>

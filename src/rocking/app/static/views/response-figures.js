@@ -12,6 +12,7 @@ const MOST_FRICTION = 3;
 const FALL_SHOWN = 1.5;
 
 // what follows the point of no return is a fall to the ground, beside which no rocking could be seen
+/** @param {Server.ResponseFacts} answer @param {(number | null)[]} values */
 const untilFall = (answer, values) => {
   const shares = sharesOf(answer.series.rotation, answer.body);
   const falls = answer.outcome === "overturned";
@@ -19,15 +20,18 @@ const untilFall = (answer, values) => {
   return fallen < 0 ? values : values.map((value, k) => (k < fallen ? value : null));
 };
 
+/** @param {(number | null)[]} values */
 const capped = (values) => values.map((value) => (value === null || value > MOST_FRICTION ? null : value));
 
 // the lines of +1 and -1 are in sight unless the rocking is small beside them
+/** @param {unknown} _ @param {number | null} low @param {number | null} high */
 const rotationRange = (_, low, high) => {
   const most = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0));
   const span = most > 0.25 ? Math.max(1.15, 1.05 * most) : 1.15 * most || 1;
   return [-span, span];
 };
 
+/** @type {{ key: "kinetic" | "potential" | "lost" | "work", label: string, colour: string, dash: number[] }[]} */
 const ENERGIES = [
   { key: "kinetic", label: "kinetic", colour: "#0070B2", dash: [] },
   { key: "potential", label: "potential", colour: "#009960", dash: [8, 3, 2, 3] },
@@ -35,13 +39,14 @@ const ENERGIES = [
   { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
-/** The answer that goes on longest. */
+/** The answer that goes on longest. @param {Server.ResponseFacts[]} answers */
 export const longest = (answers) => {
-  const ends = answers.map(({ series }) => series.time.at(-1));
+  const ends = answers.map(({ series }) => series.time[series.time.length - 1]);
   return answers[ends.indexOf(highest(ends))];
 };
 
-/** A figure with a curve of each model. */
+/** A figure with a curve of each model.
+ * @param {string} title @param {ChartAxis} y @param {(answer: Server.ResponseFacts) => (number | null)[]} values @returns {FigureKind} */
 const ofEach = (title, y, values) => ({
   title,
   y,
@@ -49,6 +54,7 @@ const ofEach = (title, y, values) => ({
   data: (answers) => together(answers, (answer) => untilFall(answer, values(answer))),
 });
 
+/** @type {{ [kind: string]: FigureKind }} */
 const KINDS = {
   rotation: ofEach(
     "Rotation over slenderness angle", { label: "\u03b8/\u03b1", unit: "-", range: rotationRange },
@@ -67,7 +73,7 @@ const KINDS = {
     series: () => ENERGIES,
     // over the time of all figures
     data: (answers, lead) => [
-      [...lead.series.time, longest(answers).series.time.at(-1)],
+      [...lead.series.time, longest(answers).series.time.at(-1) ?? null],
       ...ENERGIES.map(({ key }) => [...untilFall(lead, lead.series[key]), null]),
     ],
   },
@@ -78,15 +84,17 @@ const KINDS = {
   ),
 };
 
-/** What the marks of the figures mean; `whose` impacts are ticked. */
+/** What the marks of the figures mean; `whose` impacts are ticked.
+ * @param {Server.ResponseFacts[]} answers @param {string} whose */
 export const marksWords = (answers, whose) => `Ticks on the axis: impacts of ${whose}; dashed: the slenderness angles. `
   + (answers.some(({ outcome }) => outcome === "overturned") ? `Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. ` : "")
   + "Drag across a chart to look into it with every sample; a double click shows all of it again.";
 
-/** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into. */
+/** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into.
+ * @param {{ kinds: string[], answers: Server.ResponseFacts[], lead?: string, ticked: Server.ResponseFacts[], part: any, friction: number, time: Time }} props */
 export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) => {
   const shown = useMemo(() => answers.map((answer) => {
-    const found = part?.answers?.find(({ label }) => label === answer.label)?.series;
+    const found = part?.answers?.find((/** @type {any} */ { label }) => label === answer.label)?.series;
     return found ? { ...answer, series: detailed(answer.series, found) } : answer;
   }), [answers, part]);
   const first = shown.find(({ label }) => label === lead) ?? shown[0];
@@ -96,10 +104,11 @@ export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) 
     part=${part?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);
 };
 
+/** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], part: Point | null, friction: number, time: Time, height: number }} props */
 const OneFigure = ({ kind, answers, lead, rows, part, friction, time, height }) => {
   const { title, y, series, data } = KINDS[kind];
   // the friction that is given stays in sight
-  const held = kind === "friction" && { range: (_, low, high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
+  const held = kind === "friction" && { range: (/** @type {unknown} */ _, /** @type {number} */ low, /** @type {number | null} */ high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
   const shape = {
     title: typeof title === "string" ? title : title(lead), x: TIME, y: { ...y, ...held }, series: series(answers), height,
   };

@@ -3,19 +3,20 @@
 /** What the server takes where nothing is chosen. */
 const USUAL = ["ked"];
 
-/** Returns {models, value, feet} of a table; feet is [left, right] or null. */
+/** Returns {models, value, feet} of a table; feet is [left, right] or null.
+ * @param {Server.RestitutionTable} [table] @returns {Chosen} */
 export const readRestitution = (table) => {
   if (!table) return { models: USUAL, value: null, feet: null };
-  const feet = table.left === undefined ? null : [table.left, table.right];
-  const models = table.models ?? (table.model === undefined ? [] : [table.model]);
+  const feet = table.left === undefined ? null : /** @type {number[]} */ ([table.left, table.right]);
+  const models = /** @type {string[]} */ (table.models ?? (table.model === undefined ? [] : [table.model]));
   const value = table.values?.[0] ?? table.value ?? null;
   return { models: [...models], value, feet };
 };
 
-/** Returns the table; null if nothing is chosen. */
+/** Returns the table; null if nothing is chosen. @param {Chosen} chosen @returns {Server.RestitutionTable | null} */
 export const writeRestitution = ({ models, value, feet }) => {
   if (feet) return { left: feet[0], right: feet[1] };
   if (!models.length && value === null) return null;
-  if (!models.length) return { values: [value] };
+  if (!models.length) return { values: [/** @type {number} */ (value)] };
   return value === null ? { models } : { models, values: [value] };
 };

@@ -8,7 +8,8 @@ import { curveKey, Swatch, wordsOf } from "/views/response-labels.js";
 import { outcomeOf } from "/views/response-words.js";
 import { Film } from "/views/takeaway-film.js";
 
-/** A card for every model; choosing one makes its model the one that is looked at. */
+/** A card for every model; choosing one makes its model the one that is looked at.
+ * @param {{ answers: any[], lead: string | null }} props */
 export const Cards = ({ answers, lead }) => html`
   <fieldset class="outcomes" data-testid="outcomes">
     <legend class="visually-hidden">Model that is drawn solid in the animation</legend>
@@ -18,8 +19,10 @@ export const Cards = ({ answers, lead }) => html`
     : html`<${Verdict} key=${curveKey(one.label)} answer=${one} checked=${one.label === lead} />`))}
   </fieldset>`;
 
+/** @param {{ label: string }} props */
 const Head = ({ label }) => html`<span class="outcome-model"><${Swatch} label=${label} />${wordsOf(label)}</span>`;
 
+/** @param {{ answer: Server.ResponseFacts, checked: boolean }} props */
 const Verdict = ({ answer, checked }) => {
   const { kind, sign, word } = outcomeOf(answer);
   return html`
@@ -32,6 +35,7 @@ const Verdict = ({ answer, checked }) => {
     </label>`;
 };
 
+/** @param {Server.ResponseFacts} answer */
 const factsOf = (answer) => {
   const { right, left } = answer.body.sides;
   const same = Math.abs(right.coefficient - left.coefficient) < 1e-12;
@@ -50,12 +54,14 @@ const COLUMNS = [
 ];
 const MOST = 200;
 
+/** @param {Server.ImpactFacts[]} impacts */
 const rowsOf = (impacts) =>
   impacts.map((one, k) => [
     k + 1, one.time_s, one.velocity_before_rad_s, one.velocity_after_rad_s, one.coefficient, one.onto,
   ]);
 
-/** The impacts of the model that is looked at. */
+/** The impacts of the model that is looked at.
+ * @param {{ app: App, answers: Server.ResponseFacts[], answer: Server.ResponseFacts }} props */
 export const Impacts = ({ app, answers, answer }) => {
   const rows = useMemo(() => rowsOf(answer.impacts), [answer]);
   const more = rows.length > MOST ? `; the first ${MOST} are shown, copying takes them all` : "";
@@ -66,13 +72,16 @@ export const Impacts = ({ app, answers, answer }) => {
       csv=${() => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv")} /></div></div><//>`;
 };
 
+/** @type {[string, string, boolean?][]} */
 const FILES = [
   ["Picture, PNG", "picture/response.png"], ["Picture, SVG", "picture/response.svg"],
   ["Curves, CSV", "table/response.csv", true], ["Animation, page", "animation.html", true],
 ];
 
-/** Files of the response; what holds one model holds the one that is looked at, and says so. */
+/** Files of the response; what holds one model holds the one that is looked at, and says so.
+ * @param {{ app: App, restitution?: Server.RestitutionTable }} props */
 export const TakeAway = ({ app, restitution }) => {
+  /** @param {typeof FILES[number]} file */
   const save = ([, path, chosen]) =>
     app.download(chosen ? pathOfChosen(path, restitution) : path, app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);

@@ -13,20 +13,24 @@ import { sceneWords } from "/views/response-words.js";
 const SETTLE = 0.4;
 
 // after everything lies or rests nothing happens: the animation ends there
+/** @param {Actor} actor */
 const lastOf = ({ rotation, falls }) => (falls ? rotation.end + SETTLE : quietAfter(rotation));
 
+/** @param {Track} track */
 const quietAfter = (track) => {
   let k = track.values.length - 1;
   while (k > 0 && Math.abs(track.values[k]) < 1e-6) k -= 1;
   return Math.min(track.time[k] + SETTLE, track.end) || track.end;
 };
 
+/** @param {Actor} actor */
 const restOf = (actor) => (actor.falls ? actor.rotation.end : peakInstant(actor.rotation));
 
-/** The player, fed with answers of the API; the body of `lead` is the solid one. */
+/** The player, fed with answers of the API; the body of `lead` is the solid one.
+ * @param {{ player: import("/scene/player.js").Player, body: Server.DrawnBody, answers: Server.ResponseFacts[], lead: string | null, stale: boolean }} props */
 export const Scene = ({ player, body, answers, lead, stale }) => {
   const node = useMemo(() => {
-    const names = () => player.play.actors.map(({ label }) => wordsOf(label));
+    const names = () => (player.play?.actors ?? []).map(({ label }) => wordsOf(label));
     return chartFiles("The body at this instant", () => player.still(names()), "picture");
   }, [player]);
   const actors = useMemo(() => answers.map((one) => actorOf(one, styleOf(one.label))), [answers]);

@@ -1,4 +1,5 @@
-/** Curves of several models on one axis of time, as the charts want them. */
+/** Curves of several models on one axis of time, as the charts want them.
+ * @param {number[]} time @param {(number | null)[]} values @param {number[]} grid */
 
 const straight = (time, values, grid) => {
   const found = new Array(grid.length);
@@ -18,7 +19,7 @@ const straight = (time, values, grid) => {
   return found;
 };
 
-/** Returns every instant of several histories once, in order [s]. */
+/** Returns every instant of several histories once, in order [s]. @param {number[][]} histories */
 const commonTime = (histories) => {
   const all = Float64Array.from(histories.flatMap((time) => time)).sort();
   const grid = [];
@@ -28,12 +29,14 @@ const commonTime = (histories) => {
 
 const grids = new WeakMap(); // of several answers, for all of their curves
 
+/** @param {Server.ResponseFacts[]} answers */
 const gridOf = (answers) => {
   if (!grids.has(answers)) grids.set(answers, commonTime(answers.map((answer) => answer.series.time)));
   return grids.get(answers);
 };
 
-/** Returns [time, values of the first answer, of the second, ...]; null after a history has ended. */
+/** Returns [time, values of the first answer, of the second, ...]; null after a history has ended.
+ * @param {Server.ResponseFacts[]} answers @param {(answer: Server.ResponseFacts) => (number | null)[]} valuesOf @returns {Columns} */
 export const together = (answers, valuesOf) => {
   const grid = gridOf(answers);
   return [grid, ...answers.map((answer) => straight(answer.series.time, valuesOf(answer), grid))];

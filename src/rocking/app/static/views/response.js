@@ -16,7 +16,7 @@ import { Banner, inWords, verdictKind } from "/views/response-words.js";
 const KEYS = ["body", "motion", "restitution", "response", "settings"];
 const FIGURES = ["rotation", "velocity", "ground", "energy", "force", "friction"];
 
-/** Shows the view of the response in a section. */
+/** Shows the view of the response in a section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const question = () => {
     const { body, motion, restitution, response, settings } = app.inputs.get();
@@ -25,6 +25,7 @@ export const mount = (section, app) => {
     const points = dotsOf(section.querySelector("[data-testid=chart-rotation]") ?? section);
     return { body, motion: free === null ? motion : undefined, restitution, response, settings, points };
   };
+  /** @type {Asked<Server.ResponseAnswered>} */
   const asked = createAnswer(app, "response", KEYS, question);
   const time = createTime((instant) => player.glance(instant), asked.look);
   const player = new Player(time.show);
@@ -45,6 +46,7 @@ export const mount = (section, app) => {
   };
 };
 
+/** @param {any} event @param {Player} player */
 const onKey = (event, player) => {
   if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.target.closest("button, select, summary, a, input:not([type=range]), textarea")) return;
@@ -52,11 +54,14 @@ const onKey = (event, player) => {
   player.toggle();
 };
 
+/** @type {any[]} */
 const NONE = [];
+/** @param {{ outcome?: string }} answer */
 const falls = ({ outcome }) => outcome === "overturned";
 const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; "
   + "there it stays, since a landing on a side is not computed.";
 
+/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean> }} props */
 const Response = ({ app, asked, inputs, player, time, stale }) => {
   const { answer: found, refused, part } = asked;
   const results = useRef(null);
@@ -98,6 +103,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
     </div>`;
 };
 
+/** @param {{ app: App }} props */
 const NothingMoves = ({ app }) => html`
   <${Note} words="Nothing moves the body yet: choose a motion, or let it go from a lean." />
   <div class="toolbar"><${Button} kind="primary" onClick=${() => app.go("motion")}>Choose a motion<//>

@@ -11,9 +11,11 @@ import { Standing } from "/space/standing.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
 const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
+/** @type {{ [command: string]: string }} */
 const TITLES = { equilibria: "How it can stand", cor: "Its edges", simulate: "How it moves" };
 const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
 const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
+/** @type {{ [axis: string]: number[] | undefined }} */
 const AXES = { x: [1, 0, 0], "-z": [0, 0, -1] };
 const REPAIRS = [["", "what is safe"], ["none", "nothing (\"none\"): refuse what is not closed"], ["all", "whatever it takes (\"all\")"]];
 const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")"], ["hull", "the hull of its points (\"hull\")"]];
@@ -28,32 +30,36 @@ const FIRST = {
 const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "density"];
 const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
 
-/** The scan that is asked about: the chosen one, or the last; none where the body of the project is. */
-const scanOf = ({ files, chosen }) => (chosen === OWN ? undefined : files.find(({ sha }) => sha === chosen) ?? files.at(-1));
+/** The scan that is asked about: the chosen one, or the last; none where the body of the project is.
+ * @param {any} form @returns {SentFile | undefined} */
+const scanOf = ({ files, chosen }) => (chosen === OWN ? undefined : files.find((/** @type {SentFile} */ { sha }) => sha === chosen) ?? files.at(-1));
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const questions = createQuestions(app, ...Object.keys(TITLES));
   render(html`<${Space} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
 
+/** @param {{ app: App, questions: Questions }} props */
 const Space = ({ app, questions }) => {
   const form = useForm(app, "space", FIRST);
   const [files, chosen, asked, units, up, repair, surface, density] = BODY.map((name) => form.at(name));
   const [shaken, friction, law, coefficient, times, recordUnits] = MOVES.map((name) => form.at(name));
   const records = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, form.at(`along_${axis}`)]));
   const pose = form.at("pose"); // {number, up}: which way up it shall stand, in the axes of the file
+  /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const scan = scanOf(form.value);
   const scans = {
     get value() { return files.value; },
     set value(next) {
-      const added = next.filter(({ sha }) => files.value.every((one) => one.sha !== sha));
+      const added = next.filter((/** @type {SentFile} */ { sha }) => files.value.every((/** @type {SentFile} */ one) => one.sha !== sha));
       files.value = next;
       if (added.length) chosen.value = added.at(-1).sha;
     },
   };
+  /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
     const inputs = app.inputs.get();
@@ -63,8 +69,8 @@ const Space = ({ app, questions }) => {
     });
     const moves = asked.value === "simulate";
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
-    const held = parseNumber(friction.value);
-    const kept = parseNumber(coefficient.value);
+    const held = parseNumber(friction.value) ?? NaN;
+    const kept = parseNumber(coefficient.value) ?? NaN;
     wrong.value = body.missing || (!(held > 0) && { key: "friction", words: "The friction is a number above 0." })
       || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "The coefficient is a number from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
@@ -77,6 +83,7 @@ const Space = ({ app, questions }) => {
     const sent = scan ? { [scan.name]: scan.sha } : {};
     questions.ask(tables, { ...sent, ...motion.files }, `${TITLES[asked.value]}: ${name}`, { command: asked.value });
   };
+  /** @param {number} number_ @param {number[]} direction */
   const goOn = (number_, direction) => {
     pose.value = { number: number_, up: direction };
     app.say(`What is asked next is of the body in pose ${number_}.`);
@@ -89,7 +96,7 @@ const Space = ({ app, questions }) => {
       <${FileDrop} label="Drop a scan here, or" many accept=${SCANS} files=${scans} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
       <${Choice} label="Body" value=${chosen} chosen=${scan?.sha ?? chosen.value} options=${[
-        ...(files.value.length ? files.value.map(({ name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
+        ...(files.value.length ? files.value.map((/** @type {SentFile} */ { name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
       ${chosen.value === OWN ? html`<p class="field-help">A block or a section, over its depth.</p>` : html`
       <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
       ${pose.value ? html`<p class="space-pose">Stands in pose ${pose.value.number} of the last answer.
@@ -114,28 +121,31 @@ const Space = ({ app, questions }) => {
     <//>`;
 };
 
-/** The table of the body, with what was said alone; missing: what has to be said first. */
+/** The table of the body, with what was said alone; missing: what has to be said first.
+ * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} said @returns {{ table?: any, missing?: Wrong }} */
 const bodyOf = (scan, said) => {
   if (!scan) return { missing: "No scan was sent yet." };
-  const kind = scan.name.split(".").at(-1).toLowerCase();
+  const kind = scan.name.replace(/^.*\./s, "").toLowerCase();
   if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: `${kind.toUpperCase()} files do not say their unit: choose it.` } };
   const density = said.density ? parseNumber(said.density) : null;
-  if (said.density && !(density > 0)) return { missing: { key: "density", words: "The density is a number above 0." } };
+  if (said.density && !(Number(density) > 0)) return { missing: { key: "density", words: "The density is a number above 0." } };
   const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
   return { table: { file: scan.name, ...Object.fromEntries(stated) } };
 };
 
-/** What shakes it along its axes, the files for that, and what is missing. */
+/** What shakes it along its axes, the files for that, and what is missing.
+ * @param {App} app @param {string} shaken @param {{ [axis: string]: { value: SentFile[] } }} records @param {string} units @param {string} times @returns {Shaking} */
 const shakenBy = (app, shaken, records, units, times) => {
   const scale = parseNumber(times);
   if (scale === null || scale === 0) return { missing: { key: "times", words: "How many times the motion? A number is needed." } };
   if (shaken !== "records") {
     const motion = motionOf(app.inputs.get());
     const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion: choose one, or send records.");
-    if (missing) return { missing };
+    if (missing || !motion) return { missing };
     return { tables: { motion: { [shaken]: motion.tables.motion, scale } }, files: motion.files };
   }
-  const sent = Object.entries(records).filter(([, signal]) => signal.value.length).map(([axis, signal]) => [axis, signal.value[0]]);
+  const sent = Object.entries(records).filter(([, signal]) => signal.value.length)
+    .map(/** @returns {[string, SentFile]} */ ([axis, signal]) => [axis, signal.value[0]]);
   const along = Object.fromEntries(sent.map(([axis, one]) => [axis, { record: one.name, ...(units ? { units } : {}) }]));
   return {
     tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, one]) => [one.name, one.sha])),
@@ -143,6 +153,7 @@ const shakenBy = (app, shaken, records, units, times) => {
   };
 };
 
+/** @param {Given & { onPose: (pose: number, up: number[]) => unknown }} given */
 const Answer = ({ answer, question, onPose }) => {
   const scan = html`<${Taken} body=${answer.body} repairs=${answer.repairs} own=${!/^file = /m.test(question.toml)} />`;
   if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
@@ -156,13 +167,15 @@ const Answer = ({ answer, question, onPose }) => {
     ${scan}`;
 };
 
+/** @param {{ body: any, repairs: string[], own: boolean }} props */
 const Taken = ({ body, repairs, own }) => html`
   <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
-  <p>${body.size_m.map((each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(body.mass_kg, 4)} kg,
+  <p>${body.size_m.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(body.mass_kg, 4)} kg,
     centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.</p>
   <ul class="space-repairs" aria-label="What was mended">
     ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`) : html`<li>Nothing had to be mended.</li>`}
-    ${[...body.assumed, ...body.warnings].map((words) => html`<li key=${words}>${sentence(words)}.</li>`)}
+    ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}.</li>`)}
   </ul>`;
 
+/** @param {string} words */
 const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}`;

@@ -15,24 +15,28 @@ const SHAPE = {
   series: [{ label: "rotation / \u03b1", colour: "--accent" }],
 };
 
-/** What is known of a cell: show(aim, k, kept) asks for it, open() takes a cell that is kept to the step Response. */
+/** What is known of a cell: show(aim, k, kept) asks for it, open() takes a cell that is kept to the step Response.
+ * @param {App} app @param {Server.StudyFacts} study */
 export const createCell = (app, study) => {
   const words = signal("Click a cell of the map.");
   const data = signal(null); // of the curve that was drawn last
   const curve = signal(false);
   const opens = signal(false);
+  /** @type {any} */
   let inputs = null;
   let busy = false;
+  /** @type {{ aim: Cell, k: number, kept: boolean } | null} */
   let next = null;
 
   const open = () => {
     if (!opens.value) return;
     // what the cell does not have must be absent, not null
     const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
-    const cell = Object.fromEntries(there.map((key) => [key, inputs[key]]));
+    const cell = /** @type {any} */ (Object.fromEntries(there.map((key) => [key, inputs[key]])));
     app.inputs.lend(cell, `a cell of \u201c${study.name}\u201d`);
     app.go("response");
   };
+  /** @param {Server.HistoryAnswer} found @param {boolean} kept */
   const took = (found, kept) => {
     ({ inputs } = found);
     opens.value = Boolean(inputs) && kept && next === null;
@@ -56,6 +60,7 @@ export const createCell = (app, study) => {
     busy = false;
     ask();
   };
+  /** @param {Cell} aim @param {number} k @param {boolean} kept */
   const show = (aim, k, kept) => {
     next = { aim, k, kept };
     opens.value = false;
@@ -64,7 +69,7 @@ export const createCell = (app, study) => {
   return { words, data, curve, opens, show, open };
 };
 
-/** The panel of a cell. */
+/** The panel of a cell. @param {{ cell: ReturnType<typeof createCell> }} props */
 export const Cell = ({ cell: { words, data, curve, opens, open } }) => html`
   <div class="cell-history" data-testid="cell-history">
     <h3>History of a cell</h3>
@@ -73,12 +78,14 @@ export const Cell = ({ cell: { words, data, curve, opens, open } }) => html`
     <div class="toolbar"><${Button} kind="primary" disabled=${!opens.value} onClick=${open}>Open in Response<//></div>
   </div>`;
 
+/** @param {Server.HistoryAnswer} found */
 const wordsOf = ({ stored, answer, note }) => {
   const impacts = `${number(stored.impacts)} impact${stored.impacts === 1 ? "" : "s"}`;
   return [answer ? `${answer.summary}.` : `${impacts}.`, note ? `${note}.` : ""].join(" ");
 };
 
+/** @param {Server.ResponseFacts} answer */
 const shareOf = (answer) => {
-  const [left, right] = ["left", "right"].map((foot) => answer.body.sides[foot].slenderness_angle_rad);
+  const [left, right] = /** @type {Foot[]} */ (["left", "right"]).map((foot) => answer.body.sides[foot].slenderness_angle_rad);
   return answer.series.rotation.map((theta) => theta / (theta > 0 ? right : left));
 };

@@ -6,16 +6,17 @@ import { modelWords } from "/app/palette.js";
 
 const MOST = 500;
 
-/** Counts of outcomes, and the tables of a study. */
+/** Counts of outcomes, and the tables of a study. @param {{ found: any }} props */
 export const Counts = ({ found }) => {
   const several = found.restitutions?.length > 1;
   return html`
-    ${(found.shares ?? []).map((shares, k) => html`<${Table} key=${k} columns=${["Outcome", "histories", "share"]} testid="study-counts"
+    ${(found.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "histories", "share"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
       caption=${several ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes"} />`)}
     ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
 };
 
+/** @param {{ name: string, columns: any[] }} props */
 const Columns = ({ name, columns }) => {
   const count = columns[0]?.values.length ?? 0;
   const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));

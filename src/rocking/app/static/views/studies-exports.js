@@ -14,15 +14,18 @@ const OF_ONE = new Set(["png", "svg", "xml"]);
 const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
 const CROSS = "These curves cross, which the file cannot hold. With one dispersion for all states they do not.";
 
+/** @param {any} found @param {number} k */
 const hasFit = (found, k) => Object.keys(found.analyses?.[k]?.curves ?? {}).length > 0;
 
-/** Buttons that save the result of a study, pictures and curves of the restitution that is `chosen`. */
+/** Buttons that save the result of a study, pictures and curves of the restitution that is `chosen`.
+ * @param {{ app: App, study: Server.StudyFacts, found: any, chosen: { restitution: number } }} props */
 export const Exports = ({ app, study, found, chosen }) => {
   const said = useSignal("");
   const fragility = FRAGILITIES.has(study.kind);
-  const curveless = fragility && found.analyses.every((_, k) => !hasFit(found, k));
+  const curveless = fragility && found.analyses.every((/** @type {unknown} */ _, /** @type {number} */ k) => !hasFit(found, k));
   const offered = FILES.filter(([suffix]) => (suffix === "xml" ? fragility
     : study.kind !== "histories" || !OF_ONE.has(suffix)));
+  /** @param {string} suffix @param {string} [more] */
   const fetched = (suffix, more = "") => {
     const place = OF_ONE.has(suffix) ? `?restitution=${chosen.restitution}` : "";
     return app.download(`/api/studies/${study.id}/export.${suffix}${place}${more}`, undefined, `study.${suffix}`);
@@ -31,10 +34,11 @@ export const Exports = ({ app, study, found, chosen }) => {
     await fetched("xml", "&crossing=common-dispersion");
     said.value = "";
   };
+  /** @param {string} suffix */
   const save = async (suffix) => {
     said.value = suffix === "xml" && !hasFit(found, chosen.restitution) ? NO_FIT : "";
     if (said.value) return;
-    const refused = await fetched(suffix);
+    const refused = /** @type {any} */ (await fetched(suffix));
     if (/must not cross/.test(refused?.message)) said.value = CROSS;
   };
   return html`

@@ -8,12 +8,13 @@ import { RecordChoice } from "/views/studies-form-records.js";
 const ANALYSES = [["stripes", "Stripes"], ["incremental", "Incremental"], ["cloud", "Cloud"]];
 const SOURCES = [["synthetic", "Synthetic set"], ["records", "Uploaded records"]];
 
-/** Where the levels of a measure usually lie. */
+/** Where the levels of a measure usually lie. @type {{ [measure: string]: number[] | undefined }} */
 const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
 
-/** Form of a fragility. */
+/** Form of a fragility. @param {{ app: App, question: StudyQuestion, visits: number }} props */
 export const FragilityQuestion = ({ app, question, visits }) => {
   const { families, measures } = app.info;
+  /** @type {Signal<any>} */
   const chosen = useSignal({
     kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: "pga", state: 0.5,
   });
@@ -24,8 +25,11 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     const [from, to] = USUAL[measure] ?? [1, 12];
     return { from, to, count: 12 };
   }, [measure]);
-  const take = (key) => (value) => (chosen.value = { ...chosen.value, [key]: value });
+  /** @param {string} key */
+  const take = (key) => (/** @type {any} */ value) => (chosen.value = { ...chosen.value, [key]: value });
+  /** @param {any} Kind @param {string} key @param {string} label @param {object} more */
   const field = (Kind, key, label, more) => html`<${Kind} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
+  /** @param {string} key @param {string} label @param {[string, string][]} options */
   const choice = (key, label, options) => field(Choice, key, label, { options });
   question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records.current) };
   return html`<div class="question">
@@ -47,6 +51,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
   </div>`;
 };
 
+/** @param {Server.Inputs} inputs @param {any} chosen @param {any} levels @param {() => any} records */
 const tablesOf = (inputs, { kind, source, family, count, seed, measure, state }, levels, records) => {
   if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
   const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };

@@ -4,6 +4,7 @@ import { Choice } from "/parts/fields.js";
 import { greek } from "/views/studies-words.js";
 import { Range, motionsOf, rangeOf, unitOf } from "/views/studies-form-parts.js";
 
+/** @type {{ [measure: string]: number[] | undefined }} */
 const USUAL = {
   frequency_ratio: [0.5, 8],
   amplitude_ratio: [1, 10],
@@ -24,7 +25,8 @@ const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
 const SIDES = { x: "Across", y: "Up" };
 
-/** Form of a map: its axes are those of the motion of the inputs until others are chosen that this motion has. */
+/** Form of a map: its axes are those of the motion of the inputs until others are chosen that this motion has.
+ * @param {{ app: App, question: StudyQuestion }} props */
 export const MapQuestion = ({ app, question }) => {
   const own = useSignal({});
   const pulse = Boolean(app.inputs.get().motion?.pulse);
@@ -41,6 +43,7 @@ export const MapQuestion = ({ app, question }) => {
       return { kind: "overturning-map", job: { body: inputs.body, motions: motionsOf(inputs), map } };
     },
   };
+  /** @param {"x" | "y"} which @param {any} range */
   const side = (which, range) => html`
     <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words }) => [name, greek(words)])}
       value=${chosen[which]} on=${(name) => (own.value = { ...own.value, [which]: name })} />
@@ -49,7 +52,7 @@ export const MapQuestion = ({ app, question }) => {
   return html`<div class="map-question">${side("x", x)}${side("y", y)}</div>`;
 };
 
-/** The usual range of an axis, to be changed by its fields. */
+/** The usual range of an axis, to be changed by its fields. @param {string} axis */
 const useAxis = (axis) => useMemo(() => {
   const [from, to] = USUAL[axis] ?? [1, 2];
   return { from, to, count: 50 };

@@ -2,8 +2,10 @@
 import { html } from "/parts/preact.js";
 import { NumberField } from "/parts/fields.js";
 
-/** Three fields: from, to, number, which write into `range`; another range needs another key. */
+/** Three fields: from, to, number, which write into `range`; another range needs another key.
+ * @param {{ name: string, unit?: string, range: any }} props */
 export const Range = ({ name, unit = "", range }) => {
+  /** @param {string} key @param {string} label @param {object} more */
   const field = (key, label, more) => html`<${NumberField} label=${label} value=${range[key]}
     on=${(given) => (range[key] = given)} ...${more} />`;
   return html`<fieldset class="range-fields"><legend>${name}</legend>
@@ -11,13 +13,13 @@ export const Range = ({ name, unit = "", range }) => {
   </fieldset>`;
 };
 
-/** A range as a job file writes it. */
+/** A range as a job file writes it. @param {any} range */
 export const rangeOf = ({ from, to, count, ...more }) => ({ from, to, count: Math.round(count), ...more });
 
-/** The unit that a label has, of none nothing. */
+/** The unit that a label has, of none nothing. @param {any} axis */
 export const unitOf = ({ unit }) => (unit === "1" ? "" : unit);
 
-/** Motions of a job from the motion of the inputs. */
+/** Motions of a job from the motion of the inputs. @param {Server.Inputs} inputs */
 export const motionsOf = (inputs) => {
   const motion = inputs.motion;
   if (!motion) throw new Error("A study needs a motion: choose one in the step Motion.");

@@ -7,9 +7,11 @@ import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
 
-/** List of the records, read at every visit; `taken.current()` gives those that are ticked as motions of a job. */
+/** List of the records, read at every visit; `taken.current()` gives those that are ticked as motions of a job.
+ * @param {{ app: App, taken: { current: any }, visits: number, hidden: boolean }} props */
 export const RecordChoice = ({ app, taken, visits, hidden }) => {
   const [stored, looked, left, refused] = [useSignal([]), useSignal({}), useSignal(new Set()), useSignal("")];
+  /** @param {string} record */
   const look = async (record) => {
     const told = toldOf(record);
     const { format, units, time_step } = told;
@@ -22,7 +24,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   const refresh = async () => {
     try {
       const answer = await app.call("records");
-      stored.value = answer.records ?? answer;
+      stored.value = answer;
       refused.value = "";
       for (const { record } of stored.value) await look(record);
     } catch (error) {
@@ -30,6 +32,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     }
   };
   useEffect(() => void (hidden || refresh()), [hidden, visits]);
+  /** @param {{ record: string }} one */
   const isTicked = ({ record }) => looked.value[record]?.missing?.length === 0 && !left.value.has(record);
   const ticked = stored.value.filter(isTicked);
   taken.current = () => {
@@ -37,12 +40,14 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     if (!ticked.length) throw new Error("No record is ticked: tick at least one.");
     return together(ticked.map(({ record }) => ({ records: [record], ...toldOf(record) })));
   };
+  /** @param {string} record @param {boolean} on */
   const tick = (record, on) => {
     const next = new Set(left.value);
     if (on) next.delete(record);
     else next.add(record);
     left.value = next;
   };
+  /** @param {string} record */
   const gone = (record) => {
     forgetTold(record);
     stored.value = stored.value.filter((one) => one.record !== record);
@@ -57,7 +62,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     </div>`;
 };
 
-/** Records that were told the same stand in one table. */
+/** Records that were told the same stand in one table. @param {any[]} tables */
 const together = (tables) => {
   const found = new Map();
   for (const { records, ...told } of tables) {
@@ -69,6 +74,7 @@ const together = (tables) => {
 
 const NOT_SEEN = {};
 
+/** @param {any} props */
 const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) => {
   const row = useRef(null);
   const answered = useRef(false);
@@ -78,6 +84,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
     answered.current = false;
   }, [seen]);
+  /** @param {any} given */
   const take = (given) => {
     rememberTold({ record, ...told, ...given });
     answered.current = true;
@@ -105,8 +112,9 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     </li>`;
 };
 
+/** @param {any} found @param {any} told */
 const factsOf = ({ components = [] }, { units, component, vertical }) => {
-  const chosen = components.find(({ name }) => name === component) ?? components[0];
+  const chosen = components.find((/** @type {any} */ { name }) => name === component) ?? components[0];
   const step = chosen?.time_step_s;
   return [
     component,

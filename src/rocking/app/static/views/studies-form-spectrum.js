@@ -2,7 +2,7 @@
 import { html, useRef } from "/parts/preact.js";
 import { Range, motionsOf, rangeOf } from "/views/studies-form-parts.js";
 
-/** Form of rocking spectra. */
+/** Form of rocking spectra. @param {{ question: StudyQuestion }} props */
 export const SpectrumQuestion = ({ question }) => {
   const angles = useRef({ from: 0.1, to: 0.3, count: 3 }).current;
   const periods = useRef({ from: 1, to: 12, count: 60, spacing: "log" }).current;

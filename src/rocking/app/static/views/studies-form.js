@@ -5,19 +5,21 @@ import { MapQuestion } from "/views/studies-form-map.js";
 import { FragilityQuestion } from "/views/studies-form-fragility.js";
 import { SpectrumQuestion } from "/views/studies-form-spectrum.js";
 
+/** @type {{ [kind: string]: (given: any) => VNode }} */
 const QUESTIONS = { "overturning-map": MapQuestion, fragility: FragilityQuestion, "rocking-spectrum": SpectrumQuestion };
 const KINDS = [
   ["overturning-map", "Overturning map"], ["fragility", "Fragility"], ["rocking-spectrum", "Rocking spectra"],
 ];
 
-/** A name that no study has yet. */
+/** A name that no study has yet. @param {string} name @param {Set<string>} taken */
 const fresh = (name, taken) => {
   let found = name;
   for (let k = 2; taken.has(found); k += 1) found = `${name} ${k}`;
   return found;
 };
 
-/** Form with one question at a time; calls onLaunched(id); `taken` says which names there are. */
+/** Form with one question at a time; calls onLaunched(id); `taken` says which names there are.
+ * @param {{ app: App, visits: number, onLaunched: (id: string) => unknown, taken: () => Set<string> }} props */
 export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   const [kind, name, problem, busy] = [useSignal("overturning-map"), useSignal(""), useSignal(""), useSignal(false)];
   const [form, question] = [useRef(null), useRef(null)];
@@ -29,6 +31,7 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
     wrong?.focus();
     return wrong ? "A number of this form is marked as wrong: correct it first." : app.faults.sentence({ inputs: true });
   };
+  /** @param {Event} event */
   const launch = async (event) => {
     event.preventDefault();
     problem.value = faultOf();
@@ -48,6 +51,7 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
     }
     busy.value = false;
   };
+  /** @param {any} chosen */
   const choose = (chosen) => {
     kind.value = chosen;
     problem.value = "";

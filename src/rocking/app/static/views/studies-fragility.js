@@ -7,7 +7,8 @@ import { Choice, Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
 
-/** Fragility curves, of one restitution at a time. */
+/** Fragility curves, of one restitution at a time.
+ * @param {{ found: Server.FragilityResult, chosen: { restitution: number } }} props */
 export const Fragility = ({ found, chosen }) => {
   const k = useSignal("0");
   chosen.restitution = Number(k.value);
@@ -17,6 +18,7 @@ export const Fragility = ({ found, chosen }) => {
     <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />`;
 };
 
+/** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
 const Analysis = ({ found, analysis }) => {
   const unit = found.measure.unit === "1" ? "" : found.measure.unit;
   const x = { label: found.measure.words, unit };
@@ -37,12 +39,14 @@ const Analysis = ({ found, analysis }) => {
   </div>`;
 };
 
+/** @param {string | undefined} sentence @param {string} state @param {number | null} threshold @param {string} unit */
 const whyNone = (sentence, state, threshold, unit) => {
   const why = sentence ? withUnit(sentence.slice(state.length + 2), unit) : stepWords(threshold, unit);
   return `No curve is drawn: ${why}.`.replace(/\.\.$/, ".");
 };
 
-/** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance. */
+/** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance.
+ * @param {number | null} threshold @param {string} unit */
 const stepWords = (threshold, unit) => (threshold === null ? "these shares fit none"
   : `below ${quantity(threshold, unit)} the body cannot uplift and above it always does, a step from 0 to 1`);
 
@@ -50,12 +54,13 @@ const NO_CURVE = { x: [], probability: [], low: null, high: null };
 
 const LEVEL = /\b(At|at|median) ([0-9][0-9.e+-]*[0-9]|[0-9])(?= |,|:|$)(?! levels?\b)/g;
 
-/** The verdict of a fit names levels without a unit. */
+/** The verdict of a fit names levels without a unit. @param {string} sentence @param {string} unit */
 const withUnit = (sentence, unit) =>
   plainWords(sentence)
     .replace(LEVEL, `$1 $2${unit && `\u00a0${pretty(unit)}`}`)
     .replace(/\b(between \S+ and \S*[0-9])/g, `$1${unit && `\u00a0${pretty(unit)}`}`);
 
+/** @param {{ state: string, curve: any, points: Server.PointsOfState, index: number, x: ChartAxis }} props */
 const Curve = ({ state, curve, points, index, x }) => {
   const { colour } = seriesStyle(index);
   const band = Boolean(curve.low && curve.high);
@@ -79,9 +84,10 @@ const Curve = ({ state, curve, points, index, x }) => {
   return html`<${Figure} shape=${shape} data=${data} testid="fragility-chart" />`;
 };
 
-/** One abscissa for the curve and its points: null where one of them has no value. */
+/** One abscissa for the curve and its points: null where one of them has no value.
+ * @param {any} curve @param {Server.PointsOfState} points */
 const joined = (curve, points) => {
-  const onCurve = curve.x.map((at, k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
+  const onCurve = curve.x.map((/** @type {number} */ at, /** @type {number} */ k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
   const onPoints = points.x.map((at, k) => [at, ...between(curve, at), points.share[k]]);
   const all = [...onCurve, ...onPoints].sort((a, b) => a[0] - b[0]);
   return [0, 1, 2, 3, 4].map((column) => all.map((row) => row[column]));
@@ -89,8 +95,9 @@ const joined = (curve, points) => {
 
 const NAMES = ["probability", "low", "high"];
 
+/** @param {any} curve @param {number} at */
 const between = (curve, at) => {
-  const k = curve.x.findIndex((value) => value >= at);
+  const k = curve.x.findIndex((/** @type {number} */ value) => value >= at);
   if (k < 1) return [null, null, null];
   const share = (at - curve.x[k - 1]) / (curve.x[k] - curve.x[k - 1]);
   return NAMES.map((name) =>
@@ -98,6 +105,7 @@ const between = (curve, at) => {
   );
 };
 
+/** @param {string} unit */
 const columnsOf = (unit) => [
   "State",
   { label: "median", unit },
@@ -106,7 +114,9 @@ const columnsOf = (unit) => [
   "its 95 % interval",
 ];
 
+/** @param {string} state @param {Server.FitFacts} fit */
 const rowOf = (state, fit) => {
+  /** @param {any} pair */
   const pair = ([low, high]) =>
     low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`;
   return [
@@ -118,4 +128,5 @@ const rowOf = (state, fit) => {
   ];
 };
 
+/** @param {number | null} value */
 const shown = (value) => (value == null ? "unbounded" : Number(value.toPrecision(4)).toString());

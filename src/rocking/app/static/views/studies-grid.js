@@ -9,6 +9,7 @@ const BOTTOM = 52;
 const TOP = 12;
 const RIGHT = 14;
 
+/** @param {number[]} values */
 const isGeometric = (values) => {
   if (values.length < 3 || values[0] <= 0) return false;
   const first = values[1] / values[0];
@@ -17,27 +18,29 @@ const isGeometric = (values) => {
   return even && Math.abs(values[2] - values[1] - step) > 1e-9 * Math.abs(step);
 };
 
+/** @param {number[]} places */
 const edgesOf = (places) => {
   if (places.length === 1) return [places[0] - 0.5, places[0] + 0.5];
   const inner = places.slice(1).map((place, k) => 0.5 * (place + places[k]));
-  return [1.5 * places[0] - 0.5 * places[1], ...inner, 1.5 * places.at(-1) - 0.5 * places.at(-2)];
+  return [1.5 * places[0] - 0.5 * places[1], ...inner, 1.5 * places[places.length - 1] - 0.5 * places[places.length - 2]];
 };
 
-/** Places of an axis: value to share of its length, and edges of its cells. */
+/** Places of an axis: value to share of its length, and edges of its cells. @param {{ values: number[] }} axis */
 export const axisOf = ({ values }) => {
   const log = isGeometric(values);
-  const place = log ? Math.log : (value) => value;
+  const place = log ? Math.log : Number;
   const edges = edgesOf(values.map(place));
-  const span = edges.at(-1) - edges[0] || 1;
+  const span = edges[edges.length - 1] - edges[0] || 1;
   return {
     log,
-    share: (value) => (place(value) - edges[0]) / span,
+    /** @param {number} value */
+    share: (/** @type {number} */ value) => (place(value) - edges[0]) / span,
     edges: edges.map((edge) => (edge - edges[0]) / span),
-    value: (share) => (log ? Math.exp : Number)(edges[0] + share * span),
+    value: (/** @type {number} */ share) => (log ? Math.exp : Number)(edges[0] + share * span),
   };
 };
 
-/** Round numbers for an axis from low to high. */
+/** Round numbers for an axis from low to high. @param {{ low: number, high: number, log: boolean }} range */
 export const ticksOf = ({ low, high, log }) => {
   if (log && high / low > 8) {
     return [1, 2, 5]
@@ -47,14 +50,15 @@ export const ticksOf = ({ low, high, log }) => {
   }
   const rough = (high - low) / 6;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].find((m) => m * power >= rough) * power;
+  const step = ([1, 2, 5].find((m) => m * power >= rough) ?? 10) * power;
   const first = Math.ceil(low / step);
   return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, k) =>
     Number(((first + k) * step).toPrecision(12)),
   );
 };
 
-/** The cell under the middle of each of some dots along the part of an axis that is seen. */
+/** The cell under the middle of each of some dots along the part of an axis that is seen.
+ * @param {number[]} edges @param {number} dots @param {number[]} part */
 const cellsOf = (edges, dots, [from, to]) => {
   let k = 0;
   return Array.from({ length: dots }, (_, dot) => {
@@ -67,52 +71,61 @@ const cellsOf = (edges, dots, [from, to]) => {
 const WHOLE = [0, 1];
 const LEAST = 4; // cells across, however close one looks
 
-/** Some length of an axis around a place, within it. */
+/** Some length of an axis around a place, within it. @param {number} place @param {number} length */
 const around = (place, length) => {
   const from = Math.min(Math.max(place - length / 2, 0), 1 - length);
   return [from, from + length];
 };
 
-/** A colour "#rrggbb" as a dot of an image has it, the least byte first. */
+/** A colour "#rrggbb" as a dot of an image has it, the least byte first. @param {string} paint */
 const wordOf = (paint) => {
   const rgb = parseInt(paint.slice(1), 16);
   return (0xff000000 | ((rgb & 0xff) << 16) | (rgb & 0xff00) | (rgb >> 16)) >>> 0;
 };
 
-/** Painter of a map: draw(paintOf, [kept, aim], lines, drag), cellAt(event), and what part of it is seen. */
+/** Painter of a map: draw(paintOf, [kept, aim], lines, drag), cellAt(event), and what part of it is seen.
+ * @param {HTMLCanvasElement} canvas @param {MapAxis} x @param {MapAxis} y */
 export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
   const up = axisOf(y);
   let size = { width: 300, height: 300 };
   let dense = 1;
+  /** @type {{ by?: PaintOf, lines?: Lines }} */
   let painted = {};
   let seen = [WHOLE, WHOLE]; // shares of the axes
   const still = document.createElement("canvas"); // all but what follows the pointer: drawn once, not at every move
 
   const fit = () => {
-    const width = Math.max(240, canvas.parentElement.clientWidth);
+    const width = Math.max(240, canvas.parentElement?.clientWidth ?? 0);
     size = { width, height: Math.round(Math.min(0.78 * width, 520)) };
     dense = window.devicePixelRatio || 1;
     painted = {};
     for (const each of [canvas, still]) {
       each.width = Math.round(size.width * dense);
       each.height = Math.round(size.height * dense);
-      each.getContext("2d").setTransform(dense, 0, 0, dense, 0, 0);
+      each.getContext("2d")?.setTransform(dense, 0, 0, dense, 0, 0);
     }
     canvas.style.height = `${size.height}px`;
   };
   const inner = () => ({ w: size.width - LEFT - RIGHT, h: size.height - TOP - BOTTOM });
+  /** @param {number} share @param {number[]} range */
   const part = (share, [from, to]) => (share - from) / (to - from);
+  /** @param {number} share */
   const xAt = (share) => LEFT + part(share, seen[0]) * inner().w;
+  /** @param {number} share */
   const yAt = (share) => TOP + (1 - part(share, seen[1])) * inner().h;
+  /** @param {...number[]} parts */
   const look = (...parts) => {
     const least = [across, up].map(({ edges }) => Math.min(1, LEAST / (edges.length - 1)));
     seen = parts.map(([from, to], k) => around((from + to) / 2, Math.min(1, Math.max(least[k], to - from))));
     painted = {};
   };
+  /** @param {GridAxis} axis @param {number} k */
   const middle = (axis, k) => (axis.edges[k] + axis.edges[k + 1]) / 2;
+  /** @param {Cell} cell */
   const placeOf = ({ ix, iy }) => [middle(across, ix), middle(up, iy)];
 
+  /** @param {CanvasRenderingContext2D} pen @param {number} ix @param {number} iy @param {number} [grow] */
   const cell = (pen, ix, iy, grow = 0) => {
     const left = xAt(across.edges[ix]);
     const top = yAt(up.edges[iy + 1]);
@@ -125,7 +138,9 @@ export const createGrid = (canvas, x, y) => {
   };
 
   // Every dot of the screen has the colour of its cell: a map of a million cells costs no more than a small one.
+  /** @param {CanvasRenderingContext2D} pen @param {PaintOf} paintOf */
   const imageOf = (pen, paintOf) => {
+    /** @param {number} from @param {number} length */
     const dots = (from, length) => Math.floor((from + length) * dense) - Math.ceil(from * dense);
     const [wide, high] = [dots(LEFT, inner().w), dots(TOP, inner().h)];
     if (!(wide > 0 && high > 0)) return null;
@@ -138,10 +153,12 @@ export const createGrid = (canvas, x, y) => {
     return image;
   };
 
+  /** @param {CanvasRenderingContext2D} pen */
   const drawAxes = (pen) => {
     pen.fillStyle = colour("--ink-soft");
     pen.strokeStyle = colour("--line-strong");
     pen.lineWidth = 1;
+    /** @param {GridAxis} axis @param {number[]} range */
     const ticks = ({ value, log }, [from, to]) => ticksOf({ log, low: value(from), high: value(to) });
     pen.font = "12px system-ui, sans-serif";
     pen.strokeRect(LEFT, TOP, inner().w, inner().h);
@@ -166,6 +183,7 @@ export const createGrid = (canvas, x, y) => {
     pen.restore();
   };
 
+  /** @param {CanvasRenderingContext2D} pen @param {() => void} drawing */
   const within = (pen, drawing) => {
     pen.save();
     pen.beginPath();
@@ -175,8 +193,9 @@ export const createGrid = (canvas, x, y) => {
     pen.restore();
   };
 
+  /** @param {PaintOf} paintOf @param {Lines} lines */
   const drawStill = (paintOf, lines) => {
-    const pen = still.getContext("2d");
+    const pen = /** @type {CanvasRenderingContext2D} */ (still.getContext("2d"));
     pen.clearRect(0, 0, size.width, size.height);
     const image = imageOf(pen, paintOf);
     if (image) pen.putImageData(image, Math.ceil(LEFT * dense), Math.ceil(TOP * dense));
@@ -185,8 +204,9 @@ export const createGrid = (canvas, x, y) => {
     painted = { by: paintOf, lines };
   };
 
+  /** @param {PaintOf} paintOf @param {(Cell | null)[]} cells @param {Lines} [lines] @param {number[][] | null} [drag] */
   const draw = (paintOf, [kept, aim], lines = [], drag = null) => {
-    const pen = canvas.getContext("2d");
+    const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     if (painted.by !== paintOf || painted.lines !== lines) drawStill(paintOf, lines);
     pen.clearRect(0, 0, size.width, size.height);
     pen.drawImage(still, 0, 0, size.width, size.height);
@@ -197,12 +217,14 @@ export const createGrid = (canvas, x, y) => {
     });
   };
 
+  /** @param {CanvasRenderingContext2D} pen @param {number[][]} frame */
   const outline = (pen, [from, to]) => {
     pen.lineWidth = 1.5;
     pen.strokeStyle = colour("--focus");
     pen.strokeRect(xAt(from[0]), yAt(from[1]), xAt(to[0]) - xAt(from[0]), yAt(to[1]) - yAt(from[1]));
   };
 
+  /** @param {CanvasRenderingContext2D} pen @param {Cell} cell @param {number} thick */
   const frame = (pen, { ix, iy }, thick) => {
     pen.beginPath();
     cell(pen, ix, iy, 1.5);
@@ -211,6 +233,7 @@ export const createGrid = (canvas, x, y) => {
     pen.stroke();
   };
 
+  /** @param {CanvasRenderingContext2D} pen @param {Lines} lines */
   const drawLines = (pen, lines) => {
     pen.strokeStyle = "#1d1f1e"; // the map has the same colours in the dark
     pen.lineWidth = 1.5;
@@ -221,25 +244,28 @@ export const createGrid = (canvas, x, y) => {
     }
   };
 
-  /** Shares of the axes under the pointer, on the map or beside it. */
+  /** Shares of the axes under the pointer, on the map or beside it. @param {MouseEvent} event */
   const sharesAt = (event) => {
     const box = canvas.getBoundingClientRect();
     const right = (event.clientX - box.left - LEFT) / inner().w;
     const high = 1 - (event.clientY - box.top - TOP) / inner().h;
     return [right, high].map((share, k) => seen[k][0] + share * (seen[k][1] - seen[k][0]));
   };
+  /** @param {number[]} edges @param {number} share */
   const indexOf = (edges, share) => edges.findIndex((edge, k) => k > 0 && share <= edge) - 1;
+  /** @param {MouseEvent} event */
   const cellAt = (event) => {
     const [right, high] = sharesAt(event);
     if ([right, high].some((share, k) => share < seen[k][0] || share > seen[k][1])) return null;
     return { ix: Math.max(0, indexOf(across.edges, right)), iy: Math.max(0, indexOf(up.edges, high)) };
   };
-  /** Look closer at a cell by a factor, or from further away below 1. */
+  /** Look closer at a cell by a factor, or from further away below 1.
+   * @param {Cell | null} aim @param {number} factor */
   const closer = (aim, factor) => {
     const places = aim ? placeOf(aim) : seen.map(([from, to]) => (from + to) / 2);
     look(...places.map((place, k) => around(place, Math.min(1, (seen[k][1] - seen[k][0]) / factor))));
   };
-  /** Move what is seen so far that a cell is in it. */
+  /** Move what is seen so far that a cell is in it. @param {Cell} aim */
   const reveal = (aim) => {
     const places = placeOf(aim);
     if (places.every((place, k) => place >= seen[k][0] && place <= seen[k][1])) return;
@@ -249,6 +275,7 @@ export const createGrid = (canvas, x, y) => {
   return { fit, draw, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
 };
 
+/** @param {MapAxis} axis @param {number} room */
 const words = (axis, room) => {
   const unit = axis.unit && axis.unit !== "1" ? ` [${pretty(axis.unit)}]` : "";
   const all = inLanguage(greek(axis.words));

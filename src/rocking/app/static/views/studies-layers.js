@@ -15,15 +15,18 @@ const VERDICTS = [
 ];
 const RAMP = ["#F2F0E8", "#C6DDEE", "#8FBEDD", "#5A9BC7", "#2F77A8", "#1B557F", "#0C3557"];
 
+/** @param {number} outcome @param {number} impacts */
 const verdictOf = (outcome, impacts) => {
   if (outcome === 0 || outcome === 1) return outcome;
   if (outcome === 2) return impacts === 0 ? 2 : impacts === 1 ? 3 : 4;
   return 5;
 };
 
+/** @param {number | null} share */
 const ramp = (share) => RAMP[Math.min(RAMP.length - 1, Math.max(0, Math.floor((share || 0) * RAMP.length)))];
 
-/** The layers of one result: {value, text, paint(ix, iy), legend}. */
+/** The layers of one result: {value, text, paint(ix, iy), legend}.
+ * @param {MapFound} found @param {number} k @param {number | null} other @returns {Layer[]} */
 export const layersOf = (found, k, other) => {
   const outcome = found.outcome[k];
   const impacts = found.impacts[k];
@@ -34,6 +37,7 @@ export const layersOf = (found, k, other) => {
       value: "verdict",
       text: "Verdict",
       legend: VERDICTS,
+      /** @param {number} ix @param {number} iy */
       paint: (ix, iy) => VERDICTS[verdictOf(outcome[iy][ix], impacts[iy][ix])].paint,
     },
     {
@@ -47,17 +51,19 @@ export const layersOf = (found, k, other) => {
         { paint: "#B33D00", words: "overturns" },
         { paint: FAILED, words: "could not be computed" },
       ],
+      /** @param {number} ix @param {number} iy */
       paint: (ix, iy) =>
-        outcome[iy][ix] === 2 ? "#B33D00" : outcome[iy][ix] > 2 ? FAILED : ramp(peak[iy][ix]),
+        outcome[iy][ix] === 2 ? "#B33D00" : outcome[iy][ix] > 2 ? FAILED : ramp(peak[iy][ix] ?? 0),
     },
     {
       value: "impacts",
       text: "Impacts",
       legend: [
         { paint: RAMP[0], words: "none" },
-        { paint: RAMP.at(-1), words: `${most}` },
+        { paint: RAMP[RAMP.length - 1], words: `${most}` },
         { paint: FAILED, words: "could not be computed" },
       ],
+      /** @param {number} ix @param {number} iy */
       paint: (ix, iy) => (outcome[iy][ix] > 2 ? FAILED : ramp(impacts[iy][ix] / (most + 1))),
     },
   ];
@@ -65,6 +71,7 @@ export const layersOf = (found, k, other) => {
   return layers;
 };
 
+/** @param {MapFound} found @param {number} k @param {number} other @returns {Layer} */
 const difference = (found, k, other) => {
   const [mine, theirs] = [found.outcome[k], found.outcome[other]];
   const names = [k, other].map((place) => modelWords(found.restitutions[place]));
@@ -73,6 +80,7 @@ const difference = (found, k, other) => {
     { paint: "#D96C00", words: `overturns only with ${names[0]}` },
     { paint: "#0070B2", words: `overturns only with ${names[1]}` },
   ];
+  /** @param {number} ix @param {number} iy */
   const paint = (ix, iy) => {
     const [a, b] = [mine[iy][ix] === 2, theirs[iy][ix] === 2];
     return legend[a === b ? 0 : a ? 1 : 2].paint;
@@ -80,11 +88,12 @@ const difference = (found, k, other) => {
   return { value: "difference", text: `Difference to ${names[1]}`, legend, paint };
 };
 
-/** One cell in words. */
+/** One cell in words. @param {MapFound} found @param {number} k @param {Cell} cell */
 export const cellWords = (found, k, { ix, iy }) => {
   const outcome = found.outcome[k][iy][ix];
   const impacts = found.impacts[k][iy][ix];
-  const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(values[place], unit)}`;
+  /** @param {Server.Coordinate} axis @param {number} place */
+  const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(Number(values[place]), unit)}`;
   const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
   const peak = outcome === 1 ? `, peak ${number(found.peak[k][iy][ix])} \u03b1` : "";
   return `${where}: ${VERDICTS[verdictOf(outcome, impacts)].words}${peak}`;

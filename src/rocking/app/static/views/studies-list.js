@@ -2,6 +2,7 @@
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { number } from "/app/format.js";
 
+/** @type {Words} */
 const WORDS = {
   waiting: "waiting for its turn",
   running: "running",
@@ -10,6 +11,7 @@ const WORDS = {
   failed: "failed",
   done: "finished",
 };
+/** @type {Words} */
 const KINDS = {
   "overturning-map": "overturning map",
   "rocking-spectrum": "rocking spectra",
@@ -22,7 +24,7 @@ const KINDS = {
 };
 const BUSY = ["waiting", "running"];
 
-/** Seconds in words that a person would use. */
+/** Seconds in words that a person would use. @param {number} seconds */
 const duration = (seconds) => {
   if (seconds < 1.5) return "a second";
   if (seconds < 90) return `${Math.round(seconds)} s`;
@@ -30,13 +32,15 @@ const duration = (seconds) => {
   return `${(seconds / 3600).toFixed(1)} h`;
 };
 
+/** @param {Server.StudyFacts} study */
 const left = (study) => {
   if (study.seconds_left == null) return "measuring the time left";
-  const [low, high] = study.seconds_left_between.map(duration);
+  const [low, high] = (study.seconds_left_between ?? []).map(duration);
   const between = low === high ? "" : ` (${low} to ${high})`;
   return `about ${duration(study.seconds_left)} left${between}`;
 };
 
+/** @param {Server.StudyFacts} study */
 const pace = (study) => {
   const parts = [`${number(study.histories_done || 0)} of ${number(study.histories || 0)} histories`];
   if (study.state === "running" && study.rate) parts.push(`${number(study.rate, 3)} a second`);
@@ -44,22 +48,27 @@ const pace = (study) => {
   return parts.join(" \u00b7 ");
 };
 
-/** The state of a study in words. */
+/** The state of a study in words. @param {{ state: string }} study */
 export const stateWords = ({ state }) => WORDS[state] || state;
 
-/** What can be done with a study; then `after` looks again. */
+/** What can be done with a study; then `after` looks again. @param {App} app @param {() => unknown} after */
 export const actsOf = (app, after) => {
+  /** @param {Server.StudyFacts} study @param {string} what @param {CallOptions} asked */
   const act = (study, what, asked) =>
     app.call(`studies/${study.id}${what}`, asked).then(after, (error) => app.say(error.message, "error"));
   return {
+    /** @param {Server.StudyFacts} study */
     cancel: (study) => act(study, "/cancel", { json: {} }),
+    /** @param {Server.StudyFacts} study */
     resume: (study) => act(study, "/resume", { json: {} }),
+    /** @param {Server.StudyFacts} study */
     remove: (study) => window.confirm(`Delete \u201c${study.name}\u201d and its results?`)
       && act(study, "", { method: "DELETE" }),
   };
 };
 
-/** The studies, a row each. */
+/** The studies, a row each.
+ * @param {{ studies: Server.StudyFacts[], onShow: (study: Server.StudyFacts) => unknown, acts: ReturnType<typeof actsOf> }} props */
 export const StudyList = ({ studies, onShow, acts }) => html`
   <div>
     <p class="quiet" hidden=${studies.length > 0}>None yet. A study is many histories of the body and motion of the other steps.</p>
@@ -67,9 +76,11 @@ export const StudyList = ({ studies, onShow, acts }) => html`
       <${Study} key=${study.id} study=${study} onShow=${onShow} acts=${acts} />`)}</ul>
   </div>`;
 
+/** @param {{ study: Server.StudyFacts, onShow: (study: Server.StudyFacts) => unknown, acts: ReturnType<typeof actsOf> }} props */
 const Study = ({ study, onShow, acts }) => {
   const { state, name } = study;
   const row = useRef(null);
+  /** @type {[string, (study: Server.StudyFacts) => unknown, boolean, string?][]} */
   const buttons = [
     ["Show result", onShow, state === "done", "primary"],
     ["Cancel", acts.cancel, BUSY.includes(state)],
@@ -77,7 +88,7 @@ const Study = ({ study, onShow, acts }) => {
     ["Delete", acts.remove, !BUSY.includes(state)],
   ];
   // a button that was pressed may vanish: the one that took its place has the focus then
-  const focused = document.activeElement;
+  const focused = /** @type {HTMLElement | null} */ (document.activeElement);
   useLayoutEffect(() => {
     if (focused?.hidden && row.current.contains(focused)) row.current.querySelector("button:not([hidden])")?.focus();
   }, [state]);

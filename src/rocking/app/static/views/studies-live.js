@@ -4,14 +4,16 @@ import { signal } from "/parts/preact.js";
 
 const AGAIN = 2000;
 
-/** `all` is a signal of the studies, kept up to date between start() and stop(). */
+/** `all` is a signal of the studies, kept up to date between start() and stop(). @param {App} app */
 export const liveStudies = (app) => {
   const all = signal([]);
+  /** @type {WebSocket | null} */
   let socket = null;
   let wanted = false;
   let timer = 0;
 
-  const take = (told) => (all.value = told.studies ?? told);
+  /** @param {Server.Studies} told */
+  const take = (told) => (all.value = told.studies);
   const refresh = () => app.call("studies").then(take, (error) => app.say(error.message, "error"));
   const connect = () => {
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";

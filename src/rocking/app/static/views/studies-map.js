@@ -8,16 +8,23 @@ import { createGrid } from "/views/studies-grid.js";
 import { cellWords, layersOf } from "/views/studies-layers.js";
 import { greek } from "/views/studies-words.js";
 
+/** @typedef {{ x: number, y: number, from: number[], frame: number[][] | null }} Drag */
+
+/** @type {{ [key: string]: number[] | undefined }} */
 const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
+/** @type {{ [key: string]: number | undefined }} */
 const CLOSER = { "+": 2, "=": 2, "-": 0.5 };
 const START = "Click a cell, or walk with the arrow keys. Draw a frame with the pointer, or press +, to look closer.";
 const SHORTEST = 6; // a pointer that moves less has clicked [CSS pixel]
+/** @type {Lines} */
 const NONE = [];
 
-const same = (one, other) => Boolean(other) && one.ix === other.ix && one.iy === other.iy;
+/** @param {Cell} one @param {Cell | null} other */
+const same = (one, other) => other !== null && one.ix === other.ix && one.iy === other.iy;
 
-/** A map, of one restitution and one layer at a time. */
+/** A map, of one restitution and one layer at a time.
+ * @param {{ app: App, study: Server.StudyFacts, found: MapFound, chosen: { restitution: number } }} props */
 export const OverturningMap = ({ app, study, found, chosen }) => {
   const [canvas, painter] = [useRef(null), useRef(null)];
   const [k, wanted, aim, kept, frame, looks] = [0, "verdict", null, null, null, 0].map(useSignal);
@@ -25,15 +32,16 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
   const several = found.restitutions.length > 1;
   const [layers, lines] = useMemo(() => [
     layersOf(found, k.value, several ? (k.value === 0 ? 1 : 0) : null),
-    (found.contours?.[k.value] ?? NONE).map((line) => line.points ?? line),
+    found.contours?.[k.value] ?? NONE,
   ], [k.value]);
   const layer = layers.find(({ value }) => value === wanted.value) ?? layers[0];
+  /** @param {() => unknown} how */
   const look = (how) => {
     how();
     looks.value += 1;
   };
   useLayoutEffect(() => {
-    const grid = createGrid(canvas.current, found.x, found.y);
+    const grid = createGrid(canvas.current, /** @type {MapAxis} */ (found.x), /** @type {MapAxis} */ (found.y));
     painter.current = grid;
     const fit = () => look(grid.fit);
     fit();
@@ -47,20 +55,24 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
   }, []);
   useLayoutEffect(() => painter.current.draw(layer.paint, [kept.value, aim.value], layer.value === "difference" ? NONE : lines, frame.value));
 
+  /** @param {Cell} at */
   const keep = (at) => batch(() => {
     kept.value = at;
     aim.value = at;
     look(() => painter.current.reveal(at));
     cell.show(at, k.value, true);
   });
+  /** @param {Cell} at */
   const preview = (at) => {
     aim.value = at;
     if (!kept.value) cell.show(at, k.value, false);
   };
+  /** @param {number} value */
   const choose = (value) => batch(() => {
     k.value = chosen.restitution = value;
     if (kept.value) keep(kept.value);
   });
+  /** @param {KeyboardEvent} event */
   const walk = (event) => {
     if (event.key === "Enter" && aim.value) return same(aim.value, kept.value) ? cell.open() : keep(aim.value);
     const factor = CLOSER[event.key];
@@ -70,6 +82,7 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
     if (!step) return undefined;
     event.preventDefault();
     const from = aim.value ?? { ix: -step[0], iy: -step[1] };
+    /** @param {number} value @param {number} count */
     const within = (value, count) => Math.min(count - 1, Math.max(0, value));
     return keep({ ix: within(from.ix + step[0], found.x.values.length), iy: within(from.iy + step[1], found.y.values.length) });
   };
@@ -99,6 +112,7 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
 };
 
 // What a pointer does on the map: it looks at a cell, keeps it with a click, or draws a frame to look into.
+/** @param {{ canvas: any, painter: any, frame: Signal<any>, keep: (at: Cell) => unknown, preview: (at: Cell) => unknown, aim: Signal<Cell | null>, look: (how: () => unknown) => unknown }} given */
 const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
   const drag = useRef(null);
   const framed = useRef(false); // the click that follows keeps no cell
@@ -107,12 +121,14 @@ const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
     frame.value = null;
   };
   return {
+    /** @param {PointerEvent} event */
     onPointerDown: (event) => {
       framed.current = false;
       if (event.button !== 0 || event.pointerType === "touch" || !painter.current.cellAt(event)) return;
       drag.current = { x: event.clientX, y: event.clientY, from: painter.current.sharesAt(event) };
       canvas.current.setPointerCapture(event.pointerId);
     },
+    /** @param {PointerEvent} event */
     onPointerMove: (event) => {
       const at = painter.current.cellAt(event);
       if (!drag.current) return at && !same(at, aim.value) ? preview(at) : undefined;
@@ -126,10 +142,12 @@ const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
       end();
       if (!shares) return;
       framed.current = true;
-      const between = (axis) => shares.map((each) => Math.min(1, Math.max(0, each[axis]))).sort((a, b) => a - b);
+      /** @param {number} axis */
+      const between = (axis) => shares.map((/** @type {number[]} */ each) => Math.min(1, Math.max(0, each[axis]))).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
       look(() => painter.current.look(between(0), between(1)));
     },
     onPointerCancel: end,
+    /** @param {MouseEvent} event */
     onClick: (event) => {
       const at = painter.current.cellAt(event);
       if (at && !framed.current) keep(at);

@@ -7,17 +7,17 @@ import { Figure } from "/charts/figure.js";
 
 const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Share that overturns"]];
 
-/** Spectra, of the peaks or of how often the block overturns. */
+/** Spectra, of the peaks or of how often the block overturns. @param {{ found: Server.SpectrumResult }} props */
 export const Spectrum = ({ found }) => {
   const what = useSignal("median");
-  const periods = found.x.values;
+  const periods = /** @type {number[]} */ (found.x.values);
   const count = found.motions.values.length;
   const share = what.value === "overturned";
-  const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[what.value])], [what.value]);
+  const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (what.value)])], [what.value]);
   const shape = {
     title: share ? "Share of the motions that overturn the block" : "Peak rotation over the slenderness angle",
     height: 340,
-    x: { label: "period 2\u03c0/p", unit: "s", log: periods.length > 2 && periods.at(-1) / periods[0] > 8 },
+    x: { label: "period 2\u03c0/p", unit: "s", log: periods.length > 2 && periods[periods.length - 1] / periods[0] > 8 },
     y: { label: share ? "share" : "peak / \u03b1", unit: "" },
     series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
   };
@@ -28,12 +28,14 @@ export const Spectrum = ({ found }) => {
       : `Over ${count} motions; a gap is where they overturn the block.`}</p>`;
 };
 
+/** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */
 const lookOf = ({ curves, restitutions }, { angle, restitution }) => {
   const angles = [...new Set(curves.map((each) => each.angle))];
   const counts = { angles: angles.length, models: restitutions.length };
   return angleStyle(restitution, angles.indexOf(angle), counts);
 };
 
+/** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */
 const labelOf = (found, { angle, restitution }) => {
   const words = `\u03b1 = ${number(angle, 3)} rad`;
   return found.restitutions.length > 1 ? `${words}, ${modelWords(restitution)}` : words;

@@ -11,17 +11,21 @@ import { Spectrum } from "/views/studies-spectrum.js";
 import { Counts } from "/views/studies-counts.js";
 import { Exports } from "/views/studies-exports.js";
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const [every, open, visits] = [signal(false), signal(null), signal(0)];
   const live = liveStudies(app);
   // What was launched elsewhere than in a project is everybody's.
+  /** @param {Server.StudyFacts} study */
   const mine = ({ project }) => every.value || !project || project === app.project.here.value.id;
   const studies = computed(() => live.all.value.filter(mine));
   const states = new Map();
+  /** @type {string | null} */
   let expected = null;
 
+  /** @param {Server.StudyFacts} study */
   const show = async (study) => {
+    /** @param {object} more */
     const told = (more) => open.value?.shown === study && (open.value = { shown: study, ...more });
     open.value = { shown: study };
     await app.call(`studies/${study.id}/result`).then(
@@ -41,6 +45,7 @@ export const mount = (section, app) => {
     }
     if (open.value && !now.some(({ id }) => id === open.value.shown.id)) open.value = null;
   });
+  /** @param {string} id */
   const launched = (id) => {
     app.say("The study has been launched.");
     expected = id;
@@ -57,6 +62,7 @@ export const mount = (section, app) => {
   };
 };
 
+/** @param {any} props */
 const Studies = ({ app, studies, every, open, visits, show, acts, launched }) => html`
   <header class="view-head"><h1>Studies</h1>
     <p class="lead">Many histories at once: maps, spectra and fragility. They go on while you do something else.</p></header>
@@ -64,7 +70,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
     <div class="studies-left">
       <section class="card" aria-labelledby="studies-new"><h2 id="studies-new">New study</h2>
         <${StudyForm} app=${app} visits=${visits.value} onLaunched=${launched}
-          taken=${() => new Set(studies.value.map(({ name }) => name))} /></section>
+          taken=${() => new Set(studies.value.map((/** @type {Server.StudyFacts} */ { name }) => name))} /></section>
       <section class="card" aria-labelledby="studies-there"><h2 id="studies-there">Studies</h2>
         <${Switch} label="Studies of all projects" value=${every} />
         <${StudyList} studies=${studies.value} onShow=${show} acts=${acts} /></section>
@@ -72,6 +78,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
     ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}
   </div>`;
 
+/** @param {{ app: App, shown: Server.StudyFacts, found: any, refused?: string, chosen: { restitution: number } }} props */
 const Outcome = ({ app, shown, found, refused, chosen }) => {
   const heading = useRef(null);
   useLayoutEffect(() => void (found && heading.current.focus()), [found]);
@@ -88,6 +95,7 @@ const Outcome = ({ app, shown, found, refused, chosen }) => {
     </section>`;
 };
 
+/** @type {{ [kind: string]: ((given: any) => VNode) | undefined }} */
 const SHOW = {
   "overturning-map": OverturningMap,
   "rocking-spectrum": Spectrum,

@@ -6,7 +6,7 @@ import { pathOfChosen } from "/views/response-chosen.js";
 
 const NAME = "rocking-animation.gif";
 
-/** A button, and below it how far the frames are. */
+/** A button, and below it how far the frames are. @param {{ app: App, children?: any, [more: string]: any }} props */
 export const Film = ({ app, children, ...more }) => {
   const seconds = useSignal(null); // since they were begun; null while none are drawn
   const [start, progress, abort] = [useRef(null), useRef(null), useRef(null)];
@@ -41,8 +41,10 @@ export const Film = ({ app, children, ...more }) => {
       <${Button} aria-label="Cancel the GIF" onClick=${() => abort.current.abort()}>Cancel<//></div>`;
 };
 
+/** @param {string} path @param {Server.Inputs} inputs @param {AbortSignal} signal */
 const save = async (path, inputs, signal) => {
   const headers = { "Content-Type": "application/json" };
+  /** @type {RequestInit} */
   const asked = { method: "POST", headers, body: JSON.stringify(inputs), signal, credentials: "same-origin" };
   const answer = await fetch(path, asked);
   if (!answer.ok) {

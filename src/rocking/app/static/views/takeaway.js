@@ -12,6 +12,7 @@ const PICTURES = [
   ["motion", "Motion and spectrum", "motion"],
   ["response", "Response", "response"],
 ];
+/** @type {[string, string, string[], string?][]} */
 const TABLES = [
   ["body", "Body", ["csv", "xlsx"]],
   ["coefficients", "Coefficients of every model", ["csv", "xlsx"]],
@@ -21,6 +22,7 @@ const TABLES = [
   ["response", "Response, every sample", ["csv", "mat", "nc"], "response"],
   ["impacts", "Impacts", ["csv", "xlsx"], "response"],
 ];
+/** @type {Words} */
 const NAMES = {
   csv: "CSV", xlsx: "Excel", mat: "MATLAB", nc: "netCDF", png: "PNG", svg: "SVG", html: "Web page", toml: "TOML",
   zip: "ZIP with the record", pdf: "PDF",
@@ -29,7 +31,7 @@ const NAMES = {
 /** Files that hold one model of several. */
 const OF_ONE = /^\/api\/(table\/response\.|animation\.)/;
 
-/** Build the view inside its section. */
+/** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const now = signal(null);
   const refresh = () => (now.value = { inputs: app.inputs.get(), link: app.link() });
@@ -39,12 +41,16 @@ export const mount = (section, app) => {
   return { shown: refresh };
 };
 
+/** @param {{ app: App, now: Signal<{ inputs: Server.Inputs, link: string }> }} props */
 const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
   const chooser = useRef(null);
   const moves = Boolean(inputs.motion) || inputs.response?.free != null;
+  /** @type {{ [needs: string]: boolean }} */
   const there = { motion: Boolean(inputs.motion), response: moves };
+  /** @param {string} path @param {string} name @param {any} [needs] @param {string} [testid] */
   const file = (path, name, needs, testid) => html`<${File} key=${path} app=${app} path=${`/api/${path}`} name=${name}
     testid=${testid ?? path.replace(/\W/g, "-")} disabled=${needs && !there[needs]} />`;
+  /** @param {string} name @param {...any} files */
   const row = (name, ...files) => html`<li key=${name} class="take-row"><span>${name}</span><div class="toolbar">${files}</div></li>`;
   const labels = labelsOf(inputs.restitution);
   return html`
@@ -75,9 +81,10 @@ const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
       onChange=${({ target }) => read(app, target)} />`;
 };
 
+/** @param {{ app: App, path: string, name: string, testid: string, disabled: boolean }} props */
 const File = ({ app, path, name, testid, disabled }) => {
   const busy = useSignal(false);
-  const kind = path.split(".").at(-1);
+  const kind = path.replace(/^.*\./s, "");
   const save = async () => {
     if (busy.value) return;
     busy.value = true;
@@ -89,6 +96,7 @@ const File = ({ app, path, name, testid, disabled }) => {
     data-testid=${testid} onClick=${save}>${NAMES[kind]}<//>`;
 };
 
+/** @param {{ app: App, link: string }} props */
 const Link = ({ app, link }) => {
   const copy = async () => {
     try {
@@ -106,13 +114,14 @@ const Link = ({ app, link }) => {
     <div class="toolbar"><${Button} kind="primary" onClick=${copy} data-testid="copy-link">Copy link<//></div><//>`;
 };
 
+/** @param {App} app @param {any} box */
 const read = async (app, box) => {
   const [file] = box.files;
   box.value = "";
   if (!file) return;
   try {
     const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-    app.inputs.lend(found.inputs ?? found, `what ${file.name} holds`);
+    app.inputs.lend(found, `what ${file.name} holds`);
     app.say(`The inputs of ${file.name} are loaded.`);
   } catch (error) {
     app.say(error.message, "error");
