@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test docs oldest packages coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants lock clean
+.PHONY: help demo test docs oldest packages coverage portable portable-quick lint types golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -20,6 +20,7 @@ help:
 	@echo "make portable the tests, save those of time and of browsers, once under each of seven settings that stand for other processors"
 	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
+	@echo "make types    the types of the page's scripts, where node and npm are"
 	@echo "make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
@@ -89,6 +90,10 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
+
+# Nothing else needs node, which may be missing.
+types: $(VENV)/dev
+	@$(BIN)/python types/check.py
 
 # A test that hangs for ten minutes fails, and says where.
 PYTEST := $(BIN)/python -m pytest -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
