@@ -84,10 +84,18 @@ def test_another_compiler_is_not_unpacked(check, monkeypatch):
     def pack(words, cwd, **_):
         assert words[:2] == ["npm", "pack"]
         (cwd / "typescript.tgz").write_bytes(b"another")
+        return SimpleNamespace(returncode=0)
 
-    monkeypatch.setitem(check, "subprocess", SimpleNamespace(run=pack, DEVNULL=None))
+    monkeypatch.setitem(check, "subprocess", SimpleNamespace(run=pack))
     with pytest.raises(SystemExit, match=r"typescript@\d+\.\d+\.\d+ has the hash [0-9a-f]{128}, typescript\.lock says"):
         check["fetch"]()
+    assert not check["COMPILER"].exists()
+
+
+def test_what_npm_does_not_bring_is_said(check, monkeypatch):
+    """Without a way to the release, its name is what is missing, and nothing is there."""
+    monkeypatch.setitem(check, "subprocess", SimpleNamespace(run=lambda *_, **__: SimpleNamespace(returncode=1)))
+    assert check["fetch"]().startswith("typescript@")
     assert not check["COMPILER"].exists()
 
 
