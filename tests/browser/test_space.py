@@ -147,7 +147,7 @@ def test_the_body_of_the_project_is_asked_in_space(
 
 
 def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_path: Path) -> None:
-    """No scan, no unit, a surface that is not closed: each in a sentence, none as a picture."""
+    """No scan, no unit, no number, a surface that is not closed: each in a sentence, none as a picture."""
     page = open_page(view="space")
     section = page.locator("#view-space")
     ask = section.get_by_role("button", name="Ask", exact=True)
@@ -158,6 +158,12 @@ def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_pat
     ask.click()
     expect(section.get_by_role("alert")).to_contain_text("do not say their unit")
     section.get_by_label("Unit of the file").select_option("mm")
+    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Impacts").select_option("")
+    section.get_by_label("Coefficient of restitution").fill("half")
+    ask.click()
+    expect(section.get_by_text("The coefficient is a number from 0 to 1.")).to_be_visible()
+    section.get_by_label("Asked is").select_option("equilibria")
     section.get_by_text("What may be mended").click()
     section.get_by_label("Mend", exact=True).select_option("none")
     ask.click()
