@@ -133,8 +133,11 @@ def main() -> int:
     waiting = [line for line in WAITING.read_text("utf-8").split("\n") if line and not line.startswith("#")]
     found = faults(ROOT)
     told = [line for line in found if not any(f"static/{each}" in line for each in waiting)]
-    print(*told, sep="\n")
-    print(f"{len(told)} faults in the types of the page's scripts; not asked yet: {', '.join(waiting) or 'none'}")
+    print(
+        *told,
+        f"{len(told)} faults in the types of the page's scripts; not asked yet: {', '.join(waiting) or 'none'}",
+        sep="\n",
+    )
     return min(1, len(told))
 
 
