@@ -162,7 +162,7 @@ def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_pat
     section.get_by_label("Impacts").select_option("")
     section.get_by_label("Coefficient of restitution").fill("half")
     ask.click()
-    expect(section.get_by_text("The coefficient is a number from 0 to 1.")).to_be_visible()
+    expect(section.get_by_role("alert")).to_contain_text("The coefficient is a number from 0 to 1.")
     section.get_by_label("Asked is").select_option("equilibria")
     section.get_by_text("What may be mended").click()
     section.get_by_label("Mend", exact=True).select_option("none")
