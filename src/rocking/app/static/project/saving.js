@@ -27,6 +27,7 @@ export const createProjects = (app, first) => {
   let taking = false;
   /** @type {Own | null} */
   let last = null; // what was saved last
+  /** @type {Own[]} */
   let sent = []; // what is on its way, or went on one from which no answer came
   /** @type {Promise<any>} */
   let line = Promise.resolve();
@@ -260,6 +261,7 @@ export const createProjects = (app, first) => {
 };
 
 // What was saved without this tab having heard of it is nobody else's.
+/** @param {Server.WholeProject} theirs @param {number} version @param {Own[]} [sent] */
 const isOwn = (theirs, version, sent = []) =>
   theirs.version === version + 1 && sent.some((each) => same(each, theirs.document));
 
@@ -278,7 +280,7 @@ const remembered = () => {
   }
 };
 
-/** @param {{ id: string, version: number, more: boolean }} facts */
+/** @param {{ id: string, version: number, more: boolean, sent: Own[] }} facts */
 const remember = (facts) => {
   try {
     sessionStorage.setItem(OPEN, JSON.stringify(facts));
