@@ -39,9 +39,9 @@ export const recordEndings = ({ info }) => [
   ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
 ].join(",");
 
-/** Files by dropping or choosing; `files` is a signal of what was sent.
- * @param {{ label: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, questions: Questions, app: App }} props */
-export const FileDrop = ({ files, many = false, questions, app, help, ...more }) => {
+/** Files by dropping or choosing; `files` is a signal of what was sent: of one at a time the last, or all with `adds`.
+ * @param {{ label: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, adds?: boolean, questions: Questions, app: App }} props */
+export const FileDrop = ({ files, many = false, adds = many, questions, app, help, ...more }) => {
   const sending = useSignal("");
   /** @param {File[]} chosen */
   const take = async (chosen) => {
@@ -52,7 +52,7 @@ export const FileDrop = ({ files, many = false, questions, app, help, ...more })
         if (chosen.length > AT_ONCE) sending.value = `Sending ${k + 1} of ${chosen.length}`;
         sent = [...sent, ...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file)))];
       }
-      const all = many ? [...(files.value || []), ...sent] : sent;
+      const all = adds ? [...(files.value || []), ...sent] : sent;
       // two files of one name are two files
       const named = all.map((one, k) => (all.slice(0, k).some((each) => each.name === one.name && each.sha !== one.sha)
         ? { ...one, name: `${one.sha.slice(0, 8)}-${one.name}` } : one));

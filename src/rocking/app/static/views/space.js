@@ -93,7 +93,7 @@ const Space = ({ app, questions }) => {
       answer=${({ answer, question }) => html`<${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`}
       title="What does a scan do?"
       lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
-      <${FileDrop} label="Drop a scan here, or" many accept=${SCANS} files=${scans} questions=${questions} app=${app}
+      <${FileDrop} label="Drop a scan here, or" adds accept=${SCANS} files=${scans} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
       <${Choice} label="Body" value=${chosen} chosen=${scan?.sha ?? chosen.value} options=${[
         ...(files.value.length ? files.value.map((/** @type {SentFile} */ { name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
