@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "half_cycles.hpp"
 #include "run.hpp"
 
 namespace nb = nanobind;
@@ -17,6 +18,8 @@ template <class T>
 using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class T>
 using Table = nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+template <class T>
+using Block = nb::ndarray<T, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
 constexpr int kNumbers = 16, kChoices = 3, kResults = 9, kCounts = 9;
 constexpr std::int64_t kChunk = 8;
@@ -93,6 +96,29 @@ class Library {
     std::vector<Motion> motions_;
 };
 
+// Bodies: alpha, p, R, mu and the length of a step, each a row; push and lift at begin and end of every step; the first of the
+// states (rotation, velocity, slip) is given.
+static void slide(Table<const double> bodies, Block<const double> push, Block<const double> lift, Block<double> states, double gravity) {
+    const std::size_t count = bodies.shape(1), steps = push.shape(0);
+    expect(bodies.shape(0) == 5 && push.shape(1) == 2 && push.shape(2) == count && lift.shape(0) == steps && lift.shape(1) == 2 && lift.shape(2) == count &&
+               states.shape(0) == 3 && states.shape(1) == steps + 1 && states.shape(2) == count,
+           "tables of half cycles expected");
+    const double *b = bodies.data(), *a = push.data(), *w = lift.data();
+    double* out = states.data();
+    const std::size_t rows = (steps + 1) * count;
+    nb::gil_scoped_release release;
+    for (std::size_t k = 0; k < count; ++k) {
+        const SlidingFoot foot(b[k], b[count + k], b[2 * count + k], b[3 * count + k], gravity);
+        Tilted s{out[k], out[rows + k], out[2 * rows + k]};
+        double direction = 0.0;
+        for (std::size_t n = 0; n < steps; ++n) {
+            const std::size_t at = 2 * n * count + k, next = (n + 1) * count + k;
+            s = foot.step(s, b[4 * count + k], {a[at], a[at + count]}, {w[at], w[at + count]}, direction);
+            out[next] = s.rotation, out[rows + next] = s.velocity, out[2 * rows + next] = s.slip;
+        }
+    }
+}
+
 }  // namespace rocking::contact
 
 NB_MODULE(_contact, m) {
@@ -102,4 +128,5 @@ NB_MODULE(_contact, m) {
         .def(nb::init<Line<const double>, Table<const std::int64_t>, Line<const double>>(), "data"_a, "places"_a, "steps"_a)
         .def("run", &Library::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "gravity"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a,
              "threads"_a);
+    m.def("slide", &slide, "bodies"_a, "push"_a, "lift"_a, "states"_a, "gravity"_a);
 }

@@ -11,9 +11,9 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.settings import NEVER_SLIDES, Settings
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.identification import forced_start
+from rocking.identification import forced_friction, forced_start
 from rocking.identification.forced_model import (
     CLOCK,
     GAIN,
@@ -25,14 +25,13 @@ from rocking.identification.forced_model import (
     TILT,
     TREND,
     WIDTH,
-    Fit,
     Forced,
     fitted,
 )
+from rocking.identification.forced_posterior import ForcedPosterior
 from rocking.identification.measurement import ImpactTimes, RotationSeries
-from rocking.identification.posterior import SCATTERS, Knowledge, Mixture, ln_scatter_density
+from rocking.identification.posterior import Knowledge
 from rocking.identification.results import (
-    LEVELS,
     ForcedRocking,
     Identification,
     Impact,
@@ -45,72 +44,15 @@ from rocking.identification.results import (
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 
-_GRID = 61
 _OF_PULSE = 400
 _GUESS = 0.02  # of the scatter
 _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
-_LEAST, _MOST, _TRIED = 0.05, 2.0, 24  # coefficients of friction
-_SLID, _EXCLUDED = 10.0, 40.0  # of minus twice ln of the likelihood: fall if it slid, rise beyond which none is tried
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
 _ENDING, _CALM, _FAR = (
     0.5,
     0.02,
     3.0,
 )  # seconds, over the peak: a record that ends at rest; standard deviations of a clock
-
-
-class ForcedPosterior:
-    """Normal distributions of the unknowns, one for each scatter, with weights: all about one linearisation."""
-
-    def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
-        self.problem, self.fit, self.noise = problem, fit, noise
-        self.free = np.isfinite(problem.precision)
-        self.scatter = np.geomspace(*SCATTERS, _GRID)
-        prior = np.concatenate([problem.mean, np.zeros(fit.x.size - SIZE)])
-        fixed, pull = fit.terms.normal(noise, 1.0, SAME_TIME)
-        drawn, by = fit.terms.draws
-        fixed, pull = fixed - by.T @ by, pull - by.T @ drawn
-        precision, free = np.where(self.free, problem.precision, 0.0), np.ix_(self.free, self.free)
-        fixed, pull = fixed + np.diag(precision), pull - precision * (fit.x - prior)
-        self.steps, self.roots, ln = [], [], []
-        for s in self.scatter:
-            hessian = (fixed + by.T @ by / s**2)[free]
-            scale = 1.0 / np.sqrt(np.diag(hessian))
-            root = np.linalg.inv(np.linalg.cholesky(hessian * scale[:, None] * scale)) * scale
-            across = root @ (pull + by.T @ drawn / s**2)[self.free]
-            self.steps.append(root.T @ across)
-            self.roots.append(root)
-            value = float(drawn @ drawn) / s**2 - float(across @ across)
-            ln.append(-0.5 * value + np.log(np.abs(np.diag(root))).sum() - drawn.size * math.log(s))  # Eq. 284
-        weights = np.array(ln) + ln_scatter_density(self.scatter)
-        weights = np.exp(weights - weights.max())
-        self.weights = weights / weights.sum()
-
-    def of(self, slopes: FloatArray, value: float) -> Mixture:
-        """Return the distribution of what has a value at the linearisation, and slopes by the unknowns."""
-        by = slopes[self.free]
-        means = value + np.array([by @ step for step in self.steps])
-        return Mixture(self.weights, means, np.array([float(np.linalg.norm(root @ by)) for root in self.roots]))
-
-    def shared(self, *terms: tuple[int, float]) -> Mixture:
-        """Return the distribution of a sum of what all half cycles share, each times a factor."""
-        slopes = np.zeros(self.fit.x.size)
-        for which, factor in terms:
-            slopes[which] = factor
-        return self.of(slopes, float(slopes @ self.fit.x))
-
-    def explained(self, which: int, by: tuple[int, ...]) -> float:
-        """Return the standard deviation of what all share that falls away where others of it are known."""
-        place, root = np.cumsum(self.free) - 1, self.roots[int(np.argmax(self.weights))]
-        one, others = root[:, place[which]], root[:, [place[each] for each in by if self.free[each]]]
-        return float(np.linalg.norm(np.linalg.qr(others)[0].T @ one)) if others.size else 0.0
-
-    @property
-    def likely_scatter(self) -> IntervalEstimate:
-        """The scatter."""
-        middle = np.cumsum(self.weights) - 0.5 * self.weights
-        ln = np.log(self.scatter)
-        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, ln))) for q in LEVELS))
 
 
 def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any) -> Identification | None:
@@ -137,7 +79,7 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
     found = fit_forced(measurement, known, motion, clock)
     if found is None:
         return None
-    said = answer(found)
+    said = answer(*forced_friction.with_sliding(found), found)
     return replace(said, doubts=(*said.doubts, *_of_clocks(said, motion, clock, whole=whole)))
 
 
@@ -186,8 +128,10 @@ def fit_forced(
     return found
 
 
-def answer(found: ForcedPosterior) -> Identification:
-    """Return what a posterior says."""
+def answer(
+    found: ForcedPosterior, friction: IntervalEstimate, also: tuple[str, ...], held: ForcedPosterior
+) -> Identification:
+    """Return what a posterior says, with the friction and doubts of it; held: the one with feet that hold."""
     problem, fit, noise = found.problem, found.fit, found.noise
     known, body, series = problem.known, problem.known.body, problem.series
     assert body is not None
@@ -195,10 +139,10 @@ def answer(found: ForcedPosterior) -> Identification:
     mean = found.shared((MEAN, 1.0))
     r, scatter = estimated(mean, 1.0), found.likely_scatter
     coefficients = {foot: estimated(each, 1.0) for foot, each in by_side.items()}
-    still = fitted(replace(problem, motion=problem.motion.scaled(0.0)), fit.x, noise, 1.0, None)
-    alone = fitted(problem, fit.x, noise, 1.0, None)
-    advantage = 0.5 * (still.objective - alone.objective)
-    refused, doubts = [], list(series.doubts)
+    shaken, rest = held.problem, replace(held.problem, motion=problem.motion.scaled(0.0))
+    still, alone = (fitted(each, held.fit.x, held.noise, 1.0, None).objective for each in (rest, shaken))
+    advantage = 0.5 * (still - alone)
+    refused, doubts = [], [*series.doubts, *also]
     if advantage < _ADVANTAGE:
         refused.append("the motion of the ground explains the rotation no better than ground at rest; another clock?")
     if mean.below(0.0) < 0.975:
@@ -227,7 +171,8 @@ def answer(found: ForcedPosterior) -> Identification:
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
         designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
         measurement=series, residual_times=np.tile(series.time[at[order]], len(problem.kinds)),
-        quantiles=next_impact(mean, 0.0), forced=_forced(found), _common=found.explained(MEAN, (WIDTH, HEIGHT)),
+        quantiles=next_impact(mean, 0.0), forced=_forced(found, friction),
+        _common=found.explained(MEAN, (WIDTH, HEIGHT)),
     )  # fmt: skip
 
 
@@ -247,48 +192,15 @@ def _impacts(found: ForcedPosterior) -> tuple[Impact, ...]:
     return tuple(made)
 
 
-def _forced(found: ForcedPosterior) -> ForcedRocking:
-    problem, fit, noise = found.problem, found.fit, found.noise
+def _forced(found: ForcedPosterior, friction: IntervalEstimate) -> ForcedRocking:
+    problem, fit = found.problem, found.fit
     seen, kind = problem.seen, problem.kinds[0]
     return ForcedRocking(
         clock=estimated(found.shared((CLOCK, 1.0))), gain=estimated(found.shared((GAIN + kind, 1.0)), 1.0),
-        friction=_friction(problem, fit, noise), stretches=int(np.sum(~seen.joined)), odd=problem.odd,
+        friction=friction, stretches=int(np.sum(~seen.joined)), odd=problem.odd,
         seen=float(np.sum(seen.end - seen.begin)), measured=float(np.ptp(problem.series.time)),
         foreseen=_foreseen(problem, fit.x),
     )  # fmt: skip
-
-
-def _friction(problem: Forced, fit: Fit, noise: FloatArray) -> IntervalEstimate:
-    """Return the coefficient of friction; only what it is at least, if feet that slide explain nothing better.
-
-    The other unknowns follow to first order. Above what was needed all coefficients are equally likely.
-    """
-    how = noise, _GUESS, SAME_TIME
-    free = np.isfinite(problem.precision)
-    hessian, rest = fit.terms.normal(*how)
-    hessian = (hessian + np.diag(np.where(free, problem.precision, 0.0)))[np.ix_(free, free)]
-    grid = np.geomspace(_LEAST, min(max(problem.demand(fit.x), 2.0 * _LEAST), 0.5 * _MOST), _TRIED)
-    values = np.full(grid.size + 1, math.inf)
-    for n, friction in reversed(list(enumerate([*grid, NEVER_SLIDES]))):
-        terms = replace(problem, friction=float(friction)).terms(fit.x, 1).beside(fit.terms)
-        pull = (terms.normal(*how)[1] - rest)[free]
-        if not np.isfinite(pull).all():
-            break
-        values[n] = terms.value(*how) - float(pull @ np.linalg.solve(hessian, pull))
-        if values[n] > values.min() + _EXCLUDED:
-            break
-    weights = np.exp(-0.5 * (values - values.min()))  # Eq. 286
-    weights[-1] *= math.log(_MOST / grid[-1]) / math.log(grid[1] / grid[0])
-    share = np.cumsum(weights) / weights.sum()
-    value, low, high = (float(np.interp(q, share[:-1], grid)) for q in LEVELS)
-    if values[-1] - values.min() > _SLID:
-        slid, held = (
-            fitted(replace(problem, friction=each), fit.x, noise, _GUESS, SAME_TIME).objective
-            for each in (value, NEVER_SLIDES)
-        )
-        if held - slid > _SLID:
-            return IntervalEstimate(value, low, high)
-    return IntervalEstimate(math.nan, float(np.interp(0.05, share[:-1], grid)), math.nan)
 
 
 def _foreseen(problem: Forced, x: FloatArray) -> float:

@@ -3,17 +3,22 @@
 All are mirrored, so that rotations are positive; the ground is given by its acceleration [m/s2].
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray, g
+from rocking.dynamics._contact import slide
 from rocking.dynamics.plane.equations import angular_acceleration, reactions
+from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.motions.motion import GroundMotion
 
 _LONGEST = 0.03  # step, as p times time
-_FINER = 2  # steps in one of these where feet may slide
+Sliding = tuple[FloatArray, FloatArray, FloatArray]
+"""Of each half cycle: coefficient of friction, speed of the foot at the beginning [m/s], and sine of the floor's tilt.
+
+A body whose feet hold rocks on a tilted floor as one that leans, by its alpha; friction acts along the floor.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +28,8 @@ class Flights:
     step: FloatArray  # k [s]
     rotation: FloatArray  # n, k [rad]
     velocity: FloatArray  # n, k [rad/s]
-    demand: FloatArray  # n - 1, k: friction that holds the feet [-]
+    slip: FloatArray  # n, k: speed of the foot along the ground [m/s]
+    asked: tuple[FloatArray, FloatArray, FloatArray]  # of the engine: bodies; a_x and g + a_z as steps begin and end
 
     @classmethod
     def of(
@@ -33,27 +39,39 @@ class Flights:
         body: tuple[FloatArray, FloatArray, FloatArray],
         sign: FloatArray,
         length: FloatArray,
-        friction: float | None = None,
+        sliding: Sliding | None = None,
     ) -> "Flights":
         """Follow them; state: when [s], rotation and angular velocity; body: alpha [rad], p [rad/s] and R [m]."""
         start, first, turning = state
         alpha, p, size = body
-        count = max(4, int(np.ceil(float((length * p).max()) / _LONGEST))) * (1 if friction is None else _FINER)
+        count = max(4, int(np.ceil(float((length * p).max()) / _LONGEST)))
         step = length / count
         times = start + step * np.arange(count + 1)[:, None]
         push = _within_steps(motion.acceleration, motion.time_step, times, step) * sign / g
         weight = np.ones_like(push[:, :, :1])
         if motion.vertical is not None:
             weight = 1.0 + _within_steps(motion.vertical, motion.time_step, times, step) / g
-        feet = _Feet(alpha, p, size, friction)
-        rotations, velocities = np.empty((count + 1, start.size)), np.empty((count + 1, start.size))
-        rotations[0], velocities[0] = first, turning
-        for n in range(count):
-            rotations[n + 1], velocities[n + 1] = feet.stepped(rotations[n], velocities[n], step, push[n], weight[n])
-        before, after = rotations[:-1], velocities[:-1]
-        turning = angular_acceleration(before, 1.0, alpha, p, push[:, 0], weight[:, 0])
-        along, across = feet.forces(before, after, turning, push[:, 0], weight[:, 0])
-        return cls(step, rotations, velocities, np.abs(along) / np.maximum(across, 1e-9))
+        friction, slip, lean = sliding or (NEVER_SLIDES, np.zeros_like(p), np.zeros_like(p))
+        bodies = np.stack(np.broadcast_arrays(alpha + np.arcsin(lean), p, size, friction, step))
+        ends = (np.broadcast_to(g * each, push.shape)[:, ::2] for each in (push - lean, weight))
+        push, weight = (np.ascontiguousarray(each) for each in ends)
+        none = np.zeros((count + 1, start.size))
+        return cls(step, none + first, none, none, (bodies, push, weight)).begun(turning, slip)
+
+    def begun(self, turning: FloatArray, slip: FloatArray) -> "Flights":
+        """Follow them anew, from other velocities and speeds of feet."""
+        states = np.zeros((3, *self.rotation.shape))
+        states[:, 0] = self.rotation[0], turning, slip
+        slide(*self.asked, states, g)
+        return replace(self, rotation=states[0], velocity=states[1], slip=states[2])
+
+    @property
+    def demand(self) -> FloatArray:
+        """Friction that holds the feet at the begins of steps [-], shape n - 1, k."""
+        (alpha, p, size, _, _), push, weight = self.asked[0], self.asked[1][:, 0], self.asked[2][:, 0]
+        turning = angular_acceleration(self.rotation[:-1], 1.0, alpha, p, push / g, weight / g)
+        along, across = reactions(self.rotation[:-1], self.velocity[:-1], turning, 1.0, alpha, size, push, weight)
+        return np.asarray(np.abs(along) / np.maximum(across, 1e-9))
 
     def at(self, since: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return rotation and angular velocity at times since the beginnings of some of them."""
@@ -65,8 +83,8 @@ class Flights:
         c2, c3 = 3.0 * (y1 - y0) - 2.0 * v0 - v1, 2.0 * (y0 - y1) + v0 + v1
         return y0 + x * (v0 + x * (c2 + x * c3)), (v0 + x * (2.0 * c2 + x * 3.0 * c3)) / step
 
-    def ends(self) -> tuple[FloatArray, FloatArray]:
-        """Return how long they last and the speed with which they end; NaN of one that goes on."""
+    def ends(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return how long they last, and the speeds with which they and their feet end; NaN of one that goes on."""
         below = (self.rotation[1:] <= 0.0) & (self.velocity[1:] < 0.0)
         ended, which = below.any(axis=0), np.arange(self.step.size)
         n = np.where(ended, below.argmax(axis=0), 0)
@@ -78,64 +96,8 @@ class Flights:
             time = np.clip(time - y / np.where(v == 0.0, -1.0, v), low, high)
         speed = -self.at(time, which)[1]
         ended &= speed > 0.0
-        return np.where(ended, time, np.nan), np.where(ended, speed, np.nan)
-
-
-class _Feet:
-    """Feet that slide where the ground would have to hold them with more than the friction; they begin at rest."""
-
-    def __init__(self, alpha: FloatArray, p: FloatArray, size: FloatArray, friction: float | None) -> None:
-        self.alpha, self.p, self.size, self.friction = alpha, p, size, friction
-        self.inertia = size * (g / p**2 - size)  # about the centre of mass, over the mass
-        self.speed = np.zeros_like(p)
-
-    def stepped(
-        self, y: FloatArray, v: FloatArray, step: FloatArray, push: FloatArray, weight: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return rotation and angular velocity a step later; push, weight: at its begin, middle and end."""
-
-        def held(y: FloatArray, v: FloatArray, j: int) -> FloatArray:
-            return angular_acceleration(y, 1.0, self.alpha, self.p, push[j], weight[j])
-
-        if self.friction is None:
-            return _stepped(y, v, step, held)
-        along, across = self.forces(y, v, held(y, v, 0), push[0], weight[0])
-        slides = (self.speed != 0.0) | (np.abs(along) > self.friction * across)
-        direction = np.where(self.speed != 0.0, np.sign(self.speed), -np.sign(along))
-        ratio = -self.friction * direction
-
-        def turning(y: FloatArray, v: FloatArray, j: int) -> FloatArray:
-            sine, cosine = np.sin(self.alpha - y), np.cos(self.alpha - y)
-            lever = sine + ratio * cosine
-            free = -self.size * lever * (g * weight[j] - self.size * cosine * v**2)
-            return np.where(slides, free / (self.inertia + self.size**2 * sine * lever), held(y, v, j))  # Eq. 285
-
-        along, across = self.forces(y, v, turning(y, v, 0), push[1], weight[1])
-        changed = self.speed + step * (ratio * across - along)
-        self.speed = np.where(slides & (changed * direction > 0.0), changed, 0.0)
-        return _stepped(y, v, step, turning)
-
-    def forces(
-        self, y: FloatArray, v: FloatArray, turning: FloatArray, push: FloatArray, weight: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return forces of the ground over the mass, along and across it, on a foot that goes on as it does."""
-        horizontal, vertical = reactions(y, v, turning, 1.0, self.alpha, self.size, g * push, g * weight)
-        return horizontal, vertical
-
-
-def _stepped(
-    y: FloatArray, v: FloatArray, step: FloatArray, acceleration: Callable[[FloatArray, FloatArray, int], FloatArray]
-) -> tuple[FloatArray, FloatArray]:
-    """Return both after a step of order 4; acceleration: of both, and 0, 1, 2 for begin, middle and end."""
-    half = 0.5 * step
-    a = acceleration(y, v, 0)
-    v2 = v + half * a
-    b = acceleration(y + half * v, v2, 1)
-    v3 = v + half * b
-    c = acceleration(y + half * v2, v3, 1)
-    v4 = v + step * c
-    d = acceleration(y + step * v3, v4, 2)
-    return y + step / 6.0 * (v + 2.0 * (v2 + v3) + v4), v + step / 6.0 * (a + 2.0 * (b + c) + d)
+        slip = self.slip[n, which] + (time / self.step - n) * (self.slip[n + 1, which] - self.slip[n, which])
+        return np.where(ended, time, np.nan), np.where(ended, speed, np.nan), np.where(ended, slip, 0.0)
 
 
 def _within_steps(acceleration: FloatArray, time_step: float, times: FloatArray, step: FloatArray) -> FloatArray:
@@ -156,6 +118,26 @@ def _within_steps(acceleration: FloatArray, time_step: float, times: FloatArray,
     mean = np.diff(velocity, axis=0) / step
     rise = 3.0 * (velocity[1:] + velocity[:-1] - 2.0 * np.diff(displacement, axis=0) / step) / step  # Eq. 282
     return np.stack([mean - rise, mean, mean + rise], axis=1)
+
+
+def struck(
+    before: FloatArray, after: FloatArray, slip: FloatArray, body: tuple[FloatArray, ...], friction: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the angular velocity after an impact, and how fast the new foot slides then [m/s].
+
+    before, after: angular velocity before it, and after it if no foot slid; slip: speed of the old foot [m/s]; body:
+    levers of the old foot and the new one, height, and moment of inertia about the centre over the mass [m, m2].
+    """
+    old, new, height, inertia = body
+    ratio, width, whole = after / before, old + new, inertia + height**2
+    stuck = after - height * slip * (old + ratio * new) / (whole * width)  # Eq. 74
+    along = height * (before - stuck) - slip
+    slides = np.abs(along) > friction * (old * before + new * stuck)
+    pull = -friction * np.sign(along)
+    turn = (pull * height + (1.0 - ratio) * whole / (old + ratio * new)) / inertia
+    normal = width * before / (1.0 + new * turn)  # Eq. 75
+    slid = before - turn * normal
+    return np.where(slides, slid, stuck), np.where(slides, height * (before - slid) - slip + pull * normal, 0.0)
 
 
 _NOISES = 6.0  # least rotation over the noise

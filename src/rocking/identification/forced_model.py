@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray, IntArray
-from rocking.identification.forced_half_cycles import Excursions, Flights
+from rocking.conventions import FloatArray, IntArray, g
+from rocking.identification.forced_half_cycles import Excursions, Flights, struck
 from rocking.identification.measurement import RotationSeries
 from rocking.identification.posterior import Knowledge
 from rocking.motions.motion import GroundMotion
@@ -23,13 +23,15 @@ from rocking.motions.motion import GroundMotion
 SHARED = (MEAN, HALF, WIDTH, HEIGHT, TILT, TREND, CLOCK) = tuple(range(7))
 """As in the state space; ln of widths and heights over those of the body; by how much the clock is ahead [s]."""
 GAIN, OFFSET, DRIFT = 7, 9, 11  # of rotation, and one further of angular velocity: ln, and over half the time
-SIZE = 13
+FRICTION = 13  # ln of it
+SIZE = 14
 KINDS = ("rotation", "angular_velocity")
 
 SAME_TIME = 1e-4  # within which a half cycle ends when the next one begins [s]
 STEP = 1e-6
 _DAMPED, _CLOSE = 1e-3, 5e-3  # at most, where the objective no longer changes by more
 _LONGEST = 1.0  # change of any unknown at a time, in its own unit
+_SETTLED, _CHAIN = 1e-7, 20  # of speeds with which half cycles begin, and impacts over which they are followed
 _MOST, _EDGE = 3000, 1  # samples that are compared, and at the edge of what is seen that are not
 
 
@@ -41,11 +43,7 @@ class Terms:
     owners: IntArray  # half cycle of each sample; those at rest have none and come last
     times: tuple[FloatArray, FloatArray]
     draws: tuple[FloatArray, FloatArray]
-
-    def beside(self, other: "Terms") -> "Terms":
-        """Return these differences with the slopes of others."""
-        samples = [(mine[0], theirs[1]) for mine, theirs in zip(self.samples, other.samples, strict=True)]
-        return Terms(samples, self.owners, (self.times[0], other.times[1]), (self.draws[0], other.draws[1]))
+    begun: FloatArray | None = None  # angular velocities and speeds of feet with which half cycles begin, if feet slide
 
     def value(self, noise: FloatArray, scatter: float, same: float | None) -> float:
         """Return the sum of squares over the variances; without impacts if same is None."""
@@ -61,7 +59,8 @@ class Terms:
         starts = np.searchsorted(self.owners, np.arange((size - SIZE) // 2 + 1))
         for (residual, slopes), s in zip(self.samples, noise, strict=True):
             for k, (a, b) in enumerate(pairwise([*starts, residual.size])):
-                own = np.r_[:SIZE, SIZE + 2 * k : SIZE + 2 * k + 2] if k < (size - SIZE) // 2 else np.arange(SIZE)
+                last = min(SIZE + 2 * k + 2, size)
+                own = np.r_[:SIZE, SIZE + 2 * k : last, max(SIZE, SIZE + 2 * k - 2) : min(SIZE + 2 * k, last - 2)]
                 by = slopes[a:b, : own.size]
                 hessian[np.ix_(own, own)] += by.T @ by / s**2
                 gradient[own] += by.T @ residual[a:b] / s**2
@@ -83,7 +82,7 @@ class Forced:
     mean: FloatArray  # of what all share
     deviation: FloatArray
     middle: float = 0.0  # ln of the speed at which r has its mean, if there is a trend
-    friction: float | None = None
+    slides: bool = False  # whether feet may
     odd: int = 0  # half cycles that were left out
 
     @cached_property
@@ -111,52 +110,105 @@ class Forced:
         time = self.series.time
         return np.asarray((time - 0.5 * (time[0] + time[-1])) / (0.5 * (time[-1] - time[0])))
 
-    def sides(self, sign: Any, width: Any, height: Any, tilt: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return slenderness angle [rad], p [rad/s] and R [m] over the right foot, where sign is 1, or the left one."""
+    @cached_property
+    def believed(self) -> list[tuple[float, float]]:
+        """Half width, height of the centre, p and R over the right foot and the left one."""
         body = self.known.body
         assert body is not None
-        right, left = (body.side(foot) for foot in ("right", "left"))
-        across, up, p, size = (
-            np.where(np.asarray(sign) > 0.0, getattr(right, name), getattr(left, name))
-            for name in ("half_width", "centre_height", "frequency_parameter", "semi_diagonal")
-        )
+        sides = body.side("right"), body.side("left")
+        names = "half_width", "centre_height", "frequency_parameter", "semi_diagonal"
+        return [(getattr(sides[0], name), getattr(sides[1], name)) for name in names]
+
+    def sides(self, sign: Any, width: Any, height: Any, tilt: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return slenderness angle [rad], p [rad/s] and R [m] over the right foot, where sign is 1, or the left one."""
+        across, up, p, size = (np.where(np.asarray(sign) > 0.0, *each) for each in self.believed)
         across, up = across * np.exp(width), up * np.exp(height)
         real = np.hypot(across, up)
         return np.arctan2(across, up) - sign * tilt, p * np.sqrt(size / real), real
 
-    def flights(self, x: FloatArray, moved: FloatArray) -> tuple[Flights, FloatArray]:
+    def levers(self, z: FloatArray) -> tuple[FloatArray, ...]:
+        """Return levers of the feet before and after the impact that begins a half cycle, height, inertia over mass."""
+        (alpha, p, size), (before, _, old) = (
+            self.sides(sign, z[:, WIDTH], z[:, HEIGHT], 0.0) for sign in (self.seen.sign, -self.seen.sign)
+        )
+        height = size * np.cos(alpha)
+        return old * np.sin(before), size * np.sin(alpha), height, size * (g / p**2 - size)
+
+    def begun(self, x: FloatArray, moved: FloatArray, about: FloatArray | None) -> FloatArray:
+        """Return angular velocities and speeds of feet as half cycles begin, with what they have of their own moved.
+
+        They follow from the end of the half cycle before, which is followed until nothing changes; about: near them.
+        """
+        if about is None:
+            about = np.stack([np.exp(np.minimum(x[SIZE + 1 :: 2], 5.0)), 0.0 * x[SIZE::2]])[:, None]
+        common, found = ~moved[:, SIZE:].any(axis=1), about[:, :1]
+        flights, _ = self.flights(x, moved[:1], found)
+        for _ in range(_CHAIN):
+            new = self.after(x, moved[:1], np.stack(flights.ends())[:, None])
+            change, found = np.abs(new - found).max(), new
+            if change < _SETTLED:
+                break
+            free = np.where(self.seen.joined, new[0, 0], flights.velocity[0])
+            flights = flights.begun(free, new[1, 0])
+        ends = self.ends(x, moved[common], np.broadcast_to(found, (2, int(common.sum()), found.shape[2])))
+        return self.after(x, moved, ends[:, np.where(common, np.cumsum(common) - 1, 0)], moved[:, -1:])
+
+    def ends(self, x: FloatArray, moved: FloatArray, begun: FloatArray) -> FloatArray:
+        """Return how long half cycles last, and the speeds with which they and their feet end."""
+        return np.stack(self.flights(x, moved, begun)[0].ends()).reshape(3, len(moved), -1)
+
+    def after(self, x: FloatArray, moved: FloatArray, ends: FloatArray, faster: Any = 0.0) -> FloatArray:
+        """Return angular velocities and speeds of feet after impacts, zero where there is none."""
+        joined, found = np.flatnonzero(self.seen.joined), np.zeros((2, *ends.shape[1:]))
+        _, speed, slip = ends[:, :, joined - 1]
+        z = (np.concatenate([x[:SIZE], [0.0, 0.0]]) + moved)[:, :, None]
+        body = tuple(each[:, joined] for each in self.levers(z))
+        without = np.exp(np.minimum(x[SIZE + 1 :: 2][joined] + faster, 5.0))
+        found[:, :, joined] = struck(speed, without, slip, body, np.exp(z[:, FRICTION]))
+        return found
+
+    def flights(self, x: FloatArray, moved: FloatArray, begun: FloatArray | None = None) -> tuple[Flights, FloatArray]:
         """Half cycles from unknowns, and from those with a few of them moved; and when they begin [s]."""
         seen, states = self.seen, x[SIZE:].reshape(-1, 2)
         z = (np.concatenate([x[:SIZE], [0.0, 0.0]]) + moved)[:, :, None]
         first, second = states[:, 0] + z[:, -2], states[:, 1] + z[:, -1]
         begin = np.where(seen.joined, first, seen.begin)
         alpha, p, size = self.sides(seen.sign, z[:, WIDTH], z[:, HEIGHT], z[:, TILT])
-        turning = np.where(seen.joined, np.exp(np.minimum(second, 5.0)), second)
+        turning = np.where(seen.joined, np.exp(np.minimum(second, 5.0)) if begun is None else begun[0], second)
         rows = (
             begin - z[:, CLOCK], np.where(seen.joined, 0.0, first), turning, alpha, p, size,
             np.broadcast_to(seen.sign, p.shape),
         )  # fmt: skip
         lasts = seen.end - seen.begin
         length = 1.15 * lasts + 0.05 * lasts.mean() + np.clip(seen.begin - begin[0], 0.0, lasts)
-        flat = [each.ravel() for each in rows]
+        flat, sliding = [each.ravel() for each in rows], None
+        if begun is not None:
+            lean = seen.sign * np.sin(z[:, TILT])
+            sliding = np.broadcast_to(np.exp(z[:, FRICTION]), p.shape).ravel(), begun[1].ravel(), lean.ravel()
         flights = Flights.of(
             self.motion, (flat[0], flat[1], flat[2]), (flat[3], flat[4], flat[5]), flat[6],
-            np.broadcast_to(length, p.shape).ravel(), self.friction,
+            np.broadcast_to(length, p.shape).ravel(),
+            sliding,
         )  # fmt: skip
         return flights, begin
 
-    def terms(self, x: FloatArray, moves: int = 7) -> Terms:
-        """Return what unknowns miss, with slopes by finite differences; without slopes if moves is 1."""
+    def terms(self, x: FloatArray, about: FloatArray | None = None) -> Terms:
+        """Return what unknowns miss, with slopes by finite differences; about: near what half cycles begin with."""
         seen, (index, which), count = self.seen, self.samples, self.seen.sign.size
-        common = (WIDTH, HEIGHT, TILT, CLOCK)
-        moved = np.zeros((7, SIZE + 2))
-        moved[np.arange(1, 7), [SIZE, SIZE + 1, *common]] = STEP
-        flights, begin = self.flights(x, moved[:moves])
+        by_move = [SIZE, SIZE + 1, WIDTH, HEIGHT, TILT, CLOCK, *([FRICTION] if self.slides else [])]
+        moves = 1 + len(by_move)
+        moved, begun = np.zeros((moves, SIZE + 2)), None
+        moved[np.arange(1, moves), by_move] = STEP
+        if self.slides:  # last come two of which the half cycle before was moved
+            begun = self.begun(x, moved, about)
+            before = self.after(x, moved[:3], self.ends(x, moved[:3], begun[:, :3]))[:, 1:]
+            begun, moved = np.concatenate([begun, before], axis=1), np.concatenate([moved, np.zeros((2, SIZE + 2))])
+            by_move, moves = [*by_move, SIZE + 2, SIZE + 3], moves + 2
+        flights, begin = self.flights(x, moved, begun)
 
         def slopes(values: FloatArray) -> FloatArray:
-            found = np.zeros((values.shape[1], SIZE + 2))
-            if moves > 1:
-                found[:, [SIZE, SIZE + 1, *common]] = (values[1:] - values[0]).T / STEP
+            found = np.zeros((values.shape[1], SIZE + 4))
+            found[:, by_move] = (values[1:] - values[0]).T / STEP
             return found
 
         samples, at = [], np.concatenate([index, self.rest])
@@ -164,7 +216,7 @@ class Forced:
         computed = flights.at(since, (np.arange(moves)[:, None] * count + which).ravel())
         for k in self.kinds:
             value = computed[k].reshape(moves, -1) * seen.sign[which] * math.exp(x[GAIN + k])
-            by = np.concatenate([slopes(value), np.zeros((self.rest.size, SIZE + 2))])
+            by = np.concatenate([slopes(value), np.zeros((self.rest.size, SIZE + 4))])
             by[: index.size, GAIN + k] = value[0]
             by[:, OFFSET + k], by[:, DRIFT + k] = 1.0, self.line[at]
             whole = np.concatenate([value[0], np.zeros(self.rest.size)]) + x[OFFSET + k] + x[DRIFT + k] * self.line[at]
@@ -174,27 +226,29 @@ class Forced:
         def spread(own: FloatArray, k: IntArray) -> FloatArray:
             found, row = np.zeros((k.size, x.size)), np.arange(k.size)
             found[:, :SIZE] = own[:, :SIZE]
-            found[row, SIZE + 2 * k], found[row, SIZE + 2 * k + 1] = own[:, SIZE], own[:, SIZE + 1]
+            for column in range(2):
+                found[row, SIZE + 2 * k + column] = own[:, SIZE + column]
+                found[row[k > 0], SIZE + 2 * k[k > 0] - 2 + column] = own[k > 0, SIZE + 2 + column]
             return found
 
-        before = np.flatnonzero(seen.joined) - 1  # half cycles that an impact ends
-        lasts, speed = (each.reshape(moves, count)[:, before] for each in flights.ends())
-        ends, ln = begin[:, before] + lasts, np.log(speed)
-        states, row, sign = x[SIZE:].reshape(-1, 2)[before + 1], np.arange(before.size), seen.sign[before + 1]
-        by_time, by_speed = spread(slopes(ends), before), spread(slopes(ln), before) * (1.0 + x[TREND])
-        by_time[row, SIZE + 2 * (before + 1)] = -1.0
-        by_speed[row, SIZE + 2 * (before + 1) + 1] = -1.0
+        ended = np.flatnonzero(seen.joined) - 1  # half cycles that an impact ends
+        lasts, speed = np.stack(flights.ends()[:2]).reshape(2, moves, count)[:, :, ended]
+        ends, ln = begin[:, ended] + lasts, np.log(speed)
+        states, row, sign = x[SIZE:].reshape(-1, 2)[ended + 1], np.arange(ended.size), seen.sign[ended + 1]
+        by_time, by_speed = spread(slopes(ends), ended), spread(slopes(ln), ended) * (1.0 + x[TREND])
+        by_time[row, SIZE + 2 * (ended + 1)] = -1.0
+        by_speed[row, SIZE + 2 * (ended + 1) + 1] = -1.0
         by_speed[:, MEAN], by_speed[:, HALF], by_speed[:, TREND] = 1.0, sign, ln[0] - self.middle
         took = states[:, 1] - ln[0] - x[MEAN] - sign * x[HALF] - x[TREND] * (ln[0] - self.middle)  # Eq. 281
-        return Terms(samples, owners, (states[:, 0] - ends[0], by_time), (took, by_speed))
+        return Terms(samples, owners, (states[:, 0] - ends[0], by_time), (took, by_speed), begun)
 
     def demand(self, x: FloatArray) -> float:
-        """Return the largest friction that holds the feet while their half cycles last [-]."""
+        """Return the largest friction that holds the feet, while half cycles last and at impacts [-]."""
         flights, _ = self.flights(x, np.zeros((1, SIZE + 2)))
-        lasts = self.seen.end - self.seen.begin
-        return float(
-            np.where(np.arange(len(flights.demand))[:, None] * flights.step < lasts, flights.demand, 0.0).max()
-        )
+        during = np.arange(len(flights.rotation) - 1)[:, None] * flights.step < self.seen.end - self.seen.begin
+        old, new, height, _ = self.levers(np.concatenate([x[:SIZE], [0.0, 0.0]])[None, :, None])
+        r = np.exp(x[MEAN] + self.seen.sign * x[HALF])
+        return float(max(flights.demand[during].max(), (height * (1.0 - r) / (old + new * r)).max()))  # Eq. 5
 
     @cached_property
     def precision(self) -> FloatArray:
@@ -221,11 +275,11 @@ def fitted(
     precision = problem.precision[free]
     prior = np.concatenate([problem.mean, np.zeros(x.size - SIZE)])
 
-    def objective(x: FloatArray) -> tuple[float, Terms | None]:
+    def objective(x: FloatArray, about: FloatArray | None = None) -> tuple[float, Terms | None]:
         if not np.isfinite(x).all():
             return math.inf, None
         with np.errstate(all="ignore"):
-            terms = problem.terms(x)
+            terms = problem.terms(x, about)
             value = terms.value(noise, scatter, same) + float(precision @ (x - prior)[free] ** 2)  # Eq. 283
         return value if math.isfinite(value) else math.inf, terms
 
@@ -241,7 +295,7 @@ def fitted(
         step = scale * np.linalg.solve(scaled, scale * gradient)
         trial = x.copy()
         trial[free] += step * min(1.0, _LONGEST / np.abs(step).max())
-        found, new = objective(trial)
+        found, new = objective(trial, terms.begun)
         better = found <= value
         converged = damping <= _DAMPED and abs(found - value) < _CLOSE and (better or damping == 0.0)
         if better:

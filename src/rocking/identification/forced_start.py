@@ -36,12 +36,13 @@ FEWEST = 3
 
 _SHARE, _SHARE_INTEGRATED = 0.01, 0.05  # of the range, least rotation that counts
 _STILL = 0.7  # of the acceleration that lifts a body: below it rests for certain
-_ANNEALED = ((0.3, 3e-3), (0.03, 5e-4))  # scatter, and within which time half cycles end where the next ones begin
 _TRIES = 8
 _ODD = 4.0  # of the usual mean square: no half cycle of rocking
 _TELLS, _TAKES = 0.3, 0.5  # of ln r: standard deviation beyond which, and amount beyond which it is no impact
 _LARGEST, _FEW, _BETWEEN = 12, 400, 0.02  # half cycles and samples by which a clock is sought, every so many seconds
 _AT_ONCE = 100
+ANNEALED = ((0.3, 3e-3), (0.03, 5e-4))
+"""Scatter, and within which time half cycles end where the next ones begin [s]."""
 SURE = 0.03
 """Standard deviation of a clock above which it is sought [s]."""
 
@@ -175,7 +176,7 @@ def first_fit(problem: Forced, shared: FloatArray) -> tuple[Forced, Fit, FloatAr
             break
         seen = problem.seen.parted(apart, problem.series.time).kept(sound)
         problem = replace(problem, seen=seen.kept(~seen.alone()), odd=problem.odd + int(np.sum(~sound)))
-    for scatter, same in _ANNEALED if math.isfinite(fit.objective) else ():
+    for scatter, same in ANNEALED if math.isfinite(fit.objective) else ():
         fit = fitted(problem, fit.x, noise, scatter, same)
         noise = np.maximum(noise, deviations(problem, fit)) if fit.converged else noise
     return (problem, fit, noise) if math.isfinite(fit.objective) and np.isfinite(fit.terms.times[0]).all() else None

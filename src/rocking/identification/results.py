@@ -100,7 +100,8 @@ class ForcedRocking:
 
     clock: IntervalEstimate  # by how much the clock of the measurement is ahead of that of the motion [s]
     gain: IntervalEstimate  # measured over true rotation [-]
-    friction: IntervalEstimate  # coefficient of friction; of a body that never slid only the low end is a number [-]
+    # coefficient of friction; where it is not identified only the low end is a number, a bound at 95 % [-]
+    friction: IntervalEstimate
     stretches: int  # how often the half cycles begin anew, in a state that was measured and with no impact before them
     odd: int  # half cycles that were left out, since rocking alone does not explain them
     seen: float  # seen, measured: duration of the half cycles that were used, and of the measurement [s]
@@ -110,11 +111,12 @@ class ForcedRocking:
 
     def __str__(self) -> str:
         """Return it in sentences."""
-        least = f"Friction is not identified: {{}}; it is {self.friction.low:.2g} at least."
+        friction = (
+            "Friction is not identified: feet that slid would explain what was measured no better than feet that held; "
+            f"it is {self.friction.low:.2g} at least."
+        )
         if math.isfinite(self.friction.value):
-            friction = f"The coefficient of friction is {self.friction}."
-        else:
-            friction = least.format("where it was followed it never slid" if self.odd else "it never slid")
+            friction = f"The feet slid; the coefficient of friction is {self.friction}. r is told without the slip."
         told = "From rest a difference of 1e-4 in r changes the motion nowhere by a tenth of its peak."
         if math.isfinite(self.foreseen):
             told = (

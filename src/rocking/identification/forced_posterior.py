@@ -1,0 +1,70 @@
+"""The posterior of what rocking under a known ground motion says: normal distributions, one for each scatter."""
+
+import math
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.identification.forced_model import SAME_TIME, SIZE, Fit, Forced
+from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
+from rocking.identification.results import LEVELS, IntervalEstimate
+
+_GRID = 61
+
+
+class ForcedPosterior:
+    """Normal distributions of the unknowns, one for each scatter, with weights: all about one linearisation."""
+
+    def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
+        self.problem, self.fit, self.noise = problem, fit, noise
+        self.free = np.isfinite(problem.precision)
+        self.scatter = np.geomspace(*SCATTERS, _GRID)
+        drawn, by = fit.terms.draws
+        precision = np.where(self.free, problem.precision, 0.0)
+        away = np.where(self.free, fit.x - np.concatenate([problem.mean, np.zeros(fit.x.size - SIZE)]), 0.0)
+        fixed, pull = fit.terms.normal(noise, 1.0, SAME_TIME)
+        fixed = (fixed - by.T @ by + np.diag(precision))[np.ix_(self.free, self.free)]
+        scale = 1.0 / np.sqrt(np.diag(fixed))
+        self._root = np.linalg.inv(np.linalg.cholesky(fixed * scale[:, None] * scale)) * scale
+        self._pull = self._root @ (pull - by.T @ drawn - precision * away)[self.free]
+        # what impacts took is told in so many directions: no scatter needs a matrix of its own
+        self._modes, size, turn = np.linalg.svd(self._root @ by[:, self.free].T, full_matrices=False)
+        missed = turn @ drawn - size * (self._modes.T @ self._pull)
+        total = self.scatter[:, None] ** 2 + size**2
+        self._held, self._steps = size**2 / total, size * missed / total
+        ln = ln_scatter_density(self.scatter) - 0.5 * (missed**2 / total + np.log(total)).sum(axis=1)  # Eq. 284
+        weights = np.exp(ln - ln.max())
+        self.weights = weights / weights.sum()
+        rest = fit.terms.value(noise, 1.0, SAME_TIME) - float(drawn @ drawn) + float(precision @ away**2)
+        told = float(self._pull @ self._pull) - rest
+        self.ln_evidence = float(
+            ln.max() + math.log(weights.sum()) + 0.5 * told + np.log(np.diag(self._root)).sum()
+        )  # over all scatters
+
+    def of(self, slopes: FloatArray, value: float) -> Mixture:
+        """Return the distribution of what has a value at the linearisation, and slopes by the unknowns."""
+        by = self._root @ slopes[self.free]
+        along = self._modes.T @ by
+        means = value + float(by @ self._pull) + self._steps @ along
+        return Mixture(self.weights, means, np.sqrt(np.maximum(float(by @ by) - self._held @ along**2, 0.0)))
+
+    def shared(self, *terms: tuple[int, float]) -> Mixture:
+        """Return the distribution of a sum of what all half cycles share, each times a factor."""
+        slopes = np.zeros(self.fit.x.size)
+        for which, factor in terms:
+            slopes[which] = factor
+        return self.of(slopes, float(slopes @ self.fit.x))
+
+    def explained(self, which: int, by: tuple[int, ...]) -> float:
+        """Return the standard deviation of what all share that falls away where others of it are known."""
+        place, held = np.cumsum(self.free) - 1, self._held[int(np.argmax(self.weights))]
+        root = self._root - self._modes @ ((1.0 - np.sqrt(1.0 - held))[:, None] * (self._modes.T @ self._root))
+        one, others = root[:, place[which]], root[:, [place[each] for each in by if self.free[each]]]
+        return float(np.linalg.norm(np.linalg.qr(others)[0].T @ one)) if others.size else 0.0
+
+    @property
+    def likely_scatter(self) -> IntervalEstimate:
+        """The scatter."""
+        middle = np.cumsum(self.weights) - 0.5 * self.weights
+        ln = np.log(self.scatter)
+        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, ln))) for q in LEVELS))
