@@ -343,3 +343,33 @@ def test_a_server_that_is_killed_loses_nothing(browser: Any, own: Any) -> None:
         more.click()
     expect(dialog.get_by_role("list", name="History").get_by_role("listitem")).to_have_count(1 + 2 * KILLS)
     context.close()
+
+
+def test_what_was_turned_in_a_project_stays_there(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Pulse, seed, record and a file that waits for an answer are forgotten where another project is shown."""
+    page = open_page(view="motion")
+    motion = page.locator("#view-motion")
+    page.get_by_label("Peak acceleration, exactly").fill("7.77")
+    motion.locator(".segment", has_text="Synthetic").click()
+    page.get_by_label("Seed").fill("6")
+    motion.locator(".segment", has_text="Record file").click()
+    steps = "\n".join(f"{0.01 * k:.2f} {k % 7}" for k in range(200)).encode()
+    told = {"name": "hall.csv", "mimeType": "text/csv", "buffer": b"time [s],a [m/s2]\n" + steps.replace(b" ", b",")}
+    page.get_by_test_id("record-file").set_input_files(told)
+    expect(page.get_by_test_id("record-held")).to_contain_text("hall.csv")
+    page.get_by_test_id("record-file").set_input_files({**told, "name": "wait.txt", "buffer": steps})
+    expect(page.locator(".record-form")).to_be_visible()
+    saved(page)
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of a new project").fill("Another")
+    dialog.get_by_role("button", name="Begin").click()
+    expect(page.get_by_test_id("project")).to_have_text("Another")
+    dialog.get_by_role("button", name="Close").click()
+    expect(page.locator(".record-form")).to_have_count(0)
+    motion.locator(".pulse-card input[value=ricker]").check()
+    motion.locator(".pulse-card input[value=sine]").check()
+    expect(page.get_by_label("Peak acceleration, exactly")).to_have_value("3")
+    motion.locator(".segment", has_text="Synthetic").click()
+    expect(page.get_by_label("Seed")).to_have_value("0")
+    motion.locator(".segment", has_text="Record file").click()
+    expect(page.get_by_test_id("record-held")).to_be_empty()

@@ -9,6 +9,9 @@ import { plainWords } from "/views/studies-words.js";
 const USUAL = "sine";
 const kept = new Map(); // the parameters of each pulse that were turned
 
+/** Forget what was turned. */
+export const forgetPulses = () => kept.clear();
+
 /** The editor of a pulse.
  * @param {{ app: App, motion: Server.MotionInput | null, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Pulse = ({ app, motion, onChange }) => {

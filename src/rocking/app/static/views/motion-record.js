@@ -78,7 +78,11 @@ export const createRecord = (app, onChange) => {
     if (!most || file.size <= most) return send();
     return end(why(`${file.name} is larger than the ${Math.round(most / 2 ** 20)} MiB that the server takes.`), "unread");
   };
-  return { said, asked, blamed, waiting, answer, take, send };
+  const forget = () => batch(() => {
+    held = null;
+    [said.value, asked.value, blamed.value, waiting.value] = [null, null, null, false];
+  });
+  return { said, asked, blamed, waiting, answer, take, send, forget };
 };
 
 /** The editor of a record; `lost`: the server no longer has the file.

@@ -1,11 +1,11 @@
 /** What shakes the ground: a record file, a pulse, or a synthetic motion. */
-import { batch, html, render, signal } from "/parts/preact.js";
+import { batch, computed, html, render, signal } from "/parts/preact.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Button, Card, Note, Segmented } from "/parts/fields.js";
 import { createAnswer } from "/views/answer.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
-import { Pulse, usualPulse } from "/views/motion-pulse.js";
+import { Pulse, forgetPulses, usualPulse } from "/views/motion-pulse.js";
 import { Record, createRecord } from "/views/motion-record.js";
 import { Result } from "/views/motion-result.js";
 import { Scale } from "/views/motion-scale.js";
@@ -28,7 +28,7 @@ export const mount = (section, app) => {
   const way = signal(wayOf(motion.value));
   const faulty = signal(false);
   /** @type {{ [way: string]: Server.MotionInput | undefined }} */
-  const kept = {};
+  let kept = {};
   const question = () => {
     const { motion: given, settings } = inputs.get();
     if (!given) return null;
@@ -37,7 +37,7 @@ export const mount = (section, app) => {
   const asked = createAnswer(app, "motion", ["motion", "settings"], question, { path: "motion", detail: { spectrum: false } });
   inputs.subscribe((now, changed) => {
     if (!changed.has("motion")) return;
-    rememberMotion(now.motion);
+    rememberMotion(app, now.motion);
     batch(() => ([motion.value, way.value] = [now.motion, wayOf(now.motion)]));
   });
   app.faults.subscribe(() => (faulty.value = app.faults.any({ view: "motion" })));
@@ -52,12 +52,19 @@ export const mount = (section, app) => {
   const choose = (next) => batch(() => {
     const { motion: now } = inputs.get();
     if (now) kept[wayOf(now)] = now;
-    const before = now ? null : motionBefore();
+    const before = now ? null : motionBefore(app);
     const chosen = kept[next] || (wayOf(before) === next ? before : null) || USUAL[next](app);
     if (chosen) set(chosen);
     way.value = next;
   });
   const record = createRecord(app, set);
+  // What was turned, and a file that waits, belong to one project.
+  computed(() => app.project.here.value.id).subscribe(() => batch(() => {
+    kept = {};
+    forgetPulses();
+    record.forget();
+    way.value = wayOf(inputs.get().motion);
+  }));
   render(html`<${Motion} app=${app} asked=${asked} motion=${motion} way=${way} faulty=${faulty} record=${record} set=${set}
     choose=${choose} time=${createTime(undefined, asked.look)} />`, section);
   return asked;
@@ -82,7 +89,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
       <div class="motion-right">
         <div aria-live="polite" data-testid="motion-refusal">
           ${!motion && html`<${Note} words=${LEAN} /><div class="toolbar">
-            <${Button} onClick=${() => set(motionBefore())}>Back to the motion before<//></div>`}
+            <${Button} onClick=${() => set(motionBefore(app))}>Back to the motion before<//></div>`}
           ${refused && html`<${Note} kind="error" words=${refused.message} />`}
           ${(answer?.warnings ?? []).map((/** @type {string} */ words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}</div>
         <div aria-live="polite" data-testid="motion-pending">

@@ -12,7 +12,7 @@ const CALIBRATED = "The calibrated model is fitted to the published measurements
 
 /** Lets the body go from a lean, on ground that stands still. @param {App} app */
 export const lean = (app) => {
-  rememberMotion(app.inputs.get().motion);
+  rememberMotion(app, app.inputs.get().motion);
   app.inputs.set("response.free", LEAN);
   app.inputs.set("motion", undefined);
 };
@@ -20,7 +20,7 @@ export const lean = (app) => {
 /** @param {App} app */
 const shake = (app) => {
   app.inputs.set("response.free", undefined);
-  app.inputs.set("motion", motionBefore());
+  app.inputs.set("motion", motionBefore(app));
 };
 
 /** @param {number} value */
