@@ -373,3 +373,46 @@ def test_what_was_turned_in_a_project_stays_there(open_page: Callable[..., Any],
     expect(page.get_by_label("Seed")).to_have_value("0")
     motion.locator(".segment", has_text="Record file").click()
     expect(page.get_by_test_id("record-held")).to_be_empty()
+
+
+def test_undo_drops_what_cannot_be_saved(open_page: Callable[..., Any]) -> None:
+    """What the server refuses is gone after one step back, which shows what was saved last; it is not sent again."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    sent: list[str] = []
+
+    def refused(route: Any) -> Any:
+        if route.request.method != "POST" or '"height":3' not in (route.request.post_data or ""):
+            return route.continue_()
+        sent.append("refused")
+        return route.fulfill(status=422, json={"error": {"kind": "invalid", "message": "too tall"}})
+
+    page.route("**/api/projects/*", refused)
+    page.get_by_label("Height").fill("3")
+    expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
+    expect(page.locator("#status")).to_contain_text("Too tall")
+    page.get_by_role("button", name="Previous state").click()
+    saved(page)
+    expect(page.locator("#status")).to_be_hidden()
+    expect(page.get_by_label("Height")).to_have_value("2")
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+    assert len(sent) <= 2  # as it was typed, and before the step
+    page.get_by_role("button", name="Previous state").click()
+    expect(page.get_by_label("Width")).to_have_value("0.5")
+
+
+def test_a_whole_number_that_no_number_holds_is_refused(open_page: Callable[..., Any], served: Any) -> None:
+    """9007199254740993 would be kept as another number: the field says so, and the seed stays what it was."""
+    page = open_page(view="motion")
+    page.locator("#view-motion .segment", has_text="Synthetic").click()
+    seed = page.get_by_label("Seed")
+    for digits in ("9007199254740993", "9" * 20):
+        seed.fill("6")
+        saved(page)
+        seed.fill(digits)
+        expect(seed).to_have_attribute("aria-invalid", "true")
+        expect(page.get_by_text("At most 9007199254740991.", exact=True)).to_be_visible()
+    page.wait_for_timeout(450)
+    saved(page)
+    (project,) = served.api("projects", method="GET")["projects"]
+    assert served.api(f"projects/{project['id']}", method="GET")["document"]["inputs"]["motion"]["seed"] == 6

@@ -6,14 +6,16 @@ import { el, fill } from "/app/dom.js";
 const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
 let timer = 0;
 
-/** Say something in the status line. @param {string} text @param {string} [kind] */
+/** Say something in the status line; returns how to take it back, as long as nothing else is said. @param {string} text @param {string} [kind] */
 export const say = (text, kind = "info") => {
   const line = document.getElementById("status");
-  fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), el("span", {}, text));
+  const words = el("span", {}, text);
+  fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), words);
   line.dataset.kind = kind;
   line.hidden = false;
   clearTimeout(timer);
   timer = setTimeout(hush, kind === "error" ? 12_000 : 5_000);
+  return () => line.contains(words) && hush();
 };
 
 /** Take the status line away. */

@@ -215,6 +215,7 @@ const checked = (text, { min, above, max, whole, optional, unit }) => {
     [min !== undefined && min !== null && given < min, "At least", min],
     [max !== undefined && max !== null && given > max, "At most", max],
   ]).find(([fails]) => fails);
+  if (whole && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: "At most 9007199254740991." };
   if (wrong) return { fault: `${wrong[1]} ${quantity(wrong[2], unit)}.` };
   return whole && !Number.isInteger(given) ? { fault: "A whole number is needed." } : { given };
 };

@@ -45,7 +45,7 @@ const Bar = ({ projects, app }) => {
     </span>
     ${saving.value === "unsaved" && !clash.value
       && html`<${Button} onClick=${projects.again}>Save again<//>`}
-    <${Step} sign="\u21b6" label="Previous state of the project" on=${facts.can_undo} go=${projects.undo} />
+    <${Step} sign="\u21b6" label="Previous state of the project" on=${facts.can_undo || saving.value === "unsaved"} go=${projects.undo} />
     <${Step} sign="\u21b7" label="Next state of the project" on=${facts.can_redo} go=${projects.redo} />
     <${ProjectDialog} projects=${projects} app=${app} handle=${dialog} />
     ${clash.value && html`<${Clash} projects=${projects} />`}`;

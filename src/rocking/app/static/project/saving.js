@@ -29,8 +29,12 @@ export const createProjects = (app, first) => {
   let last = null; // what was saved last
   /** @type {Own[]} */
   let sent = []; // what is on its way, or went on one from which no answer came
+  let refused = false; // what was sent last was not taken, and never will be as it is
+  /** @type {(() => void) | null} */
+  let quiet = null; // takes back the words that something was not saved
   /** @type {Promise<any>} */
   let line = Promise.resolve();
+  saving.subscribe((state) => state === "saved" && quiet?.());
 
   // What is lent from elsewhere is on the screen, and not in the project.
   const own = () => {
@@ -56,14 +60,14 @@ export const createProjects = (app, first) => {
     app.forms.take(document?.forms);
     taking = false;
     changed.clear();
-    [sent, last] = [[], own()];
+    [sent, last, refused] = [[], own(), false];
     saving.value = "saved";
     note();
   };
-  // What was typed while an answer was on its way is a state of its own, not lost.
+  // What was typed while an answer was on its way is a state of its own, not lost; what was refused before gives way.
   /** @param {any} document */
   const showUnlessTyped = (document) => {
-    if (changed.size) save();
+    if (changed.size && !refused) save();
     else show(document);
   };
   let leaving = false; // what is sent then outlives the page
@@ -88,7 +92,7 @@ export const createProjects = (app, first) => {
     note();
     try {
       const facts = await ask("", { version: here.value.version, document, words });
-      sent = [];
+      [sent, refused] = [[], false];
       known(facts);
       last = document;
       saving.value = changed.size ? "saving" : "saved";
@@ -96,9 +100,10 @@ export const createProjects = (app, first) => {
     } catch (error) {
       for (const key of mine) changed.add(key);
       saving.value = "unsaved";
+      refused = error.status >= 400 && error.status < 500 && ![401, 403, 408, 409, 429].includes(error.status);
       if (error.kind !== "offline") sent.pop();
       if (error.kind === "conflict") await differ(document);
-      else if (!["offline", "forbidden"].includes(error.kind)) app.say(`Not saved: ${error.message}`, "error");
+      else if (!["offline", "forbidden"].includes(error.kind)) quiet = app.say(`Not saved: ${error.message}`, "error");
     }
   });
   /** @param {Own} mine */
@@ -132,7 +137,9 @@ export const createProjects = (app, first) => {
     await save();
     return inLine(async () => {
       try {
-        showUnlessTyped(known(await ask(`/${what}`, { version: here.value.version })));
+        if (refused && what === "redo") return;
+        // What cannot be saved is the last state: to undo it is to show the one before, which is there.
+        showUnlessTyped(known(await (refused ? ask("") : ask(`/${what}`, { version: here.value.version }))));
         tell();
       } catch (error) {
         app.say(error.message, "error");
@@ -162,6 +169,7 @@ export const createProjects = (app, first) => {
     if (!changed.size && same(own(), last)) return;
     for (const key of keys) changed.add(key);
     if (!changed.size) return;
+    refused = false;
     note();
     saving.value = "saving";
     clearTimeout(timer);

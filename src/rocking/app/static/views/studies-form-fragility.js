@@ -38,7 +38,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     <div class="fields" hidden=${source !== "synthetic"}>
       ${choice("family", "Family", families.map(({ name, title }) => [name, title ?? name]))}
       ${field(NumberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
-      ${field(NumberField, "seed", "Seed", { min: 0, step: 1 })}
+      ${field(NumberField, "seed", "Seed", { min: 0, step: 1, whole: true })}
     </div>
     <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
     ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
