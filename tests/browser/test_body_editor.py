@@ -276,6 +276,34 @@ def test_an_error_stands_at_its_place(page: Any, shot: Callable[..., Any]) -> No
     assert middle(mark.locator("circle")) == pytest.approx(pixel(page, -3.0, 0.0), abs=0.5)
 
 
+def test_a_refused_outline_has_no_feet(page: Any) -> None:
+    """Feet and centre are drawn of the body that is shown, not of the one before that was refused."""
+    drawn(page)
+    marks = page.locator(".board-facts")
+    expect(marks).to_have_count(1)
+    paste = page.get_by_text("Paste points from Excel")
+    paste.click()
+    page.get_by_label("Points, x and y on each line").fill("0 0\n2 0\n0 3\n1 4")
+    page.get_by_role("button", name="Use as outline").click()
+    expect(page.locator(".board-refusal")).to_contain_text("crosses or touches itself")
+    expect(marks).to_have_count(0)
+    page.get_by_role("button", name="Undo").click()
+    expect(marks).to_have_count(1)
+
+
+@pytest.mark.parametrize("width", [390, 1360, 1440])
+def test_no_vertex_lies_under_a_button(open_page: Callable[..., Any], shot: Callable[..., Any], width: int) -> None:
+    """Of a flat and a tall outline that fill the board every vertex is what a pointer meets there."""
+    page = open_page(viewport={"width": width, "height": 1000})
+    for outline in ([(0, 0), (2, 0), (2, 1), (0, 1)], [(0, 0), (9, 0), (9, 5), (0, 5)]):
+        drawn(page, outline)
+        page.get_by_role("button", name="Show the whole body").click()
+        met = page.evaluate(DOTS.replace("each.getAttribute('aria-label')", """
+            document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2)?.closest('.vertex') === each"""))
+        assert [found for found, *_ in met] == [True] * 4, outline
+    shot(page, f"body-board-{width}")
+
+
 def test_feet_stand_on_the_ground_wherever_that_is(open_page: Callable[..., Any]) -> None:
     """Of a section on a ground of y = 1 its feet are marked there, and so is one that is off the base."""
     section = {"ground": 1.0, "region": [{"outline": [[0, 1], [2, 1], [2, 4], [0, 4]], "density": 2400}]}

@@ -262,7 +262,7 @@ const photograph = (photo, view) => photo && svg("image", {
 /** @param {Editor} editor @param {Viewport} view */
 const statics = (editor, view) => {
   const facts = editor.facts();
-  if (!facts) return null;
+  if (!facts || editor.refusalWords()) return null; // of a body that is refused nothing is known
   const metres = editor.metres();
   return svg("g", { class: "board-facts", "aria-hidden": "true" },
     facts.feet_m.map((foot) => footMark(view.x(foot / metres), view.y(groundOf(facts) / metres))),
