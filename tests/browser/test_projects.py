@@ -222,6 +222,29 @@ def test_two_browsers_that_change_the_same(open_page: Callable[..., Any], served
     expect(page.get_by_label("Width")).to_have_value("0.75")
 
 
+def test_two_browsers_that_change_different_parts(open_page: Callable[..., Any], served: Any) -> None:
+    """Nobody is asked: both changes are kept, and shown where the later one was made; the same part is still asked."""
+    page, other = open_page(), open_page(view="motion")
+    typed(page, "Width", "0.75")
+    page.locator("#tab-decide").click()
+    typed(page, "Signed by", "A. Person")
+    amplitude = other.get_by_label("Peak acceleration, exactly")
+    typed(other, "Peak acceleration, exactly", "7.77")
+    expect(other.get_by_test_id("clash")).not_to_be_visible()
+    expect(amplitude).to_have_value("7.77")
+    other.locator("#tab-body").click()
+    expect(other.get_by_label("Width")).to_have_value("0.75")
+    (project,) = served.api("projects", method="GET")["projects"]
+    document = served.api(f"projects/{project['id']}", method="GET")["document"]
+    assert document["inputs"]["body"]["width"] == 0.75
+    assert "7.77" in document["inputs"]["motion"]["pulse"]
+    assert document["forms"]["decide"]["author"] == "A. Person"
+    page.locator("#tab-body").click()
+    typed(page, "Height", "3")  # beside the motion of the other one, which it takes over
+    other.get_by_label("Height").fill("4")
+    expect(other.get_by_test_id("clash")).to_be_visible()
+
+
 def test_a_project_that_is_worked_on_is_not_gone(open_page: Callable[..., Any], served: Any) -> None:
     """Deleted in another browser while somebody types in it: it is back with what was typed, and both are told."""
     page = open_page()

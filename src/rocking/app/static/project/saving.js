@@ -120,7 +120,7 @@ export const createProjects = (app, first) => {
       }
     }
     const [done, ours] = [same(mine, theirs.document), isOwn(theirs, here.value.version, sent)];
-    if (!done && !ours) {
+    if (!done && !ours && !join(theirs.document)) {
       clash.value = { theirs, mine };
       return;
     }
@@ -130,6 +130,26 @@ export const createProjects = (app, first) => {
     last = theirs.document;
     saving.value = done ? "saved" : "saving";
     if (!done) save(); // as above
+  };
+
+  // Shows what others changed beside what is changed here; false, and nothing is done, where both changed a part.
+  /** @param {any} document */
+  const join = (document) => {
+    const [before, mine, theirs] = [last, own(), document].map(partsOf);
+    if (!last || !inputsOf(document?.inputs) || app.inputs.aside()?.mine) return false;
+    const keys = [...new Set([before, mine, theirs].flatMap((each) => Object.keys(each)))];
+    /** @param {{ [key: string]: any }} one @param {{ [key: string]: any }} other */
+    const differs = (one, other) => keys.filter((key) => JSON.stringify(one[key]) !== JSON.stringify(other[key]));
+    const [apart, there] = [differs(mine, theirs), differs(before, theirs)];
+    if (differs(before, mine).some((key) => there.includes(key) && apart.includes(key))) return false;
+    taking = true;
+    for (const key of there) {
+      const [kind, name] = key.split(".");
+      if (kind === "inputs") app.inputs.set(name, theirs[key]);
+      else app.forms.take({ ...app.forms.get(), [name]: theirs[key] });
+    }
+    taking = false;
+    return true;
   };
 
   /** @param {string} what */
@@ -272,6 +292,13 @@ export const createProjects = (app, first) => {
 /** @param {Server.WholeProject} theirs @param {number} version @param {Own[]} [sent] */
 const isOwn = (theirs, version, sent = []) =>
   theirs.version === version + 1 && sent.some((each) => same(each, theirs.document));
+
+// The parts of a document that are changed on their own: tables of the inputs, forms of views.
+/** @param {any} document @returns {{ [key: string]: any }} */
+const partsOf = (document) => Object.fromEntries(
+  [["inputs", inputsOf(document?.inputs)], ["forms", formsOf(document?.forms)]].flatMap(([kind, all]) =>
+    Object.entries(all ?? {}).map(([name, value]) => [`${kind}.${name}`, value])),
+);
 
 // The order of keys says nothing.
 /** @param {any} one @param {any} other */
