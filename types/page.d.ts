@@ -121,7 +121,7 @@ type FieldProps<Value> = {
   label: string; value?: Value | Signal<Value> | null; on?: (value: Value) => unknown; unit?: string; help?: string; error?: string; kind?: string;
   hidden?: boolean; [more: string]: any;
 };
-type Limits = { min?: number; above?: number; max?: number; whole?: boolean; optional?: boolean };
+type Limits = { min?: number; above?: number; max?: number; whole?: boolean; moves?: boolean; optional?: boolean };
 type NumberProps = FieldProps<number | null> & Limits & { step?: number; aside?: boolean };
 
 /** A file that was sent: its plain name, and its hash. */

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import PHONE, pasted
+from browser_pages import PHONE, link, pasted
 from playwright.sync_api import expect
 
 from rocking.motions import GroundMotion
@@ -318,3 +318,31 @@ def test_it_fits_a_phone(open_page: Callable[..., Any], shot: Callable[..., Path
     page.get_by_test_id("measures-table").wait_for()
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     shot(page, "motion-phone")
+
+
+@pytest.mark.parametrize(("label", "given"), [("Peak acceleration", ["0", "1e9"]), ("Period", ["0", "-2"])])
+def test_a_wrong_number_is_marked_at_its_field(view: Any, label: str, given: list[str]) -> None:
+    """What no pulse can have is refused beside its box, and the motion stays as it was; a number that can be is taken."""
+    box = view.get_by_test_id("pulse-parameters").get_by_label(f"{label}, exactly")
+    for text in given:
+        box.fill(text)
+        expect(box).to_have_attribute("aria-invalid", "true")
+        about = view.locator(f"[id='{box.get_attribute('aria-describedby')}']")
+        expect(about).to_have_text(re.compile("^(At least|At most|Not 0)"))
+    assert inputs(view)["motion"]["pulse"] == "sine:amplitude=3,period=0.8"
+    box.fill("2")
+    expect(box).not_to_have_attribute("aria-invalid", "true")
+
+
+@pytest.mark.parametrize("pulse", ["sine:amplitude=0,period=1", "sine:amplitude=3,period=-2"])
+def test_what_the_server_refuses_is_marked_at_its_field(open_page: Callable[..., Any], pulse: str) -> None:
+    """A link with a wrong number shows it marked, and in German nothing is said in English; corrected, it is measured."""
+    page = open_page(link(pulse) + "&view=motion", locale="de")
+    box = page.locator("[data-testid=pulse-parameters] .exact input[aria-invalid=true]")
+    expect(box).to_have_count(1)
+    for said in (page.get_by_test_id("motion-refusal"), page.locator(".field-error")):
+        assert not re.search(r"\b(must|got|nothing|throughout)\b", said.inner_text())
+    expect(page.get_by_test_id("motion-pending")).to_be_empty()
+    box.fill("2")
+    page.get_by_test_id("measures-table").wait_for()
+    expect(page.locator("[data-testid=pulse-parameters] [aria-invalid=true]")).to_have_count(0)

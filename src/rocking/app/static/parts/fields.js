@@ -55,10 +55,10 @@ const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-in
 const TURNS = { ArrowUp: 1, ArrowDown: -1 };
 
 /** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
- * optional one that was emptied null; what is wrong with one that is `aside` is no fault of the inputs.
+ * optional one that was emptied null; one that `moves` is not 0; what is wrong with one that is `aside` is no fault of the inputs.
  * @param {NumberProps} props */
 export const NumberField = ({
-  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, optional, aside = false,
+  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, moves, optional, aside = false,
   ...more
 }) => {
   const id = useId("number");
@@ -70,7 +70,7 @@ export const NumberField = ({
   useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
   /** @param {string} text */
   const take = (text) => {
-    const { fault = "", given } = checked(text, { min, above, max, whole, optional, unit });
+    const { fault = "", given } = checked(text, { min, above, max, whole, moves, optional, unit });
     type(text, fault);
     if (!fault) put(given);
   };
@@ -206,10 +206,11 @@ const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(tex
 const saysText = (text, now) => text.trim() === now;
 
 /** @param {string} text @param {Limits & { unit: string }} limits @returns {{ given?: number | null, fault?: string }} */
-const checked = (text, { min, above, max, whole, optional, unit }) => {
+const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
   if (!text.trim()) return optional ? { given: null } : { fault: "A number is needed here." };
   const given = parseNumber(text);
   if (given === null) return { fault: "This is not a number." };
+  if (moves && given === 0) return { fault: "Not 0: nothing would move." };
   const wrong = /** @type {[boolean, string, number | undefined][]} */ ([
     [above !== undefined && given <= above, "More than", above],
     [min !== undefined && min !== null && given < min, "At least", min],

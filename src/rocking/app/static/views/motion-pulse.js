@@ -12,9 +12,9 @@ const kept = new Map(); // the parameters of each pulse that were turned
 /** Forget what was turned. */
 export const forgetPulses = () => kept.clear();
 
-/** The editor of a pulse.
- * @param {{ app: App, motion: Server.MotionInput | null, onChange: (motion: Server.MotionInput) => unknown }} props */
-export const Pulse = ({ app, motion, onChange }) => {
+/** The editor of a pulse; `blamed`: the parameter that was refused, and why.
+ * @param {{ app: App, motion: Server.MotionInput | null, blamed?: any, onChange: (motion: Server.MotionInput) => unknown }} props */
+export const Pulse = ({ app, motion, blamed, onChange }) => {
   const pulses = useMemo(() => pulsesOf(app.info), []);
   const [name, parameters] = readPulse(motion?.pulse ?? "");
   const shown = pulses.get(name);
@@ -35,7 +35,7 @@ export const Pulse = ({ app, motion, onChange }) => {
       <div class="pulse-fields" data-testid="pulse-parameters">
         ${shown && html`<p class="field-help">${aboutOf(shown)}</p>
           ${shown.parameters.map((one) => html`<${Parameter} key=${`${name} ${one.name}`} ...${one}
-            value=${parameters[one.name] ?? one.usual} on=${(value) => turn(one.name, value)} />`)}`}
+            value=${parameters[one.name] ?? one.usual} error=${blamed?.key === one.name && blamed.words} on=${(value) => turn(one.name, value)} />`)}`}
       </div>
     </div>`;
 };
@@ -56,9 +56,10 @@ const borrowed = (pulse, before) =>
     .map((/** @type {any} */ one) => [one.name, before[one.name] ?? one.usual]));
 
 /** @param {any} props */
-const Parameter = ({ label, unit, low, high, whole, log, value, on }) => html`
+const Parameter = ({ label, unit, low, high, whole, log, limits, value, error, on }) => html`
   <div class="parameter">
     <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${whole ? 1 : (high - low) / 200} log=${log}
       value=${Math.min(Math.max(Math.abs(value), low), high)} on=${on} />
-    <${NumberField} kind="exact" label=${`${label}, exactly`} unit=${unit} step=${whole ? 1 : undefined} value=${value} on=${on} />
+    <${NumberField} kind="exact" label=${`${label}, exactly`} unit=${unit} step=${whole ? 1 : undefined} ...${limits} value=${value}
+      error=${error} on=${on} />
   </div>`;

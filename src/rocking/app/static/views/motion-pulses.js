@@ -1,14 +1,14 @@
 /** The pulses that the server knows, as the form shows them. */
 
-/** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, whole?: boolean, usual: number } | undefined }} */
+/** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, limits?: Limits, whole?: boolean, usual: number } | undefined }} */
 const RANGES = {
-  amplitude: { label: "Peak acceleration", low: 0.1, high: 20, log: true, usual: 3 },
-  velocity: { label: "Velocity", low: 0.05, high: 3, log: true, usual: 0.6 },
-  period: { label: "Period", low: 0.1, high: 5, log: true, usual: 0.8 },
-  duration: { label: "Duration", low: 0.05, high: 5, log: true, usual: 0.4 },
+  amplitude: { label: "Peak acceleration", low: 0.1, high: 20, log: true, usual: 3, limits: { min: -1e6, max: 1e6, moves: true } },
+  velocity: { label: "Velocity", low: 0.05, high: 3, log: true, usual: 0.6, limits: { moves: true } },
+  period: { label: "Period", low: 0.1, high: 5, log: true, usual: 0.8, limits: { min: 1e-6, max: 1e6 } },
+  duration: { label: "Duration", low: 0.05, high: 5, log: true, usual: 0.4, limits: { above: 0 } },
   cycles: { label: "Cycles", low: 1, high: 20, log: false, usual: 2 },
   phase: { label: "Phase", low: 0, high: 6.2832, log: false, usual: 0 },
-  n: { label: "Main cycles", low: 1, high: 10, log: false, whole: true, usual: 1 },
+  n: { label: "Main cycles", low: 1, high: 10, log: false, whole: true, usual: 1, limits: { min: 1, max: 1000, whole: true } },
 };
 /** @type {Words} */
 const TITLES = {

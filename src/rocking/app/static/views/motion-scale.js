@@ -1,23 +1,15 @@
 /** How strong: a factor on the motion, by slider and by number. */
-import { html, useSignal } from "/parts/preact.js";
+import { html } from "/parts/preact.js";
 import { NumberField, Slider } from "/parts/fields.js";
 
 const LEAST = 0.1;
 const MOST = 10;
 
 /** A slider and a number that say the same factor. @param {{ value: number, on: (value: number) => unknown }} props */
-export const Scale = ({ value, on }) => {
-  const nought = useSignal(false);
-  /** @param {number} next */
-  const take = (next) => {
-    nought.value = next === 0;
-    if (next !== 0) on(next);
-  };
-  return html`
-    <div class="motion-scale">
-      <${Slider} label="Scale of the motion" min=${LEAST} max=${MOST} log
-        value=${Math.min(Math.max(Math.abs(value), LEAST), MOST)} on=${take} />
-      <${NumberField} label="Factor" value=${value} min=${-1000} max=${1000} step=${0.05} on=${take}
-        help="A negative factor turns the motion round." error=${nought.value && "Not 0: nothing would move."} />
-    </div>`;
-};
+export const Scale = ({ value, on }) => html`
+  <div class="motion-scale">
+    <${Slider} label="Scale of the motion" min=${LEAST} max=${MOST} log
+      value=${Math.min(Math.max(Math.abs(value), LEAST), MOST)} on=${on} />
+    <${NumberField} label="Factor" value=${value} min=${-1000} max=${1000} step=${0.05} moves on=${on}
+      help="A negative factor turns the motion round." />
+  </div>`;

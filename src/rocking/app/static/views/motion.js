@@ -2,7 +2,7 @@
 import { batch, computed, html, render, signal } from "/parts/preact.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
-import { Button, Card, Note, Segmented } from "/parts/fields.js";
+import { Button, Card, Note, Segmented, sentence } from "/parts/fields.js";
 import { createAnswer } from "/views/answer.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
 import { Pulse, forgetPulses, usualPulse } from "/views/motion-pulse.js";
@@ -76,7 +76,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
   const Editor = /** @type {any} */ (EDITORS)[way.value];
   const waits = way.value === "record" && record.waiting.value;
   // what is measured is not what the form shows: another way, a file that waits, an error
-  const stale = motion && (faulty.value || waits || wayOf(motion) !== way.value);
+  const stale = motion && ((faulty.value && !refused) || waits || wayOf(motion) !== way.value);
   return html`
     <header class="view-head"><h1>Motion of the ground</h1>
       <p class="lead">Drop a record, choose a pulse or draw a synthetic motion; it is measured at once.</p></header>
@@ -84,7 +84,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
       <div class="motion-left"><${Card} title="The motion">
         <${Segmented} label="Where the motion comes from" options=${WAYS} value=${way.value} on=${choose} />
         <div class="motion-editor">${Editor && html`<${Editor} app=${app} motion=${wayOf(motion) === way.value ? motion : null}
-          record=${record} lost=${refused?.status === 404} onChange=${set} />`}</div>
+          record=${record} lost=${refused?.status === 404} blamed=${refused && blamedOf(refused.message)} onChange=${set} />`}</div>
         ${motion && html`<${Scale} value=${motion.scale ?? 1} on=${(scale) => app.inputs.set("motion", { ...motion, scale })} />`}<//></div>
       <div class="motion-right">
         <div aria-live="polite" data-testid="motion-refusal">
@@ -97,6 +97,13 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
         ${answer && html`<${Result} app=${app} answer=${answer} part=${part.value} time=${time} stale=${stale} />`}
       </div>
     </div>`;
+};
+
+// A motion without energy is one of a factor or a peak of 0, or so small that its square is.
+/** @param {string} message */
+const blamedOf = (message) => {
+  if (/must have energy/.test(message)) return { key: "amplitude", words: "Not 0: nothing would move." };
+  return { key: /(\w+) must /.exec(message)?.[1].toLowerCase(), words: sentence(message) };
 };
 
 /** @param {Server.MotionInput} motion @param {boolean} faulty @param {boolean} waits */
