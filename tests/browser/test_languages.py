@@ -226,3 +226,35 @@ def test_a_saved_picture_speaks_it(open_page: Callable[..., Any]) -> None:
     )
     row = next(row for row in ROWS if row["en"] == "Body")
     assert re.findall("<text[^>]*>([^<]*)</text>", saved) == [row["it"], "Body"]
+
+
+WIDER = "document.documentElement.scrollWidth - innerWidth"
+CROWDED = """() => [...document.querySelectorAll('[role=tab][data-view]')].filter((tab) => {
+  const words = document.createRange();
+  words.selectNodeContents(tab);
+  const [said, box] = [words, tab].map((each) => each.getBoundingClientRect());
+  const sign = parseFloat(getComputedStyle(tab, '::before').width);
+  return said.right > box.right + 0.5 || said.left < box.left + sign || tab.scrollWidth > tab.clientWidth;
+}).map((tab) => tab.textContent)"""
+LONG = """() => document.querySelectorAll('.scene-choice select').forEach((box) => {
+  box.add(new Option('Mehrstufiges Schließungsmodell für unebene Grundflächen', 'x', true, true));
+})"""
+
+
+def test_long_words_fit_a_phone(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
+    """In German no step is wider than a phone, no name of a step runs into the next, whatever a choice is called."""
+    page = open_page(link(), locale="de", viewport={"width": 320, "height": 800})
+    for step in page.locator("[role=tab][data-view]").evaluate_all("tabs => tabs.map(tab => tab.dataset.view)"):
+        page.locator(f"#tab-{step}").click()
+        page.wait_for_selector(f"#view-{step}[data-ready=true]")
+        if step in ANSWERED:
+            page.locator(ANSWERED[step]).first.wait_for()
+        page.wait_for_load_state("networkidle")
+        page.evaluate(LONG)
+        for width in (320, 360, 390):
+            page.set_viewport_size({"width": width, "height": 800})
+            assert page.evaluate(WIDER) <= 0, (step, width)
+    for width in (320, 360, 390, 700, 1000, 1400):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate(CROWDED) == [], width
+    shot(page, "language de phone")
