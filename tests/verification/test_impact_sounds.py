@@ -18,7 +18,7 @@ from rocking.errors import MeasurementError
 from rocking.identification.readers import read_measurement
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import law_misfit
-from rocking.identification.readers.sound import impacts_heard
+from rocking.identification.readers.sound import _begun, impacts_heard
 
 pytestmark = pytest.mark.verifies(room="evidence")
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
@@ -67,6 +67,45 @@ def test_impacts_are_found(decibels, share, median):
     errors = errors_of(ROOMS, decibels)
     assert errors.shape[0] >= share * ROOMS - (0 if CAMPAIGN else 1)
     assert np.median(np.abs(errors)) < median
+
+
+@pytest.mark.verifies(
+    "closed form",
+    "clicks of low modes that a push of .9 ms sets off, in noise, begun when it begins",
+    within="2e-4 s",
+    control="the first sample of their mean beyond five deviations of the noise comes 3e-4 s late, or more",
+)
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_what_rises_slowly_is_not_picked_late(seed):
+    """Six clicks of modes from 215 to 900 Hz, three times as loud as the noise at their loudest.
+
+    When they begin is known to a deviation that is stated, of less than 2e-4 s.
+    """
+    rng = np.random.default_rng(seed)
+    modes, weights = np.array([215.0, 340.0, 430.0, 650.0, 900.0]), np.array([1.4, 0.3, 1.2, -0.9, 0.8])
+    begins = 0.2 * np.arange(1, 7) + 1e-3 * rng.uniform(size=6)
+    time_of = np.arange(int(1.5 * RATE)) / RATE
+    sound = sum(rocking_sounds.struck(time_of - each, modes, np.full(5, 0.02), weights, 9e-4) for each in begins)
+    sound = sound / np.abs(sound).max() + rng.normal(0.0, 0.3, time_of.size)
+    late = rng.uniform(1e-3, 3e-3)
+    places = np.rint((begins + late) * RATE).astype(np.int64)
+    after, share = _begun(sound, RATE, places)
+    found = after @ share
+    assert found == pytest.approx(-late, abs=2e-4)
+    assert np.sqrt(share @ (after - found) ** 2) < 2e-4
+    mean = np.mean([sound[place - int(0.02 * RATE) : place + int(0.01 * RATE)] for place in places], axis=0)
+    first = np.flatnonzero(np.abs(mean) > 5.0 * mean[: int(0.01 * RATE)].std())[0] / RATE - 0.02
+    assert first > -late + 3e-4
+
+
+@pytest.mark.verifies("behaviour", "hum that clips for more than a third of the time", within="refused, and why")
+def test_a_sound_whose_hum_is_clipped_is_refused():
+    """Where most samples are at the limit, clicks are cut away: no times are given."""
+    sound = rocking_sounds.rocking(FIRST, 15.0).samples
+    hum = np.sin(2.0 * np.pi * 50.0 * np.arange(sound.size) / RATE)
+    with pytest.raises(MeasurementError, match=r"clipped, more than 33 %: record at a lower level"):
+        heard(np.clip(sound + 2.0 * hum, -0.8, 0.8))
+    assert heard(np.clip(sound, -0.8 * np.abs(sound).max(), None)).times.size == 11
 
 
 @pytest.mark.verifies("negative control")

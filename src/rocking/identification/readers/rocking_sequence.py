@@ -31,6 +31,8 @@ _RATIOS = (0.5, 1.25)
 _SEEDS, _CLICKS, _MOST = 24, 80, 60
 _MISSED = -3.0
 _FEWEST, _SHRUNK, _SHARE = 7, 0.9, 0.7
+_ECHO = 0.1
+"""Power of an echo over that of its impact, at most."""
 _CHANCE = 23.0
 """Between the scores of seven impacts in quiet rooms, 25.9 at least, and of rain taken for seven, 20.6."""
 _LARGEST_SCATTER, _LARGEST_ALTERNATION, _SLOWEST_FALL = 0.05, 0.25, 0.985
@@ -238,7 +240,10 @@ def why_no_rocking(
     if lawful.fall > _SLOWEST_FALL or times[-1] - times[-2] > _SHRUNK * (times[1] - times[0]):
         return f"its intervals do not shrink (by {lawful.fall:.3f} from one to the next)"
     mine = strengths[found.members]
-    as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[found.members], 0.1))
+    as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[found.members], 0.25))
+    before = np.searchsorted(found.members, np.arange(strengths.size), side="right")[:, None] - [1, 2]
+    last = np.where(before >= 0, mine[np.maximum(before, 0)], 0.0).max(axis=1)
+    as_loud &= strengths >= _ECHO * last  # of the louder foot, if feet are not as loud
     own = as_loud[found.members].sum()
     why = None
     if own < _SHARE * as_loud.sum():

@@ -9,7 +9,8 @@ from itertools import product
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.signal import oaconvolve
+from scipy.linalg import cholesky, solve_toeplitz, solve_triangular, toeplitz
+from scipy.signal import lfilter, oaconvolve
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import MeasurementError
@@ -20,8 +21,15 @@ from rocking.identification.readers.rocking_sequence import find_sequence, law_m
 
 _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
-_PICK_BEFORE, _PICK_AFTER, _PICK_STEP = 0.016, 0.006, 1e-4
-_RISES, _LOUDER = (1e-4, 5e-4, 1e-3, 2e-3), np.geomspace(0.3, 3000.0, 14)
+_SILENT, _FROM, _EARLIEST, _LATEST, _UNTIL, _RING = -0.026, -0.014, -0.010, 0.004, 0.006, 0.030
+"""Where noise is measured, what is looked at, where a click may begin, how far it rings, about its place [s]."""
+
+_PICK_STEP, _PAST, _FAILED = 9e-5, 6, 0.05
+"""Step of that [s]; samples from which noise is foretold; density of beginnings if that fails, one of a thousand."""
+
+_RISES, _LOUD = (3e-4, 8e-4), np.geomspace(0.5, 500.0, 6)
+"""How long an impact pushes [s]; power of a click over that of the noise."""
+
 _ROUNDS, _PEAKS, _APART, _RIVAL, _FAR = 6, 10, 5e-4, 0.25, 2e-3
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
@@ -30,13 +38,12 @@ _INDEPENDENT, _FAILS, _LOOSE = (
     10.0,
     3e-3,
 )  # independent numbers of a click; how well feet are tied before that is looked at [s]
-_AGREED, _PICKED, _NEAR, _MOST = 30.0, (0.6, 0.9), 3e-4, 30.0
-"""Weights of what ties the feet: of modes that agree, and of the picks in the white and the sharp sound, with which the
-right tie of 207 rooms at 8 dB is likeliest."""
+_AGREED, _MOST = 30.0, 30.0
+"""Weight of modes that agree, with which the right tie of 207 rooms at 8 dB is likeliest; most that the law says."""
 
-_LEAST, _SEARCHED, _ALIKE_REACH = 5, 0.15, 0.008
-_LIKE = 0.15
-"""Of 180 rooms at 8 dB impacts that the times alone missed had about .18 and more, noise where none was .14 at most."""
+_LEAST, _SEARCHED, _ALIKE_REACH, _AROUND = 5, 0.15, 0.012, 0.040
+_LIKE = 1.1
+"""Of 140 rooms at 8 dB 149 of 151 last impacts had more, and 146 of 148 places behind the last one less."""
 _BAND = (150.0, 9_000.0)
 
 
@@ -60,22 +67,26 @@ def onsets(
     time between the two feet [s]. A time is nan where another of the same click is as likely.
     """
     feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
-    found, alike, picks, means = times.copy(), np.ones(times.size), [], []
+    found, alike, begun, means = times.copy(), np.ones(times.size), [], []
     all_places, unsure = _chosen(sharp, rate, times, orders, feet)
     for here in feet:
         places = all_places[here]
         alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
-        picks.append([_first(_mean(each, rate, places, _PICK_BEFORE, _PICK_AFTER), rate) for each in (white, sharp)])
-        found[here] = (places + _parts(sharp, rate, places)) / rate + picks[-1][0]
+        after, share = _begun(white, rate, places)
+        begun.append(share)
+        found[here] = (places + _parts(sharp, rate, places)) / rate + after @ share
         means.append(_mean(sharp, rate, places, _QUIET, _RINGING))
     if len(feet) < 2:
         return found, float(np.median(alike)), 0.0
     off = np.arange(-_FARTHEST, _FARTHEST, _STEP)
-    apart = np.subtract(picks[1], picks[0])
+    one, two = begun
+    step = after[1] - after[0]
+    apart = float(after @ (two - one))
+    ties = np.convolve(two, one[::-1]) / step
+    picked = np.interp(off + apart, (np.arange(ties.size) - after.size + 1) * step, ties, left=0.0, right=0.0)
     law = law_misfit(found + np.outer(off, orders % 2), orders)
-    likely = _AGREED * _agreement(means[0], means[1], rate, off + apart[0]) - 0.5 * np.minimum(law - law.min(), _MOST)
-    for weight, pick in zip(_PICKED, apart - apart[0], strict=True):
-        likely -= weight * np.log1p(((off - pick) / _NEAR) ** 2)  # a pick may fail
+    likely = _AGREED * _agreement(means[0], means[1], rate, off + apart) - 0.5 * np.minimum(law - law.min(), _MOST)
+    likely += np.log(picked + _FAILED)
     share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
     later = float(share @ off)  # the mean has the least square error where several ties are likely
@@ -116,25 +127,27 @@ def revised(
 def _resembling(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, asked: tuple[int, float, float]
 ) -> tuple[float, float]:
-    """Return what is most like the impacts before on the same foot: when, and its correlation times how loud it is.
+    """Return what is most like the impacts before on the same foot: when, and how sure.
 
-    An order is asked for, about when, and how far from it.
+    An order is asked for, about when, and how far from it. Sure is by how many deviations of what is around, noise and
+    the echoes of the other foot, it is like them, times how nearly as loud it is as the last of them.
     """
     order, about, reach = asked
     earlier = np.flatnonzero((orders < order) & (orders % 2 == order % 2))
-    begin, end = int(_BEFORE * rate), int(_AFTER * rate)
-    first, last = max(int((about - reach) * rate), begin), min(int((about + reach) * rate), sharp.size - end)
-    if earlier.size < 2 or last <= first:
+    begin, end, around = int(_BEFORE * rate), int(_AFTER * rate), max(_AROUND, reach)
+    first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), sharp.size - end)
+    if earlier.size < 2 or last <= first or about - reach >= last / rate:
         return about, 0.0
     places = _arrangements(sharp, rate, times[earlier])[0]
     cuts = _cuts(sharp, rate, places, _BEFORE, _AFTER)
     mean = cuts.mean(axis=0)
     match = np.correlate(sharp[first - begin : last + end], mean, "valid")
-    peak = int(match.argmax())
-    own = sharp[first + peak - begin : first + peak + end]
-    alike = match[peak] / np.sqrt((own @ own) * (mean @ mean) + np.finfo(float).tiny)
+    off = (np.arange(first, first + match.size) / rate - about) / reach
+    likely = np.where(np.abs(off) <= 1.0, np.exp(-2.0 * off**2), 0.0)  # far from where it is asked for it is less so
+    peak = int((match * likely).argmax())
+    sure = match[peak] * likely[peak] / (1.4826 * np.median(np.abs(match)) + np.finfo(float).tiny)
     loud = match[peak] / max(float(cuts[-1] @ mean), np.finfo(float).tiny)
-    return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), float(alike * min(loud, 1.0))
+    return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), float(sure * np.clip(loud, 0.0, 1.0))
 
 
 def _likeness(cuts: FloatArray) -> FloatArray:
@@ -284,22 +297,41 @@ def _mean(sound: FloatArray, rate: float, places: IntArray, before: float, after
     return np.asarray(_cuts(sound, rate, places, before, after).mean(axis=0))
 
 
-def _first(values: FloatArray, rate: float) -> float:
-    """Return when a burst begins in a sound that is quiet first, from the middle of the cut [s].
+def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return how long after some samples the clicks on one foot may begin [s], and how likely, 1 together.
 
-    Its power grows as the square of the time, for a while: the likeliest beginning of all whiles and strengths.
+    Their mean is noise first, then a random sound of their spectrum that grows while the impact pushes. Such normal
+    numbers have a likelihood, and what rises slowly, as low modes do, is not picked late.
     """
     step = max(1, round(_PICK_STEP * rate))
-    quiet = values[: int(0.6 * _PICK_BEFORE * rate)] ** 2
-    noise = float(np.median(quiet)) / 0.4549 + np.finfo(float).tiny  # of the square of a normal number
-    power = (values[: values.size // step * step].reshape(-1, step) ** 2).sum(axis=1) / noise
-    quiet_before = np.concatenate(([0.0], np.cumsum(power)[:-1]))
-    best = np.full(power.size, -np.inf)
-    for rise, louder in product(_RISES, _LOUDER):
-        ramp = 1.0 + louder * np.minimum((np.arange(power.size) + 0.5) * step / rate / rise, 1.0) ** 2
-        behind = np.correlate(np.pad(power, (0, power.size - 1)), 1.0 / ramp, "valid")
-        best = np.maximum(best, -0.5 * (quiet_before + behind + step * np.cumsum(np.log(ramp))[::-1]))
-    return float(best[:-4].argmax() * step / rate - _PICK_BEFORE)
+    cuts = _cuts(white, rate, places, -_SILENT, _RING)
+    cuts = cuts[:, : cuts.shape[1] // step * step].reshape(places.size, -1, step).mean(axis=2)
+    rate /= step
+    quiet, first, last, until = (int((at - _SILENT) * rate) for at in (_FROM, _EARLIEST, _LATEST, _UNTIL))
+    before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: _PAST + 1]
+    before[0] = 1.000001 * before[0] + np.finfo(float).tiny
+    # what noise foretells of itself is taken away: echoes, and what is left of hum
+    cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), 1.0, cuts, axis=1)
+    noise = np.median(cuts[:, :quiet] ** 2) / 0.4549 + np.finfo(float).tiny  # of the square of a normal number
+    window = np.hanning(cuts.shape[1] - first)
+    power = (np.abs(rfft(window * cuts[:, first:], 2 * window.size)) ** 2).mean(axis=0)
+    clicks = np.maximum(power - noise * (window @ window), 1e-9 * power.max() + np.finfo(float).tiny)
+    alike = toeplitz(irfft(clicks)[: until - quiet])
+    mean = cuts.mean(axis=0)
+    own = max(float(np.median(mean[:quiet] ** 2)) / 0.4549, 1e-9 * float((mean**2).mean())) + np.finfo(float).tiny
+    mean = mean[quiet:until] / np.sqrt(own)
+    late = np.arange(first, last) - quiet
+    behind = np.array([np.pad(mean[begin:], (0, begin)) for begin in late]).T
+    likely = np.full(late.size, -np.inf)
+    for rise, loud in product(_RISES, _LOUD):
+        grown = 0.5 - 0.5 * np.cos(np.pi * np.minimum((np.arange(mean.size) + 0.5) / (rise * rate), 1.0))
+        root = cholesky(loud * np.outer(grown, grown) * alike / alike[0, 0] + np.eye(mean.size), lower=True)
+        # what is behind a later beginning is fewer numbers of the same covariance, whose root is the first part of it
+        rest = np.cumsum(0.5 * solve_triangular(root, behind, lower=True) ** 2 + np.log(np.diag(root))[:, None], axis=0)
+        likely = np.logaddexp(likely, -rest[mean.size - late - 1, np.arange(late.size)])
+    likely -= 0.5 * np.cumsum(mean**2)[late - 1]
+    share = np.exp(likely - likely.max())
+    return (late + quiet) / rate + _SILENT, share / share.sum()
 
 
 _PIECES = 2000
@@ -309,8 +341,8 @@ _UNHEARD = 3.0
 _TIED = 3e-4
 """Standard deviation of the time between both feet that is told [s]: that of times whose reader states none."""
 
-_FEWEST = 4
-"""Times that identification needs."""
+_FEWEST, _LOST = 4, 1.0 / 3.0
+"""Times that identification needs; share of a sound that tells nothing, since hum or noise clips, not clicks alone."""
 
 _ALIKE = 0.45
 """Between what 80 rocking bodies have, .69 at least at 8 dB, and speech taken for one, .24 at most."""
@@ -324,6 +356,11 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
     if found is None:
         raise recording.error("fewer than three clicks stand out of its noise; nearer to the body, or a quieter room?")
+    lost = float((np.abs(recording.samples) >= 0.999 * np.abs(recording.samples).max(axis=0)).mean(axis=0).max())
+    if lost > _LOST:
+        raise recording.error(
+            f"{100.0 * lost:.0f} % of it is clipped, more than {100.0 * _LOST:.0f} %: record at a lower level"
+        )
     rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
     sharp, white = sharpened(clicks.sound, rate, rough)
     times, alike, _ = onsets(sharp, white, rate, rough, orders)
