@@ -311,7 +311,7 @@ def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray
     before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: _PAST + 1]
     before[0] = 1.000001 * before[0] + np.finfo(float).tiny
     # what noise foretells of itself is taken away: echoes, and what is left of hum
-    cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), 1.0, cuts, axis=1)
+    cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), [1.0], cuts, axis=1)
     noise = np.median(cuts[:, :quiet] ** 2) / 0.4549 + np.finfo(float).tiny  # of the square of a normal number
     window = np.hanning(cuts.shape[1] - first)
     power = (np.abs(rfft(window * cuts[:, first:], 2 * window.size)) ** 2).mean(axis=0)
@@ -321,7 +321,7 @@ def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray
     own = max(float(np.median(mean[:quiet] ** 2)) / 0.4549, 1e-9 * float((mean**2).mean())) + np.finfo(float).tiny
     mean = mean[quiet:until] / np.sqrt(own)
     late = np.arange(first, last) - quiet
-    behind = np.array([np.pad(mean[begin:], (0, begin)) for begin in late]).T
+    behind = np.array([np.pad(mean[begin:], (0, begin)) for begin in late.tolist()]).T
     likely = np.full(late.size, -np.inf)
     for rise, loud in product(_RISES, _LOUD):
         grown = 0.5 - 0.5 * np.cos(np.pi * np.minimum((np.arange(mean.size) + 0.5) / (rise * rate), 1.0))
@@ -363,14 +363,16 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
         )
     rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
     sharp, white = sharpened(clicks.sound, rate, rough)
-    times, alike, _ = onsets(sharp, white, rate, rough, orders)
+    times, alike, tied = onsets(sharp, white, rate, rough, orders)
     why = why_no_rocking(times if np.all(np.diff(times) > 0.0) else rough, found, clicks.contrasts, clicks.strengths)
     if not why and alike < _ALIKE:
         why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
     if why:
         raise recording.error(f"this is no sound of a rocking body: {why}")
+    heard = rough
     rough, orders, members = revised(sharp, rate, rough, orders, members)
-    times, _, tied = onsets(sharp, white, rate, rough, orders)
+    if not np.array_equal(rough, heard):
+        times, _, tied = onsets(sharp, white, rate, rough, orders)
     known = np.isfinite(times)
     if known.sum() < _FEWEST:
         raise recording.error(f"{known.sum()} of its {known.size} clicks can be told in time only; nearer to the body?")
