@@ -298,8 +298,13 @@ def test_no_vertex_lies_under_a_button(open_page: Callable[..., Any], shot: Call
     for outline in ([(0, 0), (2, 0), (2, 1), (0, 1)], [(0, 0), (9, 0), (9, 5), (0, 5)]):
         drawn(page, outline)
         page.get_by_role("button", name="Show the whole body").click()
-        met = page.evaluate(DOTS.replace("each.getAttribute('aria-label')", """
-            document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2)?.closest('.vertex') === each"""))
+        met = page.evaluate(
+            DOTS.replace(
+                "each.getAttribute('aria-label')",
+                """
+            document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2)?.closest('.vertex') === each""",
+            )
+        )
         assert [found for found, *_ in met] == [True] * 4, outline
     shot(page, f"body-board-{width}")
 

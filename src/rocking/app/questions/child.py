@@ -69,7 +69,8 @@ def _answer(folder: str, answer: str, log: str, own: str, words: list[str]) -> N
         register_own()  # the owner's own models, which lie outside
     except RockingError as error:
         sys.exit(f"rocking: {error}")
-    keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]))
+    models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
+    keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
     sys.argv[1:] = words
     run_module("rocking", run_name="__main__")
 
