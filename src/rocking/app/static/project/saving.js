@@ -1,6 +1,7 @@
 /** The project that is open: saved by itself, with undo and redo, in agreement with other tabs. */
 
 import { signal } from "/parts/preact.js";
+import { hush } from "/app/say.js";
 import { formsOf, inputsOf } from "/app/shape.js";
 
 const OPEN = "rocking.project";
@@ -30,11 +31,10 @@ export const createProjects = (app, first) => {
   /** @type {Own[]} */
   let sent = []; // what is on its way, or went on one from which no answer came
   let refused = false; // what was sent last was not taken, and never will be as it is
-  /** @type {(() => void) | null} */
-  let quiet = null; // takes back the words that something was not saved
+  let complaint = ""; // said of what was not saved, until it is
   /** @type {Promise<any>} */
   let line = Promise.resolve();
-  saving.subscribe((state) => state === "saved" && quiet?.());
+  saving.subscribe((state) => state === "saved" && hush(complaint));
 
   // What is lent from elsewhere is on the screen, and not in the project.
   const own = () => {
@@ -103,7 +103,7 @@ export const createProjects = (app, first) => {
       refused = error.status >= 400 && error.status < 500 && ![401, 403, 408, 409, 429].includes(error.status);
       if (error.kind !== "offline") sent.pop();
       if (error.kind === "conflict") await differ(document);
-      else if (!["offline", "forbidden"].includes(error.kind)) quiet = app.say(`Not saved: ${error.message}`, "error");
+      else if (!["offline", "forbidden"].includes(error.kind)) app.say(complaint = `Not saved: ${error.message}`, "error");
     }
   });
   /** @param {Own} mine */

@@ -43,7 +43,7 @@ const Inventory = ({ app, questions }) => {
       : !(strength > 0) ? { key: "level", words: "How strong is the shaking? A number above 0 is needed." }
         : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "The number of motions is a whole number above 0." } : "";
     if (wrong.value) return;
-    const list = await corrected(files.value[0]).catch((error) => void app.say(error.message, "error"));
+    const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
     if (!list) return;
     if (list.sha !== files.value[0].sha) files.value = [list];
     fixed.value = {};
