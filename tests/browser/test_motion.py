@@ -322,7 +322,7 @@ def test_it_fits_a_phone(open_page: Callable[..., Any], shot: Callable[..., Path
 
 @pytest.mark.parametrize(("label", "given"), [("Peak acceleration", ["0", "1e9"]), ("Period", ["0", "-2"])])
 def test_a_wrong_number_is_marked_at_its_field(view: Any, label: str, given: list[str]) -> None:
-    """What no pulse can have is refused beside its box, and the motion stays as it was; a number that can be is taken."""
+    """What no pulse can have is refused beside its box, and the motion stays as it was; others are taken."""
     box = view.get_by_test_id("pulse-parameters").get_by_label(f"{label}, exactly")
     for text in given:
         box.fill(text)
@@ -336,7 +336,7 @@ def test_a_wrong_number_is_marked_at_its_field(view: Any, label: str, given: lis
 
 @pytest.mark.parametrize("pulse", ["sine:amplitude=0,period=1", "sine:amplitude=3,period=-2"])
 def test_what_the_server_refuses_is_marked_at_its_field(open_page: Callable[..., Any], pulse: str) -> None:
-    """A link with a wrong number shows it marked, and in German nothing is said in English; corrected, it is measured."""
+    """A link with a wrong number shows it marked, in German without English; corrected, it is measured."""
     page = open_page(link(pulse) + "&view=motion", locale="de")
     box = page.locator("[data-testid=pulse-parameters] .exact input[aria-invalid=true]")
     expect(box).to_have_count(1)

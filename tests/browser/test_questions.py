@@ -1,6 +1,7 @@
 """Doors to what takes longer: does it stand, which objects stand, what does an impact cost."""
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -257,3 +258,52 @@ def test_no_bar(open_page: Callable[..., Any], view: str, width: int) -> None:
         ".filter(e => e.getBoundingClientRect().height < 39.5).map(e => e.textContent || e.id)"
     )
     assert low == []
+
+
+@pytest.mark.parametrize("view", ["inventory", "measure", "records", "space"])
+def test_a_missing_file_is_asked_for_where_it_is_dropped(open_page: Callable[..., Any], view: str) -> None:
+    """Asked without a file, the drop place is marked and has the keyboard; a file takes the mark away."""
+    section = open_page(view=view).locator(f"#view-{view}")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    drop = section.locator(".drop").first
+    expect(drop).to_have_class("drop wrong")
+    expect(drop.get_by_role("button").first).to_be_focused()
+    expect(drop.get_by_role("button").first).to_have_accessible_description(re.compile("was sent yet"))
+    drop.locator("input[type=file]:not([webkitdirectory])").set_input_files(
+        {"name": "a.csv", "mimeType": "", "buffer": b"a,b\n1,2\n"}
+    )
+    expect(drop).not_to_have_class(re.compile("wrong"))
+
+
+def drifting() -> bytes:
+    """Return times of impacts whose coefficient falls from one to the next."""
+    times, pause = [0.0], 0.8
+    for k in range(15):
+        times.append(times[-1] + pause)
+        pause *= 0.95 - 0.012 * k
+    return ("time [s]\n" + "\n".join(f"{each:.5f}" for each in times) + "\n").encode()
+
+
+def test_a_refusal_names_fields_of_the_page(
+    open_page: Callable[..., Any], served: Any, until: Callable[..., None]
+) -> None:
+    """It has the keyboard, calls a file as it is called, and the field that it names is asked with."""
+    page = open_page(view="measure")
+    section = page.locator("#view-measure")
+    section.locator("input[type=file]").first.set_input_files(
+        {"name": "drift.csv", "mimeType": "", "buffer": drifting()}
+    )
+    expect(section.get_by_role("list", name="Files")).to_contain_text("drift.csv")
+    section.get_by_label("The body").select_option("no")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    refusal = section.get_by_test_id("outcome").get_by_role("alert")
+    expect(refusal).to_contain_text("drift.csv: No coefficient", timeout=LONG)
+    expect(refusal).to_contain_text("choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d.")
+    assert not re.search(r"--|svg|=true", refusal.inner_text())
+    expect(refusal).to_be_focused()
+    before = len(served.api("questions", method="GET")["questions"])
+    section.get_by_label("What an impact takes").select_option("yes")
+    section.get_by_role("button", name="Ask", exact=True).click()
+    until(page, lambda: len(served.api("questions", method="GET")["questions"]) > before)
+    question = served.api("questions", method="GET")["questions"][0]
+    assert "trend = true" in served.api(f"questions/{question['id']}", method="GET")["toml"]

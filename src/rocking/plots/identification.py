@@ -77,6 +77,8 @@ def identification_picture(found: Identification) -> "Figure":
         axis.set_xlabel(words)
     if found.refused:
         axes[1].set_title("refused: no coefficient", loc="left", fontsize=7.5)
+        for axis in (axes[1], axes[3]):  # scales of nothing would be read as results
+            axis.set_axis_off()
     else:
         _posterior(axes[1], found)
         _impacts(axes[3], found)

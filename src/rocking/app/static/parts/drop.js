@@ -1,12 +1,14 @@
 /** Files by dropping or choosing. */
 
 import { html, useRef } from "/parts/preact.js";
+import { freshId } from "/app/dom.js";
 import { Button } from "/parts/fields.js";
 
-/** A place for files; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
- * @param {{ label: string, name?: string, accept?: string, many?: boolean, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
-export const Drop = ({ label, name = label, accept, many = false, on, testid, children, ...more }) => {
+/** A place for files; `error` is what is wrong with it; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
+ * @param {{ label: string, name?: string, accept?: string, many?: boolean, error?: string, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
+export const Drop = ({ label, name = label, accept, many = false, error = "", on, testid, children, ...more }) => {
   const [one, folder] = [useRef(null), useRef(null)];
+  const about = useRef(freshId("drop")).current;
   /** @param {boolean} over */
   const mark = (over) => (/** @type {DragEvent & { currentTarget: HTMLElement }} */ event) => {
     event.preventDefault();
@@ -28,15 +30,16 @@ export const Drop = ({ label, name = label, accept, many = false, on, testid, ch
     take(files);
   };
   return html`
-    <div class="drop" onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop} ...${more}>
+    <div class=${`drop ${error ? "wrong" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop} ...${more}>
       <p>${label}</p>
       <div class="toolbar">
-        <${Button} onClick=${() => one.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
+        <${Button} aria-describedby=${about} onClick=${() => one.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
         ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
           <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory onChange=${chosen} />`}
       </div>
       <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} data-testid=${testid}
         onChange=${chosen} />
+      <p id=${about} class="field-help field-error">${error}</p>
       ${children}
     </div>`;
 };

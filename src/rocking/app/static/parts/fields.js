@@ -30,9 +30,8 @@ const useTyped = (now, written, says) => {
 /** What was refused of a form: the `key` of the field that it is about, and `words`. */
 export const Refused = createContext({});
 
-// What was refused of a field, until it is changed.
-/** @param {string} [name] @returns {[string, () => void]} */
-const useRefused = (name) => {
+/** What was refused of a field, until it is changed. @param {string} [name] @returns {[string, () => void]} */
+export const useRefused = (name) => {
   const refused = useContext(Refused);
   const past = useRef(null);
   return [name && refused.key === name && past.current !== refused ? refused.words : "", () => (past.current = refused)];
@@ -174,11 +173,11 @@ export const KeyField = ({ name, facts, ...more }) => {
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 
-/** Words as a sentence. @param {string} words */
-export const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** Words as a sentence; a file that it begins with is called as it is. @param {string} words */
+export const sentence = (words) => `${/^\S*\.\w/.test(words) ? words[0] : words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
 
 /** The first field of a form that someone sees and that is wrong. @param {Element} form */
-export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true]")]).find((box) => box.offsetParent !== null);
+export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);
 
 /** Put the keyboard on the first field that is wrong, once it is drawn so. @param {Element} form */
 export const toWrong = (form) => setTimeout(() => wrongIn(form)?.focus());

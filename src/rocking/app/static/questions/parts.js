@@ -3,7 +3,7 @@
 import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
 import { Drop } from "/parts/drop.js";
-import { Button, Note, Refused, sentence, toWrong } from "/parts/fields.js";
+import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
 
 /** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them.
  * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
@@ -39,14 +39,17 @@ export const recordEndings = ({ info }) => [
   ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
 ].join(",");
 
-/** Files by dropping or choosing; `files` is a signal of what was sent: of one at a time the last, or all with `adds`.
- * @param {{ label: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, adds?: boolean, questions: Questions, app: App }} props */
-export const FileDrop = ({ files, many = false, adds = many, questions, app, help, ...more }) => {
+/** Files by dropping or choosing; `files` is a signal of what was sent: of one at a time the last, or all with `adds`; `name` is what
+ * a refusal calls it.
+ * @param {{ label: string, name?: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, adds?: boolean, questions: Questions, app: App }} props */
+export const FileDrop = ({ files, name = "files", many = false, adds = many, questions, app, help, ...more }) => {
+  const [error, changed] = useRefused(name);
   const sending = useSignal("");
   /** @param {File[]} chosen */
   const take = async (chosen) => {
     /** @type {SentFile[]} */
     let sent = [];
+    changed();
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
         if (chosen.length > AT_ONCE) sending.value = `Sending ${k + 1} of ${chosen.length}`;
@@ -63,7 +66,7 @@ export const FileDrop = ({ files, many = false, adds = many, questions, app, hel
     sending.value = "";
   };
   return html`
-    <${Drop} many=${many} on=${take} ...${more}>
+    <${Drop} many=${many} error=${error} on=${take} ...${more}>
       <p class="field-help">${help}</p>
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
@@ -75,21 +78,32 @@ export const FileDrop = ({ files, many = false, adds = many, questions, app, hel
 
 const AT_ONCE = 6; // files that are sent beside one another
 
+/** What a command says, as one says it who has the fields of the page in place of options and files. @param {string} words */
+export const ofThePage = (words) => WAYS.reduce((said, [option, field]) => said.replace(option, field), words);
+/** @type {[RegExp, string][]} */
+const WAYS = [
+  [/ See [\w-]+\.\w+\.$/, ""],
+  [/\btry (?:--set identify\.)?trend=true/i, "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d"],
+  [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?unit=/, "say it under \u201cUnit\u201d"],
+  [/; least_barrier= takes such poses together/, ""],
+];
+
 // What stands of a question: being answered, refused, or its answer.
 /** @param {{ questions: Questions, answer: any }} props */
 const Outcome = ({ questions, answer: Answer }) => {
   const question = questions.shown.value;
-  const heading = useRef(null);
+  const [heading, refusal] = [useRef(null), useRef(null)];
   const done = question?.state === "done";
   useEffect(() => {
-    if (done && !isTyping()) heading.current?.focus();
-  }, [done, question?.id]);
+    if (!isTyping()) (done ? heading : refusal).current?.focus();
+  }, [question?.state, question?.id]);
   if (!question) return null;
   return html`
     <section class="card question" aria-labelledby="outcome-title" data-testid="outcome" data-state=${question.state}>
       <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
-      ${question.state === "refused" && html`<${Note} kind="error" role="alert" words=${sentence(question.message)} />
+      ${question.state === "refused" && html`
+        <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" words=${sentence(ofThePage(question.message))} /></div>
         <${Drawing} question=${question} alt="What was found all the same" />`}
       ${question.state === "stopped" && html`<${Note} words="It was stopped." />`}
       ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
@@ -150,7 +164,7 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
 
 /** A refusal of the server as fields know it: the key that it names, and its words. @param {string} message */
 export const refusedOf = (message) => ({
-  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1].toLowerCase(), words: sentence(message),
+  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1].toLowerCase(), words: sentence(ofThePage(message)),
 });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders

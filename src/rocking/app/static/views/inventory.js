@@ -39,7 +39,7 @@ const Inventory = ({ app, questions }) => {
     event.preventDefault();
     const strength = Number(level.value.replace(",", "."));
     const many = Number(count.value);
-    wrong.value = !files.value.length ? "No list was sent yet."
+    wrong.value = !files.value.length ? { key: "files", words: "No list was sent yet." }
       : !(strength > 0) ? { key: "level", words: "How strong is the shaking? A number above 0 is needed." }
         : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "The number of motions is a whole number above 0." } : "";
     if (wrong.value) return;

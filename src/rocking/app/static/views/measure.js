@@ -5,7 +5,7 @@ import { number } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, Field, Note } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
-import { Drawing, FileDrop, QuestionView, useForm } from "/questions/parts.js";
+import { Drawing, FileDrop, QuestionView, ofThePage, useForm } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
 
 const KINDS = [
@@ -13,7 +13,7 @@ const KINDS = [
   ["angular velocity", "angular velocity"], ["acceleration", "acceleration"],
 ];
 
-const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "identify" };
+const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "identify", trend: "" };
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -25,7 +25,8 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Measure = ({ app, questions }) => {
   const form = useForm(app, "measure", FIRST);
-  const [files, kind, column, unit, known, what] = Object.keys(FIRST).map((name) => form.at(name));
+  const [files, kind, column, unit, known, what, trend] = Object.keys(FIRST).map((name) => form.at(name));
+  /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const recording = useSignal(null);
   const listen = async () => {
@@ -50,12 +51,12 @@ const Measure = ({ app, questions }) => {
       return;
     }
     const inputs = app.inputs.get();
-    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : "Nothing was sent yet.");
+    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : { key: "files", words: "Nothing was sent yet." });
     if (wrong.value) return;
     const [file] = files.value;
     const table = { file: file.name, kind: kind.value, column: column.value.trim(), unit: unit.value.trim() };
     const measurement = Object.fromEntries(Object.entries(table).filter(([, words]) => words));
-    const tables = { measurement, ...(known.value === "yes" ? { body: inputs.body } : {}) };
+    const tables = { measurement, ...(trend.value ? { identify: { trend: true } } : {}), ...(known.value === "yes" ? { body: inputs.body } : {}) };
     questions.ask(tables, { [file.name]: file.sha }, `What ${file.name} says`);
   };
   return html`
@@ -73,7 +74,8 @@ const Measure = ({ app, questions }) => {
       <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
       <${Field} label="Column" value=${column} help="Of a table with several." />
       <${Field} label="Unit" value=${unit} help="Where the table states none." />
-      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />`}
+      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
+      <${Choice} label="What an impact takes" value=${trend} options=${[["", "is the same share each time"], ["yes", "changes steadily"]]} />`}
     <//>`;
 };
 
@@ -101,7 +103,7 @@ const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${(answer.doubts ?? []).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
+    ${(answer.doubts ?? []).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${ofThePage(words)} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
     ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0])}
       rows=${models.map((/** @type {object} */ each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;

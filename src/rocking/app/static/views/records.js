@@ -23,6 +23,7 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Records = ({ app, questions }) => {
   const form = useForm(app, "records", FIRST);
+  /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   /** @type {{ files: SentFile[], curve: SentFile[], steps: RecordStep[] }} */
   const { files, curve, steps } = form.value;
@@ -38,7 +39,7 @@ const Records = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    wrong.value = !records.length ? "No record was sent yet."
+    wrong.value = !records.length ? { key: "files", words: "No record was sent yet." }
       : shown === "target" && form.value.code === "file" && !curve.length ? "The file of the spectrum was not sent yet." : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");

@@ -111,7 +111,7 @@ const Space = ({ app, questions }) => {
       ${asked.value === "simulate" && html`
         <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
         ${shaken.value === "records" && html`
-          ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} label=${`A record along ${axis}, or`}
+          ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${`A record along ${axis}, or`}
             accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
           <${Field} label="Unit of the accelerations" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
         <${Field} label="Motion" name="times" unit="times" value=${times} inputmode="decimal" />
@@ -124,7 +124,7 @@ const Space = ({ app, questions }) => {
 /** The table of the body, with what was said alone; missing: what has to be said first.
  * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} said @returns {{ table?: any, missing?: Wrong }} */
 const bodyOf = (scan, said) => {
-  if (!scan) return { missing: "No scan was sent yet." };
+  if (!scan) return { missing: { key: "files", words: "No scan was sent yet." } };
   const kind = scan.name.replace(/^.*\./s, "").toLowerCase();
   if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: `${kind.toUpperCase()} files do not say their unit: choose it.` } };
   const density = said.density ? parseNumber(said.density) : null;
@@ -149,7 +149,7 @@ const shakenBy = (app, shaken, records, units, times) => {
   const along = Object.fromEntries(sent.map(([axis, one]) => [axis, { record: one.name, ...(units ? { units } : {}) }]));
   return {
     tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, one]) => [one.name, one.sha])),
-    missing: sent.length ? "" : "No record was sent yet.",
+    missing: sent.length ? "" : { key: "x", words: "No record was sent yet." },
   };
 };
 
