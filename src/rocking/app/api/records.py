@@ -29,10 +29,8 @@ _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
 _WAY = (
-    "this page takes no StationXML. Turn counts into m/s2 in Python and send the file that is written: "
-    'record = MiniSeed.with_response("station.xml").read(Source.of_path(Path("counts.mseed"))), then '
-    'write_record(record, "motion.mseed", "miniseed"); write_record is in rocking.motions.formats, MiniSeed and Source '
-    "in its modules miniseed and source"
+    "give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and choose the StationXML; "
+    "the record that is taken away can be dropped here"
 )
 Need = Literal["format", "units", "time_step", "component"]
 Word = Annotated[str | None, Query(min_length=1, max_length=200)]

@@ -113,7 +113,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   return html`
     <div ref=${place} class="record-editor">
       <${Drop} label="Drop a record here, or" name="Record file" on=${([file]) => record.take(file)} testid="record-file" data-testid="record-drop">
-        <p class="field-help">${`Formats: ${formats}. miniSEED must hold accelerations: counts need a StationXML, which is not read here.`}</p><//>
+        <p class="field-help">${`Formats: ${formats}. miniSEED must hold accelerations: counts and their StationXML are read in the step Records.`}</p><//>
       <div aria-live="polite" data-testid="record-answer">
         ${said.value?.words && html`<${Note} ...${said.value} />`}
         ${lost && html`<${Note} kind="warning" words="The server no longer has this file: drop it once more." />`}</div>
