@@ -336,7 +336,7 @@ def test_a_wrong_number_is_marked_at_its_field(view: Any, label: str, given: lis
 
 @pytest.mark.parametrize("pulse", ["sine:amplitude=0,period=1", "sine:amplitude=3,period=-2"])
 def test_what_the_server_refuses_is_marked_at_its_field(open_page: Callable[..., Any], pulse: str) -> None:
-    """A link with a wrong number shows it marked, in German without English; corrected, it is measured."""
+    """A link with a wrong number shows it marked, and in German nothing is said in English; corrected, it is asked."""
     page = open_page(link(pulse) + "&view=motion", locale="de")
     box = page.locator("[data-testid=pulse-parameters] .exact input[aria-invalid=true]")
     expect(box).to_have_count(1)
