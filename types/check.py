@@ -28,7 +28,12 @@ def fetch() -> str:
         return ""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    if subprocess.run(["npm", "pack", "--silent", release], cwd=folder, check=False, capture_output=True).returncode:
+    if subprocess.run(
+        ["npm", "pack", "--silent", "--fetch-retries=1", "--fetch-timeout=20000", release],
+        cwd=folder,
+        check=False,
+        capture_output=True,
+    ).returncode:
         return release
     (archive,) = folder.glob("*.tgz")
     found = hashlib.sha512(archive.read_bytes()).hexdigest()
