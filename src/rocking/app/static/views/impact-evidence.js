@@ -46,7 +46,7 @@ const cloudPicture = (answer, foot, width) => measuredPicture({
 const intervalPicture = (answer, foot, width) => {
   const rows = rowsOf(answer, foot);
   const low = lowest(rows.map((row) => row.low));
-  const high = highest(rows.map((row) => row.value), 1);
+  const high = highest(rows.map((row) => row.high ?? row.value), 1);
   return rowPicture(rows, {
     width, domain: [Math.floor(low * 20) / 20, high + 0.002], label: "coefficient of restitution r",
     title: "Coefficient of restitution of this body", testid: "interval-picture",
