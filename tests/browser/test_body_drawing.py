@@ -144,8 +144,12 @@ def test_a_mass_puts_densities_aside(page: Any) -> None:
     settled(page, "Mass kg", 0.5 * 0.5 * (2.0 * 2400.0 + 0.5 * 4800.0))
     mass.fill("300")
     page.get_by_label("Shape").select_option("block")
+    expect(page.get_by_label("Width")).to_be_visible()
+    expect(mass).to_have_value("300")
     settled(page, "Mass kg", 300.0)
     page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    expect(mass).to_have_value("300")
     settled(page, "Mass kg", 300.0)
 
 

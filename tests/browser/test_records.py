@@ -111,6 +111,7 @@ def test_what_is_no_record(open_page: Callable[..., Any], tmp_path: Path) -> Non
     expect(section.get_by_role("alert")).to_contain_text("etter.txt: not recognised as any of")
     section.get_by_role("button", name="Leave out letter.txt").click()
     section.get_by_label(DROP).set_input_files(record(tmp_path / "hall.txt", 1.0))
+    expect(section.get_by_role("list", name="Files")).to_contain_text("hall.txt")
     outcome = asked(section)
     expect(outcome.get_by_test_id("verdict")).to_contain_text("g before")
 

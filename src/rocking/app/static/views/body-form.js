@@ -16,9 +16,12 @@ export const Form = ({ app, body, refusal }) => {
   const { units } = body;
   /** @param {string} next */
   const become = (next) => {
-    kept.set(shape, body);
+    const now = app.inputs.get().body; // what was typed a moment ago is not drawn yet
+    kept.set(shapeOf(now), now);
     const before = kept.get(next);
-    app.inputs.set("body", before ? renamed(inUnits(before, units), body.name) : asShape(body, next, app.body.get()));
+    const again = before ? renamed(inUnits(before, units), now.name) : asShape(now, next, app.body.get());
+    const { mass } = tableOfShape(now);
+    app.inputs.set("body", mass === tableOfShape(again).mass ? again : withKey(again, "mass", mass, replaced));
   };
   /** @param {string} key */
   const put = (key) => (/** @type {any} */ value) => app.inputs.set("body", withKey(app.inputs.get().body, key, value, replaced));
@@ -28,7 +31,7 @@ export const Form = ({ app, body, refusal }) => {
   return html`<div class="stack">
     <${Choice} label="Shape" value=${shape} on=${become}
       options=${[...Object.entries(SHAPES).map(([key, { words }]) => [key, words]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
-    <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(body, next))} />
+    <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(app.inputs.get().body, next))} />
     ${shape === "mass_points" ? html`<${Note} words="This body is a set of masses from a file." />`
       : html`<${Sizes} key=${own} shape=${shape} units=${units} table=${tableOfShape(body)} put=${put} error=${error} />`}
     <${Field} label="Name" value=${body.name} placeholder="optional" maxlength="80" translate=${false}
