@@ -88,8 +88,10 @@ export const NumberField = ({
 /** A line of text, or as `tag` says a "textarea"; `type` is that of its box.
  * @param {FieldProps<any> & { id?: string, tag?: string, type?: string }} props */
 export const Field = ({
-  label, id = useId("field"), name, unit, value, on, help, error: told = "", kind, hidden, tag = "input", type = "text", ...more
+  label, id: given, name, unit, value, on, help, error: told = "", kind, hidden, tag = "input", type = "text", ...more
 }) => {
+  const own = useId("field");
+  const id = given ?? own;
   const [now, put] = bound(value, on);
   const [refused, changed] = useRefused(name);
   const error = told || refused;
@@ -223,7 +225,7 @@ const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
 // "1,000" is one to us and a thousand to others: say how it was read.
 /** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
-  && `Read as ${number(parseNumber(text))}: the comma is the decimal sign. For thousands leave it out.`;
+  && `Read as ${number(parseNumber(text), 6)}: the comma is the decimal sign. For thousands leave it out.`;
 
 /** @param {string} text @param {number} turns @param {{ min?: number, max?: number, step?: number }} limits */
 const stepped = (text, turns, { min, max, step }) => {

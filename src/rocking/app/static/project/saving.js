@@ -124,12 +124,13 @@ export const createProjects = (app, first) => {
       clash.value = { theirs, mine };
       return;
     }
+    const all = done && same(own(), mine); // nothing was typed meanwhile
     sent = [];
-    if (done) changed.clear();
+    if (all) changed.clear();
     known(theirs);
     last = theirs.document;
-    saving.value = done ? "saved" : "saving";
-    if (!done) save(); // as above
+    saving.value = all ? "saved" : "saving";
+    if (!all) save(); // as above
   };
 
   // Shows what others changed beside what is changed here; false, and nothing is done, where both changed a part.
@@ -198,7 +199,12 @@ export const createProjects = (app, first) => {
   channel?.addEventListener("message", async ({ data }) => {
     if (!here.value || data.id !== here.value.id || data.version <= here.value.version) return;
     if (changed.size) await save();
-    else await inLine(async () => showUnlessTyped(known(await ask(""))));
+    else await inLine(async () => {
+      const theirs = await ask("");
+      // What was typed meanwhile follows the version before: saving it joins both, or asks.
+      if (changed.size) save();
+      else show(known(theirs));
+    }).catch(() => {}); // it is looked at again with the next change
   });
   addEventListener("pagehide", () => {
     leaving = true;

@@ -15,6 +15,11 @@ export const createQuestions = (app, ...commands) => {
   let timer = 0;
   let ticket = 0;
   const here = () => app.project.here.value.id;
+  computed(here).subscribe(() => { // what was found stays in its project
+    ticket += 1;
+    clearTimeout(timer);
+    [shown.value, all.value] = [null, []];
+  });
   const busy = computed(() => shown.value && !ENDED.has(shown.value.state));
 
   const look = async () => {

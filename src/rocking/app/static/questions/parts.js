@@ -11,9 +11,10 @@ export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).c
 
 /** The keys that were filled in, as a table has them; what is no number is left for the server to refuse.
  * @param {{ [key: string]: string }} texts @param {{ [key: string]: Server.KeyFacts }} known */
-export const filled = (texts, known) => Object.fromEntries(Object.entries(texts).filter(([, text]) => text.trim()).map(
-  ([key, text]) => [key, valueOf(text.trim(), known[key].kind)],
-));
+export const filled = (texts, known) => Object.fromEntries(
+  Object.entries(texts).filter(([key, text]) => known[key] && typeof text === "string" && text.trim())
+    .map(([key, text]) => [key, valueOf(text.trim(), known[key].kind)]),
+);
 /** @param {string} text @param {string} kind */
 const valueOf = (text, kind) => {
   if (kind === "true or false") return text === "true";
@@ -23,14 +24,13 @@ const valueOf = (text, kind) => {
   return partsOf(text).map((part) => parseNumber(part) ?? part);
 };
 /** @param {string} text */
-const partsOf = (text) => {
-  const parts = text.trim().split(/\s*;\s*|,\s+|\s+/);
-  return parts.length > 1 ? parts : text.split(",");
-};
-// One number, or several; null where something is none.
+const apart = (text) => text.trim().split(/\s*;\s*|,\s+|\s+/);
+/** @param {string} text */
+const partsOf = (text) => (apart(text).length > 1 ? apart(text) : text.split(","));
+// One number, or several, which blanks too hold apart; null where something is none.
 /** @param {string} text */
 const numbersOf = (text) => {
-  const found = parseNumber(text) ?? partsOf(text).map(parseNumber);
+  const found = (apart(text).length > 1 ? null : parseNumber(text)) ?? partsOf(text).map(parseNumber);
   return Array.isArray(found) && found.includes(null) ? null : found;
 };
 
@@ -84,7 +84,7 @@ export const ofThePage = (words) => WAYS.reduce((said, [option, field]) => said.
 const WAYS = [
   [/ See [\w-]+\.\w+\.$/, ""],
   [/\btry (?:--set identify\.)?trend=true/i, "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d"],
-  [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?unit=/, "say it under \u201cUnit\u201d"],
+  [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?(?:time_)?unit=/, "say it under \u201cUnit\u201d"],
   [/; least_barrier= takes such poses together/, ""],
 ];
 

@@ -16,10 +16,12 @@ const OLDER = "The picture and the numbers are those of the last valid sizes.";
 export const mount = (section, app) => {
   const [body, facts, refusal, faulty] = [app.inputs.get().body, app.body.get(), app.body.error(), ""].map(signal);
   const others = signal(0); // how often the whole document became another
+  let was = JSON.stringify(app.inputs.get());
   const editor = createEditor(app);
   app.inputs.subscribe((inputs, changed) => changed.has("body") && batch(() => {
     body.value = inputs.body;
-    if (changed.size > 1) others.value += 1;
+    if (changed.size > 1 && JSON.stringify(inputs) !== was) others.value += 1; // all is asked again after signing in too
+    was = JSON.stringify(inputs);
     editor.tell();
   }));
   const look = () => (faulty.value = app.faults.sentence({ view: "body", but: app.body.error()?.message }));

@@ -1,6 +1,6 @@
 /** In space: a scan, what was mended in it, in which ways it can stand, what its edges cost, and how it moves. */
 
-import { html, render, useSignal } from "/parts/preact.js";
+import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
 import { Button, Choice, Field } from "/parts/fields.js";
@@ -51,12 +51,17 @@ const Space = ({ app, questions }) => {
   /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const scan = scanOf(form.value);
+  /** @param {string} sha */
+  const choose = (sha) => {
+    chosen.value = sha;
+    pose.value = null; // which was of the scan before
+  };
   const scans = {
     get value() { return files.value; },
     set value(next) {
       const added = next.filter((/** @type {SentFile} */ { sha }) => files.value.every((/** @type {SentFile} */ one) => one.sha !== sha));
       files.value = next;
-      if (added.length) chosen.value = added.at(-1).sha;
+      if (added.length) choose(added.at(-1).sha);
     },
   };
   /** @param {Event} event */
@@ -71,13 +76,13 @@ const Space = ({ app, questions }) => {
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
     const held = parseNumber(friction.value) ?? NaN;
     const kept = parseNumber(coefficient.value) ?? NaN;
-    wrong.value = body.missing || (!(held > 0) && { key: "friction", words: "The friction is a number above 0." })
+    wrong.value = body.missing || (moves && !(held > 0) && { key: "friction", words: "The friction is a number above 0." })
       || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "The coefficient is a number from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
     const name = scan?.name ?? (inputs.body.name || app.project.here.value.name);
     const tables = {
-      body: body.table, response: { friction: held }, ...motion.tables,
-      ...(moves ? { restitution: law.value ? { model: law.value } : { value: kept } } : {}),
+      body: body.table, ...motion.tables,
+      ...(moves ? { response: { friction: held }, restitution: law.value ? { model: law.value } : { value: kept } } : {}),
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     const sent = scan ? { [scan.name]: scan.sha } : {};
@@ -88,14 +93,16 @@ const Space = ({ app, questions }) => {
     pose.value = { number: number_, up: direction };
     app.say(`What is asked next is of the body in pose ${number_}.`);
   };
+  // One component as long as the view lives: another one would draw the scene anew at every letter that is typed.
+  const Found = useRef((/** @type {any} */ { answer, question }) => html`
+    <${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`).current;
   return html`
-    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask}
-      answer=${({ answer, question }) => html`<${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`}
+    <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="What does a scan do?"
       lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
       <${FileDrop} label="Drop a scan here, or" adds accept=${SCANS} files=${scans} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
-      <${Choice} label="Body" value=${chosen} chosen=${scan?.sha ?? chosen.value} options=${[
+      <${Choice} label="Body" value=${chosen.value} on=${choose} chosen=${scan?.sha ?? chosen.value} options=${[
         ...(files.value.length ? files.value.map((/** @type {SentFile} */ { name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
       ${chosen.value === OWN ? html`<p class="field-help">A block or a section, over its depth.</p>` : html`
       <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
@@ -113,7 +120,7 @@ const Space = ({ app, questions }) => {
         ${shaken.value === "records" && html`
           ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${`A record along ${axis}, or`}
             accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
-          <${Field} label="Unit of the accelerations" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
+          <${Field} label="Unit of the accelerations" name="record units" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
         <${Field} label="Motion" name="times" unit="times" value=${times} inputmode="decimal" />
         <${Field} label="Friction" name="friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
         <${Choice} label="Impacts" value=${law} options=${LAWS} />
