@@ -97,7 +97,7 @@ class Library {
         for (std::thread& worker : crew) worker.join();
     }
 
-    // One history: its results, as `run` has them, its nodes and impacts, their contacts, and what a response asks besides.
+    // One history whose steps never cross samples: its results, its nodes and impacts, their contacts, and what a response asks besides.
     nb::tuple trace(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double rest_speed, double tolerance, Whole most_events) const {
         expect(numbers.shape(0) == 1 && numbers.shape(1) == kNumbers && choices.shape(0) == 1 && choices.shape(1) == kChoices && results.shape(0) == 1 && results.shape(1) == kResults &&
                    counts.shape(0) == 1 && counts.shape(1) == kCounts,

@@ -115,6 +115,10 @@ def test_a_sound_whose_hum_is_clipped_is_refused():
     with pytest.raises(MeasurementError, match=r"clipped, more than 33 %: record at a lower level"):
         heard(np.clip(sound + 2.0 * hum, -0.8, 0.8))
     assert heard(np.clip(sound, -0.8 * np.abs(sound).max(), None)).times.size == 11
+    for dead in (0.0, 0.2):  # of a recorder that keeps two channels and hears with one
+        both = Recording("made", np.column_stack([sound, np.full_like(sound, dead)]), RATE)
+        assert impacts_heard(both).times.size == 11
+        assert both.clipped == Recording("made", sound[:, None], RATE).clipped
 
 
 @pytest.mark.verifies("negative control")

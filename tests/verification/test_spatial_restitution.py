@@ -243,7 +243,8 @@ def test_flat_faces_exactly(seed, agreement, monkeypatch):
     true = in_slices(points[hull.vertices], along, offset)
     agreement(abs(exact_moment(part, line, along) / true - 1.0), 1e-11)
     monkeypatch.setattr(integrals, "samples", lambda *_: [])
-    assert abs(exact_moment(part, line, along) / true - 1.0) > 1e-3 or seed % 2 == 0
+    if seed % 2:
+        assert abs(exact_moment(part, line, along) / true - 1.0) > 1e-3
 
 
 @pytest.mark.verifies(

@@ -5,6 +5,7 @@ about the foot; friction is told by how the half cycles go on. So slips are foll
 """
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ _LIFTS, _MOST = 0.95, 2.0  # coefficients that are thought of: over what lifts a
 _HIGHER, _COARSE = 1.3, 0.06  # above what holds the feet, where the search begins; its steps of ln of the coefficient
 _FIRST, _GROWS, _LONGEST = 0.4, 1.25, 0.05  # steps from the likeliest one: over the deviation, the last one; at most
 _LARGE = 0.1  # scatter
+_SAME = 1e-9  # of ln of the coefficient
 _STEPS = 15  # of a fit that begins near its end
 _EXCLUDED, _ROSE = 12.0, 6.0  # fall of ln of the evidence beyond which none is tried; of the objective, to try harder
 _UNLIKELY = math.exp(-0.5 * 1.645**2)  # over the likeliest: what is excluded, of one side, at 95 %
@@ -38,7 +40,7 @@ def with_sliding(found: ForcedPosterior) -> tuple[ForcedPosterior, IntervalEstim
     top = max(math.log(_HIGHER * min(found.problem.demand(found.fit.x), 0.5 * _MOST)), least + _COARSE)
     far = math.inf if found.problem.odd or scatter > _LARGE else 3.0 * _EXCLUDED  # feet that hold explain little
     tried = _walked(problem, _begun(problem, found), (noise, scatter), (top, -_COARSE, 1.0), (least, top, far))
-    if not math.isfinite(max(value for _, value in tried.values())):
+    if top > math.log(_MOST) or sum(math.isfinite(value) for _, value in tried.values()) < 2:
         return found, IntervalEstimate(math.nan, math.exp(least), math.nan), ("Feet that slide were not followed.",)
     _, lowest, above = _quantiles(tried)
     if above < _PERHAPS:
@@ -103,7 +105,7 @@ def _walked(
     (noise, scatter), (ln, step, grows), (lowest, highest, excluded) = known, steps, within
     tried: dict[float, tuple[Fit, float]] = {}
     best, least, value = -math.inf, math.inf, -math.inf
-    while lowest <= ln <= highest and not value < best - excluded:
+    while lowest - _SAME <= ln <= highest + _SAME and not value < best - excluded:
         at, x = sliding(problem, ln), x.copy()
         x[FRICTION] = ln
         fit = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)
@@ -112,7 +114,10 @@ def _walked(
                 x = fitted(at, x, noise, softer, same, _STEPS).x
             other = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)
             fit = other if other.objective < fit.objective else fit
-        value = ForcedPosterior(at, fit, noise).ln_evidence if math.isfinite(fit.objective) else -math.inf
+        value = -math.inf
+        if math.isfinite(fit.objective):
+            with suppress(np.linalg.LinAlgError):  # a half cycle of which too little is left tells no state
+                value = ForcedPosterior(at, fit, noise).ln_evidence
         tried[ln], best, least, x = (fit, value), max(best, value), min(least, fit.objective), fit.x
         ln, step = ln + step, min(max(grows * step, -_COARSE), _COARSE)
     return tried

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray, g
-from rocking.dynamics._contact import slide
+from rocking.dynamics.contact.batch import module
 from rocking.dynamics.plane.equations import angular_acceleration, reactions
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.motions.motion import GroundMotion
@@ -62,7 +62,7 @@ class Flights:
         """Follow them anew, from other velocities and speeds of feet."""
         states = np.zeros((3, *self.rotation.shape))
         states[:, 0] = self.rotation[0], turning, slip
-        slide(*self.asked, states, g)
+        module().slide(*self.asked, states, g)
         return replace(self, rotation=states[0], velocity=states[1], slip=states[2])
 
     @property

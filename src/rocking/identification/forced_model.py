@@ -100,9 +100,9 @@ class Forced:
             first = np.where(seen.joined, np.searchsorted(time, seen.begin + near), first)
             last = np.where(np.append(seen.joined[1:], False), np.searchsorted(time, seen.end - near) - 1, last)
         pieces = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
-        which = np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
-        stride = max(1, math.ceil(which.size / _MOST))
-        return np.concatenate(pieces)[::stride], which[::stride]
+        stride = max(1, math.ceil(sum(piece.size for piece in pieces) / _MOST))
+        pieces = [piece[:: max(1, min(stride, (piece.size - 1) // 2))] for piece in pieces]  # of each the state is told
+        return np.concatenate(pieces), np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
 
     @cached_property
     def line(self) -> FloatArray:

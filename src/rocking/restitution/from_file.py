@@ -72,7 +72,7 @@ def register_own() -> None:
     if not path:
         return
     path = os.environ[_VARIABLE] = str(Path(path).absolute())  # processes of studies start in other folders
-    before, old = _REGISTERED.pop(path, ("", ()))
+    before, old = _REGISTERED.pop(path, (None, ()))
     try:
         source = Path(path).read_text(encoding="utf-8-sig")
         if source == before:

@@ -44,7 +44,7 @@ def models() -> dict[str, type[RestitutionModel]]:
     >>> rk.restitution.models()["ked"].__name__
     'Ked'
     """
-    return {name: _kind(name) for name in _MODELS}
+    return {name: _imported(name, found) for name, found in list(_MODELS.items())}
 
 
 def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
@@ -80,7 +80,7 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
 def withdraw(kind: type[RestitutionModel]) -> None:
     """Let a model no longer be asked for by its name."""
     if _MODELS.get(kind.name) is kind:
-        del _MODELS[kind.name]
+        _MODELS.pop(kind.name, None)
 
 
 def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any) -> RestitutionModel:
@@ -130,7 +130,10 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
 
 
 def _kind(name: str) -> type[RestitutionModel]:
-    found = _MODELS[name]
+    return _imported(name, _MODELS[name])
+
+
+def _imported(name: str, found: type[RestitutionModel] | str) -> type[RestitutionModel]:
     if isinstance(found, str):
         kind: type[RestitutionModel] = getattr(import_module(f"{__package__}.{name.replace('-', '_')}"), found)
         _MODELS[name] = found = kind
@@ -148,7 +151,7 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     given = parameters_in(tail, words, parameters)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
-        there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
+        there, near = ", ".join(list(_MODELS)), checks.nearest(name, _MODELS)
         raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
     return built(_kind(name), name, given), eta
 

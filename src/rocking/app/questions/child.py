@@ -68,7 +68,8 @@ def _answer(folder: str, answer: str, log: str, own: str, words: list[str]) -> N
     try:
         register_own()  # the owner's own models, which lie outside
     except RockingError as error:
-        sys.exit(f"rocking: {error}")
+        sys.stderr.write(f"rocking: {error}\n")
+        sys.exit(2)
     models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
     sys.argv[1:] = words

@@ -62,14 +62,17 @@ def response_on_hull(
     plausibility.warn(plausibility.of_scaled(shaken, scale))
     ground = HullGround.placed(motion, np.eye(3), (math.inf, math.inf), settings.gravity)
     assert settings.friction is not None
+    steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
+    step = min(steps, default=FINE / math.sqrt(settings.gravity / made.size))
+    if duration is not None:
+        samples(step, duration)  # too many are refused before they are computed
     given, horizon, used = settings_on_hull(settings), 0.0 if duration is None else duration, chosen(engine)
     if used == "fast":
         found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=given)
     else:
         found = HullEngine(made, ground, law, settings.friction, given).run(start_of(made, start), horizon)
-    steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
     end = min(until, found.time[-1])
-    time = samples(min(steps, default=FINE / math.sqrt(settings.gravity / made.size)), end)
+    time = samples(step, end)
     return HullResponse(made, ground, str(law), settings, time, found, end, components, scale, ENGINES[used])
 
 

@@ -60,7 +60,7 @@ class Recording:
     def clipped(self) -> int:
         """Runs of samples that stay at the largest value of a channel, three or more."""
         most = 0
-        for channel in self.samples.T:
+        for channel in self.samples.T[np.ptp(self.samples, axis=0) > 0.0]:
             at_limit = np.abs(channel) >= 0.999 * np.abs(channel).max()
             runs = np.diff(np.flatnonzero(np.diff(np.concatenate(([0], at_limit, [0])))))[::2]
             most = max(most, int((runs >= _CLIPPED).sum()))

@@ -356,7 +356,7 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
     if found is None:
         raise recording.error("fewer than three clicks stand out of its noise; nearer to the body, or a quieter room?")
-    lost = float((np.abs(recording.samples) >= 0.999 * np.abs(recording.samples).max(axis=0)).mean(axis=0).max())
+    lost = float(((channel >= 0.999 * channel.max()) | (channel <= 0.999 * channel.min())).mean())
     if lost > _LOST:
         raise recording.error(
             f"{100.0 * lost:.0f} % of it is clipped, more than {100.0 * _LOST:.0f} %: record at a lower level"

@@ -110,7 +110,7 @@ class _Facets:
         return total
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def _facets(part: Part) -> _Facets:
     assert isinstance(part.shape, Polyhedron)
     return _Facets(placed_points(part.shape.vertices, part.rotation, part.translation), part.shape.faces)
