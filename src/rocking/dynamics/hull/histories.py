@@ -87,6 +87,7 @@ def traced(
 ) -> HullHistory:
     """Return one history of the compiled engine as the reference engine keeps it; of its events the impacts alone."""
     code, value = _code(law)
+    _check_mass([(code, value)], [body])
     plane = [*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))]
     numbers = np.array([[value, 1.0, horizon, friction, *plane, *numbers_of(body, start), ground.gravity]])
     library = library_of([body], [ground.motion], ked=code == KED)
@@ -96,6 +97,8 @@ def traced(
         numbers, np.array([[0, 0, code]]), results, counts, *limits
     )
     found = {name: column.item() for name, column in named(results, counts).items()}
+    if not nodes.size:
+        raise InvalidValueError("a number of the start, the ground or the duration is not within [-1e9, 1e9]")
     contacts = [HullContact(*each) for each in zip(_groups(members), _groups(stuck), strict=True)]
     events = [
         HullEvent(time, HullEventKind.IMPACT, HullContact(touching, touching), before, after)
@@ -236,8 +239,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    if any(code == KED and body is not None and body.solid is None for code, _ in codes for body in several):
-        raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
+    _check_mass(codes, several)
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
     states = np.array([[numbers_of(body, each) for each in starts] for body in several])
     planes = np.array(
@@ -333,6 +335,11 @@ def _listed(name: str, values: Any) -> list[Any]:
     if not several:
         raise InvalidValueError(f"{name} must be at least one, got none")
     return several
+
+
+def _check_mass(codes: Sequence[tuple[int, float]], bodies: Sequence[HullBody | None]) -> None:
+    if any(code == KED and body is not None and body.solid is None for code, _ in codes for body in bodies):
+        raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
 
 
 def _code(law: Any) -> tuple[int, float]:
