@@ -44,8 +44,8 @@ const openOver = () => {
   addEventListener("focus", look);
   onSignedIn(() => {
     removeEventListener("focus", look);
-    close();
     said.value = null;
+    close();
   });
 };
 
@@ -57,7 +57,8 @@ const over = (label, what, { stays = false } = {}) => {
     render(null, place);
     place.remove();
   };
-  render(html`<dialog class="over" aria-label=${label} onClose=${gone} onCancel=${(event) => stays && event.preventDefault()}>${what}</dialog>`, place);
+  render(html`<dialog class="over" aria-label=${label} onCancel=${(event) => stays && event.preventDefault()}
+    onClose=${() => (stays && said.value !== null ? dialog.showModal() : gone())}>${what}</dialog>`, place);
   const dialog = /** @type {HTMLDialogElement} */ (place.firstElementChild);
   dialog.showModal();
   return () => dialog.close();

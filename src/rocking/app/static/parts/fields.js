@@ -182,7 +182,10 @@ export const sentence = (words) => `${/^\S*\.\w/.test(words) ? words[0] : words.
 export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);
 
 /** Put the keyboard on the first field that is wrong, once it is drawn so. @param {Element} form */
-export const toWrong = (form) => setTimeout(() => wrongIn(form)?.focus());
+export const toWrong = (form) => setTimeout(() => {
+  for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // else nobody sees it
+  wrongIn(form)?.focus();
+});
 
 /** A button; kind is "primary", "quiet", "danger", "icon" or nothing. */
 export const Button = ({ kind = "", ...more }) => html`<button type="button" class=${`button ${kind}`} ...${more} />`;

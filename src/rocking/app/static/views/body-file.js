@@ -45,7 +45,7 @@ export const BodyFile = ({ app }) => {
     const { file, placed } = held.current;
     if (file && (!placed || JSON.stringify(app.inputs.get().body) === placed)) read();
   };
-  const ofUnit = /unit/.test(wrong.value);
+  const ofUnit = /unit/.test(wrong.value.replace(name.value, ""));
   return html`
     <div ref=${box} class="stack">
       <${Drop} label="Drop a DXF, WKT, GeoJSON or TOML file here" name="Body file" accept=".dxf,.wkt,.txt,.geojson,.json,.toml"

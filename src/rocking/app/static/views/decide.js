@@ -88,7 +88,7 @@ const motions = (inputs, shaken, files, { units, pga }) => {
   if (shaken === "records") {
     const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}) };
     const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
-    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : "No record was sent yet." };
+    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", words: "No record was sent yet." } };
   }
   if (shaken) {
     const level = Number(pga.replace(",", "."));

@@ -40,7 +40,8 @@ const Records = ({ app, questions }) => {
   const ask = (event) => {
     event.preventDefault();
     wrong.value = !records.length ? { key: "files", words: "No record was sent yet." }
-      : shown === "target" && form.value.code === "file" && !curve.length ? "The file of the spectrum was not sent yet." : "";
+      : shown === "target" && form.value.code === "file" && !curve.length
+        ? { key: "curve", words: "The file of the spectrum was not sent yet." } : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
     const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
@@ -158,7 +159,7 @@ const Target = ({ app, form, questions }) => {
   const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${words}`]);
   return html`
     <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
-    ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
+    ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" name="curve" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
       help="Its first line names the columns with units: T [s], Sa [g]." />`
       : html`<div class="fields">${Object.entries(app.info.targets[code].keys).map(([key, facts]) => html`<${KeyField} key=${`${code}.${key}`} name=${key}
         facts=${facts} value=${form.at("of", code, key)} />`)}</div>`}
