@@ -82,7 +82,8 @@ const Space = ({ app, questions }) => {
     const name = scan?.name ?? (inputs.body.name || app.project.here.value.name);
     const tables = {
       body: body.table, ...motion.tables,
-      ...(moves ? { response: { friction: held }, restitution: law.value ? { model: law.value } : { value: kept } } : {}),
+      ...(moves || held > 0 ? { response: { friction: held } } : {}),
+      ...(moves ? { restitution: law.value ? { model: law.value } : { value: kept } } : {}),
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     const sent = scan ? { [scan.name]: scan.sha } : {};
