@@ -68,11 +68,15 @@ def run_rows(
     library: Any, numbers: FloatArray, choices: IntArray, settings: HullSettings, threads: int
 ) -> dict[str, np.ndarray]:
     """Return the results of rows by name: `FLOATS`, NaN without result, and `WHOLES`."""
-    results, counts = np.full((len(numbers), len(FLOATS)), np.nan), np.zeros((len(numbers), len(WHOLES)), np.int64)
+    results, counts = _room(len(numbers))
     library.run(
         numbers, choices, results, counts, settings.rest_speed, settings.tolerance, settings.most_events, threads
     )
     return named(results, counts)
+
+
+def _room(count: int) -> tuple[FloatArray, IntArray]:
+    return np.full((count, len(FLOATS)), np.nan), np.zeros((count, len(WHOLES)), np.int64)
 
 
 def traced(
@@ -91,7 +95,7 @@ def traced(
     plane = [*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))]
     numbers = np.array([[value, 1.0, horizon, friction, *plane, *numbers_of(body, start), ground.gravity]])
     library = library_of([body], [ground.motion], ked=code == KED)
-    results, counts = np.full((1, len(FLOATS)), np.nan), np.zeros((1, len(WHOLES)), np.int64)
+    results, counts = _room(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
     nodes, impacts, members, stuck, struck, least, fell = library.trace(
         numbers, np.array([[0, 0, code]]), results, counts, *limits

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rocking.bodies.solid import Polyhedron, RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid import Part, RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
@@ -72,9 +72,9 @@ class ImpulsePosition:
     def _projected(self, edge: FloatArray, offset: float) -> float:
         """Numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
         total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
-        for part, cloud in zip(self.solid.local_parts, _clouds(self.solid), strict=True):
+        for part in self.solid.local_parts:
             exact = exact_moment(part, point, edge)
-            total += exact if exact is not None else _of_cloud(cloud, edge, offset)
+            total += exact if exact is not None else _of_cloud(_cloud(part), edge, offset)
         return total
 
     def _fitted(self, middle: float, half: float) -> list[float]:
@@ -117,20 +117,14 @@ def _reach(solid: Solid, x: float, y: float) -> float:
     return float(base.centre[0]) * x + float(base.centre[1]) * y + base.radius
 
 
-@lru_cache(maxsize=2)
-def _clouds(solid: Solid) -> list[FloatArray]:
+@lru_cache(maxsize=16)
+def _cloud(part: Part) -> FloatArray:
     # z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction
-    made = []
-    for part in solid.local_parts:
-        if isinstance(part.shape, Polyhedron):
-            made.append(np.empty((6, 0)))  # `exact_moment`
-            continue
-        shape, top = part.shape, float(part.box()[1][2])
-        negligible = _NEGLIGIBLE * shape.moments().mass * top * top
-        batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, height_squared)
-        rows = [np.column_stack([points, part.density * areas]) for points, areas in batches]
-        made.append(np.ascontiguousarray(np.concatenate(rows).T))
-    return made
+    shape, top = part.shape, float(part.box()[1][2])
+    negligible = _NEGLIGIBLE * shape.moments().mass * top * top
+    batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, height_squared)
+    rows = [np.column_stack([points, part.density * areas]) for points, areas in batches]
+    return np.ascontiguousarray(np.concatenate(rows).T)
 
 
 def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
