@@ -18,8 +18,11 @@ from scipy.spatial import ConvexHull
 from benchmarks import spatial_mujoco, table
 from benchmarks.table import Row
 from rocking.conventions import FloatArray, g
-from rocking.dynamics.hull import HullBody, HullGround, HullSettings, hull_histories, standing
-from rocking.dynamics.hull.ground import frame
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.ground import HullGround, frame
+from rocking.dynamics.hull.histories import hull_histories
+from rocking.dynamics.hull.history import HullSettings
+from rocking.dynamics.hull.motion import standing
 from rocking.motions import GroundMotion
 
 BATCH = 50

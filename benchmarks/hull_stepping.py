@@ -11,7 +11,10 @@ from scipy import stats
 
 from benchmarks import hull, time_stepping
 from rocking.conventions import BoolArray, FloatArray
-from rocking.dynamics.hull import HullBody, HullGround, HullSettings, hull_histories
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.histories import hull_histories
+from rocking.dynamics.hull.history import HullSettings
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 

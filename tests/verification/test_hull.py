@@ -14,12 +14,15 @@ from scipy.spatial import ConvexHull
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, histories, hull_histories, standing
+from rocking.dynamics.hull import histories
 from rocking.dynamics.hull import motion as sliding_module
+from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, solve, valid
-from rocking.dynamics.hull.ground import ZERO, added, applied, back, cross, dot, frame, length, scaled
-from rocking.dynamics.hull.history import HullEventKind
-from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, step
+from rocking.dynamics.hull.engine import HullEngine
+from rocking.dynamics.hull.ground import ZERO, HullGround, added, applied, back, cross, dot, frame, length, scaled
+from rocking.dynamics.hull.histories import hull_histories
+from rocking.dynamics.hull.history import HullEventKind, HullSettings
+from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, standing, step
 from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError

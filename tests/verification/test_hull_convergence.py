@@ -14,12 +14,14 @@ import rocking as rk
 from rocking.bodies.shapes import regular_polygon
 from rocking.bodies.solid import Part, Polyhedron, Solid, box, extrusion, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import HullBody, HullEngine, HullGround, HullSettings, histories, hull_histories, standing
+from rocking.dynamics.hull import histories
+from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
-from rocking.dynamics.hull.ground import applied, cross, dot, frame, scaled
-from rocking.dynamics.hull.histories import start_of
-from rocking.dynamics.hull.history import HullEventKind
-from rocking.dynamics.hull.motion import State, energies
+from rocking.dynamics.hull.engine import HullEngine
+from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
+from rocking.dynamics.hull.histories import hull_histories, start_of
+from rocking.dynamics.hull.history import HullEventKind, HullSettings
+from rocking.dynamics.hull.motion import State, energies, standing
 from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import PlausibilityWarning

@@ -13,7 +13,8 @@ from scipy import stats
 
 import rocking as rk
 from rocking.bodies.solid import Solid, box
-from rocking.dynamics.hull import HullBody, histories
+from rocking.dynamics.hull import histories
+from rocking.dynamics.hull.body import HullBody
 
 sys.path.append(str(Path(__file__).parents[2]))  # the time stepping lives beside the benchmarks
 

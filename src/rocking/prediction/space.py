@@ -9,8 +9,11 @@ import numpy as np
 
 from rocking.bodies import MassPoints, Solid
 from rocking.conventions import FloatArray, percent
-from rocking.dynamics.hull import HullBody, HullSettings, histories, standing
+from rocking.dynamics.hull import histories
+from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.histories import HullRows
+from rocking.dynamics.hull.history import HullSettings
+from rocking.dynamics.hull.motion import standing
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.settings import processors
 from rocking.dynamics.space.attitude import product, turn

@@ -8,7 +8,9 @@ from scipy.spatial import ConvexHull
 
 import rocking as rk
 from rocking.bodies.solid import Part, Polyhedron, Solid, box
-from rocking.dynamics.hull import HullBody, HullGround, hull_histories
+from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.hull.ground import HullGround
+from rocking.dynamics.hull.histories import hull_histories
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.errors import RockingError

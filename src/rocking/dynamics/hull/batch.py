@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from rocking.dynamics.parameters import UNIMPOSED
 from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch, made_or_refused
+from rocking.dynamics.space.batch import SpatialBatch, made_or_refused
 from rocking.dynamics.space.ground import SpatialGround, ground_of, joined
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
@@ -78,8 +79,7 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
         "motions": json.dumps([[motion_provenance(part) for part in motion or ()] for motion in motions]),
         "starts": json.dumps(leans), "bodies": json.dumps(facts),
     }  # fmt: skip
-    dimensions = (*DIMENSIONS[:-1], "friction", DIMENSIONS[-1])
-    return SpatialBatch(found.shape, values, found.engine, labels, refused, source, dimensions)
+    return replace(found, values=values, labels=labels, refused=refused, provenance=source)
 
 
 class RowsOnHull:

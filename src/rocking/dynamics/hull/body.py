@@ -20,43 +20,20 @@ from rocking.portable import inverse
 class HullBody:
     """A rigid body that touches the ground with the vertices of its convex hull.
 
-    Parameters
-    ----------
-    vertices : array_like, shape (k, 3)
-        Points of the body; those inside the convex hull, or within one of its facets, are left out [m].
-    mass : float
-        Mass [kg].
-    centre : array_like, shape (3,)
-        Centre of mass, in the axes of the vertices [m].
-    inertia : array_like, shape (3, 3)
-        Inertia tensor about the centre of mass [kg m2].
-    solid : Solid, optional
-        The body as a distribution of mass, for laws of restitution that need it; its own frame is that of the vertices.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is not finite, or no body has such an inertia.
-    GeometryError
-        If the points span no volume, or the centre of mass is not inside their hull.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> cube = HullBody.of(Solid(box(1.0, 1.0, 1.0)))
     >>> len(cube.points), len(cube.hull.normals), cube.size == 0.75**0.5
     (8, 6, True)
     """
 
-    vertices: FloatArray
-    mass: float
-    centre: FloatArray
-    inertia: FloatArray
-    solid: Solid | None = None
+    vertices: FloatArray  # points of the body; those inside the hull, or within a facet, are left out [m]; shape (k, 3)
+    mass: float  # [kg]
+    centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
+    inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)
+    solid: Solid | None = None  # distribution of mass, for laws that need it; its own frame is that of the vertices
     hull: Polytope = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the values and seek the hull."""
         points = checks.real_array("vertices", self.vertices, "m")
         object.__setattr__(self, "vertices", finite("vertices", points, (len(points), 3), "m"))
         object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
@@ -71,24 +48,8 @@ class HullBody:
 
     @classmethod
     def of(cls, solid: Any) -> "HullBody":
-        """Return a solid on the vertices of its hull, as it stands.
-
-        Parameters
-        ----------
-        solid : Solid, SpatialBody or HullBody
-            The solid, or a body that knows of which it is made; round faces are those of `Solid.equilibria`, of 360
-            corners.
-
-        Returns
-        -------
-        HullBody
-            The body, in the solid's own frame; itself if it is one.
-
-        Raises
-        ------
-        InvalidValueError
-            If the body is known by its base alone.
-        """
+        """Return a solid, or a body that knows of which it is made, on the vertices of its hull, as it stands."""
+        # round faces are those of `Solid.equilibria`, of 360 corners
         if isinstance(solid, cls):
             return solid
         if isinstance(solid, SpatialBody) and solid.matter is not None:
@@ -137,18 +98,8 @@ class HullBody:
         return [number[facet] for facet in hull.rolls.tolist()]
 
     def under(self, up: Vector) -> int:
-        """Return the facet through which the vertical through the centre of mass leaves the hull, downward.
-
-        Parameters
-        ----------
-        up : tuple of float
-            Upward in the axes of the body [-].
-
-        Returns
-        -------
-        int
-            Number of the facet.
-        """
+        """Return the facet through which the vertical through the centre of mass leaves the hull, downward."""
+        # up: in the axes of the body [-]
         return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
 
 

@@ -66,24 +66,8 @@ class _Watched(NamedTuple):
 class HullEngine:
     """The reference engine; one object follows one history.
 
-    Parameters
-    ----------
-    body : HullBody
-        The body.
-    ground : HullGround
-        What it stands on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"} or float
-        What an impact costs; a number is the coefficient of a landing of the whole base, where it is not below
-        Housner's [-].
-    friction : float
-        Coulomb coefficient; infinite for vertices that never slide [-].
-    settings : HullSettings, optional
-        How to integrate.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import Solid, box
-    >>> from rocking.dynamics.hull import standing
+    >>> from rocking.dynamics.hull.motion import standing
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value
     'stayed at rest: the ground never lifted it'
@@ -93,8 +77,8 @@ class HullEngine:
         self,
         body: HullBody,
         ground: HullGround,
-        restitution: Any = "housner-3d",
-        friction: float = math.inf,
+        restitution: Any = "housner-3d",  # as `law_of` takes it
+        friction: float = math.inf,  # infinite for vertices that never slide [-]
         settings: HullSettings | None = None,
     ) -> None:
         self.body, self.ground, self.friction = body, ground, friction
@@ -119,20 +103,7 @@ class HullEngine:
     # ---- the course of a history ------------------------------------------------------------------------------------
 
     def run(self, state: State, horizon: float = 0.0) -> HullHistory:
-        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends.
-
-        Parameters
-        ----------
-        state : State
-            As `standing` gives it, or any other above the ground.
-        horizon : float
-            How long to follow the body at least [s].
-
-        Returns
-        -------
-        HullHistory
-            The history at the ends of its steps.
-        """
+        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends."""
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
         self.stood = self.under = self.body.under(frame(state.attitude)[2])

@@ -99,40 +99,21 @@ def normalised(q: tuple[float, ...]) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class HullGround:
-    """The plane that a body stands on, and how it moves.
+    """The plane that a body stands on, and how it moves."""
 
-    Parameters
-    ----------
-    x, y, vertical : GroundMotion, pulse or None
-        Accelerations, in level axes [m/s2].
-    slope : float
-        Angle of the plane from the horizontal [rad].
-    azimuth : float
-        Direction in which it falls, from x towards y [rad].
-    shelf : tuple of float, optional
-        Half sizes of the plane along its two axes from the origin; points beyond do not touch. Edges of the shelf do
-        not touch the body either. None for a plane without end [m].
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-    """
-
-    x: Any = None
+    x: Any = None  # x, y, vertical: GroundMotion, pulse or None, in level axes [m/s2]
     y: Any = None
     vertical: Any = None
-    slope: float = 0.0
-    azimuth: float = 0.0
+    slope: float = 0.0  # angle of the plane from the horizontal [rad]
+    azimuth: float = 0.0  # direction in which it falls, from x towards y [rad]
+    # half sizes of the plane along its two axes; points beyond do not touch, nor do the edges touch the body; None for
+    # a plane without end [m]
     shelf: tuple[float, float] | None = None
-    gravity: float = conventions.g
+    gravity: float = conventions.g  # [m/s2]
     motion: SpatialGround = field(init=False, repr=False)  # the three components on common stretches of time
     level: Frame = field(init=False, repr=False)  # level axes to axes of the plane
 
     def __post_init__(self) -> None:
-        """Check the values and cut the motions to common stretches."""
         checks.within("slope", self.slope, 0.0, 0.5 * math.pi, unit="rad", open_high=True)
         checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
         object.__setattr__(self, "motion", ground_of(self.x, self.y, self.vertical))
@@ -147,24 +128,7 @@ class HullGround:
 
     @classmethod
     def placed(cls, motion: SpatialGround, level: Any, shelf: Any, gravity: float) -> "HullGround":
-        """Return a ground from its motion and its axes.
-
-        Parameters
-        ----------
-        motion : SpatialGround
-            The three components, in level axes [m/s2].
-        level : array_like, 9 numbers
-            Level axes to axes of the plane [-].
-        shelf : array_like, 2 numbers
-            Half sizes of the plane, infinite without end [m].
-        gravity : float
-            Acceleration of gravity [m/s2].
-
-        Returns
-        -------
-        HullGround
-            The ground.
-        """
+        """Return a ground from its motion, its axes as 9 numbers and the half sizes of its shelf, or infinite ones."""
         ends = float(shelf[0]), float(shelf[1])
         made = cls(shelf=None if ends == (math.inf, math.inf) else ends, gravity=gravity)
         object.__setattr__(made, "motion", motion)
@@ -178,20 +142,7 @@ class HullGround:
         return applied(self.level, (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
-        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane.
-
-        Parameters
-        ----------
-        stretch : int
-            Number of the stretch.
-        start, span : float
-            When the span starts, and its duration [s].
-
-        Returns
-        -------
-        list of tuple of float
-            Coefficients, from the power 0 [m/s2].
-        """
+        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane."""
         rows = self.motion.part(stretch, start, span)
         found = []
         for k in range(rows.shape[1]):
@@ -200,32 +151,10 @@ class HullGround:
         return found
 
     def under(self, place: Vector) -> bool:
-        """Return whether there is ground under a point.
-
-        Parameters
-        ----------
-        place : tuple of float
-            The point [m].
-
-        Returns
-        -------
-        bool
-            False beyond the shelf.
-        """
+        """Return whether there is ground under a point: not beyond the shelf."""
         return self.shelf is None or self.inside(place) >= 0.0
 
     def inside(self, place: Vector) -> float:
-        """Return the distance of a point from the nearest edge of the shelf.
-
-        Parameters
-        ----------
-        place : tuple of float
-            The point [m].
-
-        Returns
-        -------
-        float
-            Below zero beyond it [m].
-        """
+        """Return the distance of a point from the nearest edge of the shelf, below zero beyond it [m]."""
         assert self.shelf is not None
         return min(self.shelf[0] - abs(place[0]), self.shelf[1] - abs(place[1]))

@@ -20,9 +20,10 @@ from rocking.dynamics.hull.motion import State
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.settings import CompiledEngine, check_progress, check_threads, processors
 from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome, Status, overturned
+from rocking.outcome import Outcome, Status
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 FLOATS = (
@@ -153,27 +154,6 @@ def _positions(body: HullBody, *, ked: bool) -> FloatArray:
 PIECE = 1 << 14
 """Histories that are handed to the engine at a time."""
 
-DIMENSIONS = ("body", "ground", "scale", "restitution", "friction", "start")
-
-
-@dataclass(frozen=True, eq=False)
-class HullBatch:
-    """Results of many histories; every array has the shape (body, ground, scale, restitution, friction, start)."""
-
-    shape: tuple[int, ...]  # how many of each
-    # results by name, one after another; codes of `Outcome` and `Status`; NaN where there is no result
-    values: dict[str, np.ndarray] = field(repr=False)
-    engine: str  # which engine ran
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Return an array by name."""
-        return self.values[name].reshape(self.shape)
-
-    @property
-    def overturned(self) -> FloatArray:
-        """1 where it ends in another stable pose, 0 where not, NaN where there is no result."""
-        return overturned(self["outcome"])
-
 
 def hull_histories(  # noqa: PLR0913 - the axes of a study
     bodies: HullBody | Sequence[HullBody | None],
@@ -188,52 +168,18 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     engine: str = "auto",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
-) -> HullBatch:
+) -> SpatialBatch:
     """Return the outcome of every combination of bodies, grounds, scales, restitutions, frictions and starts.
 
-    Parameters
-    ----------
-    bodies : HullBody or sequence of them
-        Bodies; None for one that cannot be, whose rows are refused by themselves.
-    grounds : HullGround or sequence of them
-        What they stand on, and how that moves.
-    restitution : {"housner-3d", "ked-3d"}, FixedPosition, float or list of them
-        What an impact costs, as `HullEngine` takes it.
-    friction : float or array_like
-        Coulomb coefficients; infinite for vertices that never slide [-].
-    scales : float or array_like
-        Factors on the motions [-].
-    start : SpatialStart or sequence of them, optional
-        How they lean at the beginning, in the axes of their vertices, the lowest vertex at rest on the ground.
-    horizon : float
-        How long to follow them at least [s].
-    settings : HullSettings, optional
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine runs; the reference takes hundreds of times as long.
-    threads : int, optional
-        How many threads; all processors by default. Results do not depend on it.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-
-    Returns
-    -------
-    HullBatch
-        The results; a row that could not be computed has its reason in `status`.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range, or a law needs a solid that a body has not.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import Solid, box
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> batch = hull_histories(body, HullGround(slope=0.2), engine="reference")
     >>> batch["outcome"].ravel().tolist(), batch["status"].ravel().tolist()
     ([0], [0])
     """
+    # bodies: None for one that cannot be, whose rows are refused by themselves; restitution: as `HullEngine` takes it;
+    # friction: infinite for vertices that never slide; start: in the axes of the vertices, the lowest at rest on the
+    # ground; horizon: how long to follow them at least [s]; the reference engine takes hundreds of times as long
     check_threads(threads)
     check_progress(progress)
     settings = settings or HullSettings()
@@ -257,7 +203,8 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
     ked = any(code == KED for code, _ in codes)
     rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), ked=ked)
-    return HullBatch(shape, rows.run(numbers, choices, threads or processors(), progress), rows.words)
+    found = rows.run(numbers, choices, threads or processors(), progress)
+    return SpatialBatch(shape, found, rows.words, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,19 +67,8 @@ class HullHistory:
 
 @dataclass(frozen=True)
 class HullSettings:
-    """How to integrate.
+    """How to integrate; see `Settings`."""
 
-    Parameters
-    ----------
-    tolerance : float
-        Bound on the local error of a step, over size, radian and their rates [-].
-    rest_speed : float
-        Speed over sqrt(g size) below which a vertex that leaves would fall back at once, and whose square is the
-        energy over m g size at which a body on nearly a whole facet comes to rest [-].
-    most_events : int
-        A history with more is stopped with a status.
-    """
-
-    tolerance: float = 1e-12
-    rest_speed: float = 1e-5
+    tolerance: float = 1e-12  # bound on the local error of a step, over size, radian and their rates [-]
+    rest_speed: float = 1e-5  # over sqrt(g size); its square is the energy over m g size at which a body comes to rest
     most_events: int = 100_000

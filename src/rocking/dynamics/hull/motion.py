@@ -215,24 +215,8 @@ def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ..
 
 
 def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
-    """Return a body at rest that stands in the axes of its vertices, or on a facet, leaning by an angle.
-
-    Parameters
-    ----------
-    body : HullBody
-        The body.
-    facet : int, optional
-        Number of the facet to stand on, as `body.hull` has them; the axes of the vertices stand upright if None.
-    tilt : float
-        How far it leans [rad].
-    azimuth : float
-        In which direction, from x towards y [rad].
-
-    Returns
-    -------
-    State
-        The lowest vertex is on the ground, below or beside the origin; the centre of mass is over the origin.
-    """
+    """Return a body at rest on a facet, or in the axes of its vertices, leaning by an angle from x towards y [rad]."""
+    # the lowest vertex is on the ground, the centre of mass over the origin
     attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
     if facet is not None:
         down = unit(body.facets[facet])
