@@ -1,12 +1,4 @@
-"""A body on its two feet as the planar equations see it: levers, height and inertia per unit of mass.
-
-The centre of mass moves by ``x`` to the right and ``z`` upwards, the body turns by theta clockwise. A foot at the lever
-``d`` from the plumb line of the centre (``-b_left`` or ``+b_right``) then lies at ``r`` from the centre,
-
-    r_x = d cos(theta) - h sin(theta),    r_z = -d sin(theta) - h cos(theta),
-
-and moves with ``v_t = x' + r_z theta'`` along the ground and ``v_n = z' - r_x theta'`` away from it.
-"""
+"""A body on its two feet as the planar equations see it, per unit of mass (docs/theory/contact.md, Feet)."""
 
 import math
 from dataclasses import dataclass

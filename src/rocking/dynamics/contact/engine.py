@@ -1,9 +1,7 @@
 """The planar engine: Taylor series between events, events to rounding, complementarity at each of them.
 
-It follows one body at a time in the frame of the ground: rest, sliding, rocking, rocking while sliding, flight. Series
-of order 30 shorten themselves until their last terms are below rounding; every step ends on a sample of the motion, so
-that nothing is integrated across a kink; an event is a zero of a polynomial. When nothing moves, the next stretch that
-could lift or move the body is looked up instead of stepped to.
+Every step ends on a sample of the motion, so that nothing is integrated across a kink; an event is a zero of a
+polynomial. When nothing moves, the next stretch that could lift or move the body is looked up instead of stepped to.
 """
 
 import math

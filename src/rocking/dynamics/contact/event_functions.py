@@ -1,11 +1,7 @@
 """Which mode follows: complementarity of contact forces and motions; what must stay above zero while a mode lasts.
 
-A mode is consistent where the forces and gaps that complementarity asks for are above zero *for a while*: the first
-coefficient of their series that is not zero decides. At the start only, that is the linear complementarity problem of
-the contact accelerations; where these vanish, as at every uplift under a continuous motion, the next derivatives speak.
-
-With one pair of feet there are at most nine modes, so that the complementarity problem is solved by trying each; what
-Lemke's algorithm would find is among them, and unlike it the trial also sees where there are two solutions or none.
+The first coefficient of a series that is not zero decides whether it is above zero for a while: at an uplift under a
+continuous motion accelerations vanish, and the next derivatives speak.
 """
 
 import math

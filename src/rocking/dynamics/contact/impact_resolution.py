@@ -1,21 +1,6 @@
-r"""Impacts on one or two feet: impulses by complementarity, or as a process in which the impulse at one place grows.
+"""Impacts on one or two feet: impulses by complementarity, or as a process in which the impulse at one place grows.
 
-Per unit of mass, with the impulses ``P_n`` and ``P_t`` at feet that touch the ground,
-
-    du = P_t,    dw = sum P_n,    j d(theta') = P_t r_z - sum P_n r_x,
-
-and for every foot ``0 <= P_n  _|_  v_n(after) + e_N v_n(before) >= 0``, and ``P_t`` from ``-mu P_n Sgn(v_t(after))``
-(Moreau 1988). Both feet are taken at the same instant. Flat on its base the body has one velocity along the ground, so
-that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
-
-Routh (1905) and Keller (1986): with the normal impulse p as the time of the impact, and f the impulse along the ground
-for one of it, the velocities of the place change at constant rates between changes of f,
-
-    dv_n/dp = A_nn + f A_nt,    dv_t/dp = A_nt + f A_tt,    f = -mu sgn(v_t), or -A_nt / A_tt where it sticks.
-
-Compression ends where v_n = 0. Poisson's law lets the impulse grow by e of what compression took, Stronge's until e^2
-of its work is given back; only the latter never creates energy. A foot that slides where A_nn - sgn(v_t) mu A_nt <= 0,
-so that no force obeys Coulomb's law (Painleve 1895), is struck without an approach: its impulse grows until it sticks.
+Newton's law, Poisson's and Stronge's, and the impact without collision: docs/theory/contact.md.
 """
 
 import math

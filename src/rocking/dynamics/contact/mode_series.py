@@ -1,13 +1,4 @@
-"""One mode over a short time as power series: motion, contact forces, and everything that may end it.
-
-With the arm r from the centre to the foot, ``j = I_C / m`` and the effective weight ``G = g + a_z``,
-
-    stick:  (j + r_x^2 + r_z^2) theta'' = -(G r_x - a_x r_z)
-    slide:  (j + r_x L) theta'' = -L (G + r_z theta'^2),    L = r_x + sigma mu r_z,
-
-where sigma is the direction of sliding: moments about the foot, and about the centre with ``F_t = -sigma mu F_n`` and
-``z'' = r_x theta'' + r_z theta'^2``. Where ``j + r_x L <= 0`` the second one has no meaning (Painleve 1895).
-"""
+"""One mode over a short time as power series: motion, contact forces, and everything that may end it."""
 
 import math
 from collections.abc import Callable, Sequence

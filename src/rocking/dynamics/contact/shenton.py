@@ -1,14 +1,4 @@
-r"""What a body at rest starts to do when the ground suddenly moves: Shenton's map.
-
-Under a constant acceleration ``A g`` that starts at once, a body whose nearer foot lies at b from the plumb line of its
-centre rests if ``A < min(mu, b / h)``, slides on its base if ``mu < b / h`` and ``A > mu``, rocks if ``A > b / h`` and
-mu is above what rocking takes, and slides and rocks otherwise (Shenton 1996). Rocking takes, at the instant it starts,
-
-    mu(A) = | A - h theta'' / g | / (1 + b theta'' / g),    theta'' / g = (A h - b) / (j + b^2 + h^2),
-
-from the moments about the foot; for a rectangle
-``(A - 3/4 cos a (A cos a - sin a)) / (1 + 3/4 sin a (A cos a - sin a))``.
-"""
+"""What a body at rest starts to do when the ground suddenly moves: Shenton's map (1996; docs/theory/contact.md)."""
 
 import numpy as np
 

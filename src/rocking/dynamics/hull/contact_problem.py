@@ -1,8 +1,7 @@
 """Forces or impulses on a set of touching vertices: one problem for accelerations and for velocities.
 
-The touching vertices of a convex body on a plane form a face of its hull: a vertex, an edge or a facet. What stays on
-the ground is this face or a part of its border; each vertex that stays sticks, or slides with the friction mu N against
-its direction. Every candidate is a linear system of at most six unknowns.
+What stays is a face of the hull or a part of its border, and each of its vertices sticks or slides: every candidate is
+a linear system of at most six unknowns (docs/theory/hull.md).
 """
 
 import math

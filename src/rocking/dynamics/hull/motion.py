@@ -1,8 +1,6 @@
 """The motion while the contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980).
 
-The state is (place, attitude, velocity, angular velocity): of the centre of mass in axes of the ground, the quaternion,
-and the angular velocity in axes of the body. Forces come from the contact problem at every stage, so that the normal
-forces, friction and gaps at the stages are there to be watched.
+Forces come from the contact problem at every stage, so that normal forces, friction and gaps there can be watched.
 """
 
 import math

@@ -1,12 +1,6 @@
-r"""The equations of motion of a rocking body, and what follows from them without integrating.
+"""The equations of motion of a rocking body, and what follows from them without integrating (docs/theory/rocking.md).
 
-About the foot on which it stands, with ``s = +1`` for the right one (theta > 0), ground accelerations ``a_x`` to the
-right and ``a_z`` upwards,
-
-    theta'' = -p^2 { (1 + a_z / g) sin(alpha s - theta) + (a_x / g) cos(alpha s - theta) },
-
-and for slender bodies at small angles ``theta'' = p^2 { (1 + a_z / g) (theta - alpha s) - a_x / g }`` (Housner 1963,
-BSSA 53:403; with the vertical acceleration as an effective gravity). All functions take numbers or arrays.
+All functions take numbers or arrays.
 """
 
 import math

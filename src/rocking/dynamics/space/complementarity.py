@@ -1,11 +1,4 @@
-"""Which points stay on the ground: complementarity over the few contact sets that a convex base allows.
-
-A set of touching points either stays (the ground pushes there) or leaves (its gap opens). On a flat base only three
-kinds of sets can stay: a vertex, an edge, or everything, since a body that turns about any other pair of vertices
-would dip another one into the ground. Each candidate is tried: the motion that it leaves must not close a gap of
-another touching point, and the ground must not pull. This is the linear complementarity problem with sticking points
-(physics: plastic impact as a projection in the kinetic metric, forces by Euler's equations), solved by listing.
-"""
+"""Which points stay on the ground: complementarity over the few contact sets of a convex base, tried one by one."""
 
 import dataclasses
 from collections.abc import Iterator

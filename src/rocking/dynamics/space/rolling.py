@@ -1,24 +1,7 @@
-r"""A body that turns about a fixed point or edge, and a round base that rolls on its rim, one Taylor step at a time.
+"""A body that turns about a fixed point or edge, and a round base that rolls on its rim, one Taylor step at a time.
 
-With Z the vertical in body axes, n the direction of its horizontal part there and h one over the length of that part
-(the sine of the tilt), the lowest point of the rim is s = -b n, and rho = C - s changes as the body rolls:
-
-    I_s w' = -w x I_s w - m rho x (w x rho') + m rho x R^T G,     rho' = b n',
-    n' = h (t . Z') t,   h' = -h^2 (n . Z'),   Z' = Z x w,   t = (-n_y, n_x),
-
-where I_s is the inertia about the contact (angular momentum about the centre of mass; for a cylinder these are the
-equations of Srinivasan and Ruina 2008). Everything is a product of series again, but for one linear solution an order.
-The place of the contact on the ground follows from P' = -b R n'.
-
-With the pivot A fixed on the ground, ``rho`` from A to the centre of mass in body axes, and G(t) gravity less the
-acceleration of the ground in axes of the ground,
-
-    q' = q (0, w) / 2,      I_A w' + w x I_A w = rho x m R(q)^T G(t)
-
-(Euler's equations about a fixed point); about an edge e the same projected on e. In body axes the vertical and G turn
-backwards, Z' = Z x w and F' = F x w + R^T G', so every term is a product of series with w, and the coefficients follow
-from one another by sums of products alone (Cauchy): added in their own order, not by BLAS, so that a history is the
-same on every processor.
+In body axes every term is a product of series with the angular velocity, but for one linear solution an order of a rim
+that rolls; added in their own order, not by BLAS, so that a history is the same on every processor.
 """
 
 from collections.abc import Iterable, Sequence

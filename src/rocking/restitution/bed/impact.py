@@ -1,15 +1,7 @@
 """Impacts on a bed, resolved in time, and the coefficient that emerges, by three measures that share one limit.
 
-All three compare rigid rocking on the new foot with rigid rocking on the old one at theta = 0, r = theta_dot_after /
-theta_dot_before, where the velocity after is what rigid rocking would need
-
-- **by peak**: to reach the rotation of the next peak, ``I' w^2 / 2 = V(theta_peak)``. The foot's static depth is
-  nearly the same at theta = 0 and at the peak, so it drops out; what is left is (1 - N/mg)^2 of the static energy
-  (m g)^2 / 2k, a relative error of order 1/k. Energy of hops and vibration at the peak is not counted.
-- **by energy**: to have the mechanical energy at the end, the static energy of the foot under the weight added back
-  (``m g d - U(d)``). Hops and vibration are counted: the two differ by them.
-- **by velocity**: to have the angular velocity at the end, ``w^2 = theta_dot^2 + 2 V(theta) / I'``: the measure of an
-  impulsive impact, where there is no gravity and no peak.
+By the next peak, where the energy of hops and vibration is not counted; by the energy at the end, where it is; by the
+angular velocity at the end of an impulsive impact, which has no peak (docs/theory/contact_bed.md).
 """
 
 import math

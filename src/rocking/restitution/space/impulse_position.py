@@ -1,10 +1,7 @@
-"""KED in space: where the paper's energy balance has the impulse of a landing of the whole base, each way.
+"""KED in space: where the paper's energy balance has the impulse of a landing of the whole base, each way (Eq. 104).
 
-Seen along the horizontal normal to a direction u, a landing towards u is one of the plane: the old foot is the base's
-extreme against u, the new one its extreme along u, r is the paper's (Eq. 17, Mao et al. 2024), and one impulse gives
-that r only if it acts ``a = (I_C + m h^2)(1 - r)/(m (r b_new + b_old))`` ahead of the centre's foot, at
-``k = (2 a - (b_new - b_old))/(b_new + b_old)`` of the half distance between the feet. As a function of the azimuth of u
-k is analytic as long as neither foot changes, so that few exact values give it between those azimuths.
+As a function of the azimuth of the step its position k is analytic as long as neither foot changes, so that few exact
+values give it between those azimuths.
 """
 
 import math

@@ -1,18 +1,9 @@
-"""Integrals over the mass of a solid that are homogeneous about the place it lands on.
+"""Integrals over the mass of a solid that are homogeneous about the place it lands on, as sums over its surface.
 
-A product of features of degrees i and j about the landing point, divided by a squared length, is homogeneous; over the
-volume it is a sum over the surface (`samples`). About an edge and upright the one integral of the plane, Eq. 17 of
-Mao et al. 2024, is exact for bodies with flat faces.
-
-What stage 2 of KED keeps are moments that serve every velocity and every vertical. Stage 1 leaves the velocities
-``v = u + W s``, with s from the landing point, ``u = P c``, ``W = P [omega x]``, c the velocity of the landing point
-and P the projection onto the ground. Stage 2 keeps ``Q v`` of every mass point: ``Q = 1 - d d^T`` about a corner, d
-along s, and ``Q = a a^T`` about an edge e, a along e x s. Twice the energy left is
-``u_i u_j K_ij + 2 u_i W_jk K_ijk + W_ik W_jl K_ijkl`` with ``K = Int Q (x) (1, s, s s) dm``. The attitude of the body
-enters through P alone, so that the integrals are done once for every landing place.
-
-Kept are not the tensors but what they consist of: v along the direction that stage 2 removes, or allows, is
-``(linear . A u + quadratic . B W)/length``, with the components of s and their products; one symmetric matrix of those.
+The attitude enters what stage 2 of KED keeps through the projection alone, so that the moments are made once for every
+landing place. Kept are not the tensors K of Eq. 106 but what they consist of: v along the direction that stage 2
+removes, or allows, is ``(linear . A u + quadratic . B W)/length``, with the components of s and their products; one
+symmetric matrix of those.
 """
 
 import math
