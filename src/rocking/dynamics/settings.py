@@ -11,6 +11,7 @@ import numpy as np
 
 from rocking import checks, conventions, errors, plausibility
 from rocking.bodies import Body
+from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
@@ -215,6 +216,8 @@ class CompiledEngine:
     name: str  # of its module
     not_built: str  # what is said where it was not built
     instead: str = "the reference engine runs instead"
+    floats: tuple[str, ...] = ()  # columns of its results, NaN without a result
+    wholes: tuple[str, ...] = ()  # columns of whole numbers
 
     def built(self) -> ModuleType | None:
         try:
@@ -253,6 +256,15 @@ class CompiledEngine:
         if wanted and wanted not in known:
             raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
         return wanted or known[0]
+
+    def room(self, count: int) -> tuple[FloatArray, IntArray]:
+        """Return tables for the results of some rows: `floats`, and `wholes`."""
+        return np.full((count, len(self.floats)), np.nan), np.zeros((count, len(self.wholes)), np.int64)
+
+    def named(self, results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
+        """Return the columns of such tables by name."""
+        whole = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(self.wholes)}
+        return whole | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(self.floats)}
 
 
 MOST_THREADS = 4096

@@ -19,12 +19,6 @@ NUMBERS = (
 """What makes a history, beside its motion, its law and the feet that touch: as `PlaneBase`, `GroundContact`,
 `ContactState` name it; imposed coefficients are NaN where there are none, `end` is how long to follow it [s]."""
 
-FLOATS = (
-    "peak_rotation", "peak_time", "peak_velocity", "overturning_time", "first_uplift", "sliding_distance",
-    "residual_displacement", "friction_usage", "end_time",
-)  # fmt: skip
-WHOLES = ("outcome", "status", "side", "impacts", "uplifts", "still_rocking", "impacts_replaced", "shocks", "steps")
-
 FAST = "fast: Taylor series with events and complementarity, compiled"
 REFERENCE = "reference: Taylor series with events and complementarity"
 
@@ -33,7 +27,10 @@ _COMPILED = CompiledEngine(
     "the fast engine with friction was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
     "`make engine`)",
     "the reference engine runs instead, one history at a time",
-)
+    ("peak_rotation", "peak_time", "peak_velocity", "overturning_time", "first_uplift", "sliding_distance",
+     "residual_displacement", "friction_usage", "end_time"),
+    ("outcome", "status", "side", "impacts", "uplifts", "still_rocking", "impacts_replaced", "shocks", "steps"),
+)  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
 
 
@@ -64,13 +61,12 @@ def run_compiled(
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, BOUNCE_LAWS.index(bounce_law), touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
-    results, counts = np.full((len(numbers), len(FLOATS)), np.nan), np.zeros((len(numbers), len(WHOLES)), np.int64)
+    results, counts = _COMPILED.room(len(numbers))
     library.run(
         numbers, choices, results, counts, settings.gravity, settings.rest_speed, settings.tolerance,
         settings.most_events, threads,
     )  # fmt: skip
-    whole = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
-    return whole | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
+    return _COMPILED.named(results, counts)
 
 
 FINE, AFTER = 0.1, 15.0

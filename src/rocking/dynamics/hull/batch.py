@@ -21,7 +21,7 @@ from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch import SpatialBatch, made_or_refused
-from rocking.dynamics.space.ground import SpatialGround, ground_of, joined
+from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.segments import Segments
@@ -56,7 +56,7 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
         plausibility.warn(plausibility.of_scaled(parts, scales))
     laws = [law_on_hull(each) for each in restitutions]
     grounds = [
-        HullGround.placed(joined(motion or (), until), np.eye(3), (math.inf, math.inf), settings.gravity)
+        HullGround.placed(ground_of(*motion or (), until=until), np.eye(3), (math.inf, math.inf), settings.gravity)
         for motion in motions
     ]
     leaning = [start or SpatialStart() for start in starts]

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,13 +25,6 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
-FLOATS = (
-    "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance",
-    "residual_displacement", "end_time", "lost",
-)  # fmt: skip
-WHOLES = (
-    "outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking",
-)  # fmt: skip
 HOUSNER, POSITION, COEFFICIENT, KED = range(4)
 MOST_POWERS = 8
 ENGINES = {
@@ -45,7 +37,10 @@ _COMPILED = CompiledEngine(
     "the batch engine of hulls was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
     "`make engine`)",
     "the reference engine runs instead, row by row",
-)
+    ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance",
+     "residual_displacement", "end_time", "lost"),
+    ("outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking"),
+)  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
 
 
@@ -65,21 +60,6 @@ def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGroun
     return made
 
 
-def run_rows(
-    library: Any, numbers: FloatArray, choices: IntArray, settings: HullSettings, threads: int
-) -> dict[str, np.ndarray]:
-    """Return the results of rows by name: `FLOATS`, NaN without result, and `WHOLES`."""
-    results, counts = _room(len(numbers))
-    library.run(
-        numbers, choices, results, counts, settings.rest_speed, settings.tolerance, settings.most_events, threads
-    )
-    return named(results, counts)
-
-
-def _room(count: int) -> tuple[FloatArray, IntArray]:
-    return np.full((count, len(FLOATS)), np.nan), np.zeros((count, len(WHOLES)), np.int64)
-
-
 def traced(
     body: HullBody,
     ground: HullGround,
@@ -96,12 +76,12 @@ def traced(
     plane = [*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))]
     numbers = np.array([[value, 1.0, horizon, friction, *plane, *numbers_of(body, start), ground.gravity]])
     library = library_of([body], [ground.motion], ked=code == KED)
-    results, counts = _room(1)
+    results, counts = _COMPILED.room(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
     nodes, impacts, members, stuck, struck, least, fell = library.trace(
         numbers, np.array([[0, 0, code]]), results, counts, *limits
     )
-    found = {name: column.item() for name, column in named(results, counts).items()}
+    found = {name: column.item() for name, column in _COMPILED.named(results, counts).items()}
     if not nodes.size:
         raise InvalidValueError("a number of the start, the ground or the duration is not within [-1e9, 1e9]")
     contacts = [HullContact(*each) for each in zip(_groups(members), _groups(stuck), strict=True)]
@@ -128,12 +108,6 @@ def _groups(lists: IntArray) -> list[tuple[int, ...]]:
     return made
 
 
-def named(results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
-    """Return the columns of the tables of results by name."""
-    whole = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
-    return whole | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
-
-
 def _tables(body: HullBody) -> dict[str, Any]:
     corners, beyond, first = body.hull.borders
     return {
@@ -146,9 +120,7 @@ def _positions(body: HullBody, *, ked: bool) -> FloatArray:
     """Return where the impulse of a landing on the solid's own base acts: azimuths and coefficients by interval."""
     if not ked or body.solid is None:
         return np.zeros((0, HIGHEST + 3))
-    position = impulse_position(body.solid)
-    rows = [[*ends, *position.piece(k)] for k, ends in enumerate(pairwise(position.breaks))]
-    return np.array([row + [0.0] * (HIGHEST + 3 - len(row)) for row in rows])
+    return np.array(impulse_position(body.solid).table())
 
 
 PIECE = 1 << 14
@@ -239,11 +211,13 @@ class HullRows:
         size = PIECE if self.engine == "fast" else 1
         for first in range(0, len(numbers), size):
             some, which = numbers[first : first + size], choices[first : first + size]
+            results, counts = _COMPILED.room(len(some))
             if self.engine == "fast":
-                pieces.append(run_rows(self.library, some, which, self.settings, threads))
+                how = self.settings
+                self.library.run(some, which, results, counts, how.rest_speed, how.tolerance, how.most_events, threads)
             else:
-                floats, whole = self._one(some[0], which[0].tolist())
-                pieces.append(named(np.array([floats]), np.array([whole], np.int64)))
+                results[0], counts[0] = self._one(some[0], which[0].tolist())
+            pieces.append(_COMPILED.named(results, counts))
             if progress is not None:
                 progress(len(some))
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
@@ -253,8 +227,8 @@ class HullRows:
         known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
         bounded = which[2] in {HOUSNER, KED} or 0.0 <= row[0] <= 1.0
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
-            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(WHOLES) - 3)]
-            return [math.nan] * len(FLOATS), refused
+            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.wholes) - 3)]
+            return [math.nan] * len(_COMPILED.floats), refused
         named = {HOUSNER: "housner-3d", KED: "ked-3d"}
         law = FixedPosition(row[0]) if which[2] == POSITION else named.get(which[2], float(row[0]))
         moving = self.motions[which[1]]

@@ -17,7 +17,7 @@ from rocking.dynamics.space import fast_engine
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.fast_engine import Bodies, Progress, Results, RowTable, batch_law
-from rocking.dynamics.space.ground import SpatialGround, joined
+from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.dynamics.space.impact_laws import law_of
 from rocking.dynamics.space.reference import SpatialReference
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory
@@ -176,7 +176,7 @@ def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGr
         components = tuple(_components(motion))
         if len(components) > 3:
             raise InvalidValueError(f"a motion has at most three components, x, y and vertical, got {len(components)}")
-        grounds.append(joined(components, until))
+        grounds.append(ground_of(*components, until=until))
         names.append(", ".join("none" if part is None else part.name for part in components))
     return grounds, names
 
@@ -185,7 +185,7 @@ def _run_reference(
     bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, settings: Settings, progress: Progress
 ) -> tuple[Results, str]:
     """Return the results of all rows by the reference engine."""
-    results, counts = fast_engine.empty_results(len(table))
+    results, counts = fast_engine.room(len(table))
     own = Settings(
         settings.gravity, rest_speed=settings.rest_speed, most_events=settings.most_events, mechanics="space"
     )
@@ -201,7 +201,7 @@ def _run_reference(
 def _one(
     body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: Settings
 ) -> tuple[FloatArray, list[int]]:
-    refused = np.full(len(fast_engine.FLOATS), math.nan), [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
+    refused = fast_engine.room(1)[0][0], [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
     if body is None or not (np.abs(row) <= 1e9).all():
         return refused
     scaled = SpatialGround(ground.times, row[1] * ground.coefficients)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,11 +19,6 @@ PIECE = 1 << 15
 """Histories handed to the engine at a time: memory beside the results does not grow with their number."""
 
 MOST_CORNERS = 64  # most vertices of a base that the compiled engine takes
-
-FLOATS = (
-    "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",
-)  # fmt: skip
-WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking")
 
 CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4}
 """Laws without a number of their own."""
@@ -48,9 +42,12 @@ _COMPILED = CompiledEngine(
     "the batch engine in space was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
     "`make engine`)",
     "the reference engine runs instead, row by row",
-)
+    ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held",
+     "lost"),
+    ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking"),
+)  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
-instruction_set = _COMPILED.instruction_set
+instruction_set, room, named = _COMPILED.instruction_set, _COMPILED.room, _COMPILED.named
 
 
 @dataclass(frozen=True)
@@ -117,7 +114,7 @@ def run_compiled(
     """Return the results of all rows, and which engine gave them."""
     check_threads(threads)
     stock = _stock(bodies, grounds, table, settings.gravity)
-    results, counts = empty_results(len(table))
+    results, counts = room(len(table))
     limits = {"threads": threads or processors(), **_limits(settings)}
     for first in range(0, len(table), PIECE):
         last = min(first + PIECE, len(table))
@@ -143,19 +140,8 @@ def steps_of(
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
     stock = _stock([body], [ground], table, settings.gravity)
-    rows: FloatArray = stock.trace(*table.piece(0, 1), *empty_results(1), **_limits(settings))
+    rows: FloatArray = stock.trace(*table.piece(0, 1), *room(1), **_limits(settings))
     return rows.view(STEP)[:, 0]
-
-
-def empty_results(count: int) -> tuple[FloatArray, IntArray]:
-    """Return room for the floats and the whole numbers of some rows; NaN is no result."""
-    return np.full((count, len(FLOATS)), np.nan), np.empty((count, len(WHOLES)), np.int64)
-
-
-def named(results: FloatArray, counts: IntArray) -> Results:
-    """Return the columns of the tables of results by name."""
-    columns: Results = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
-    return columns | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
 
 
 def _stock(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gravity: float) -> Any:
@@ -239,11 +225,9 @@ def _position_table(bodies: Bodies) -> tuple[IntArray, FloatArray]:
     for number, body in enumerate(bodies):
         if body is None or body.matter is None:
             continue
-        position = impulse_position(body.matter.placed[0])
-        places[number] = len(rows), len(position.breaks) - 1
-        for k, ends in enumerate(pairwise(position.breaks)):
-            row = [*ends, *position.piece(k)]
-            rows.append(row + [0.0] * (HIGHEST + 3 - len(row)))
+        table = impulse_position(body.matter.placed[0]).table()
+        places[number] = len(rows), len(table)
+        rows += table
     return places, np.array(rows).reshape(-1, HIGHEST + 3)
 
 

@@ -1,6 +1,5 @@
 """Three components of ground motion as polynomials on common stretches of time."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,6 +91,10 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
 def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> FloatArray:
     """Rewrite polynomials on the stretches between `times`."""
     made = np.zeros((len(times) - 1, polynomials.shape[1]))
+    shared = min(len(stops), len(times)) - 1
+    if np.array_equal(stops[: shared + 1], times[: shared + 1]):
+        made[:shared] = polynomials[:shared]
+        return made
     middles = 0.5 * (times[1:] + times[:-1])
     place = np.searchsorted(stops, middles) - 1
     for k, inner in enumerate(place):
@@ -102,24 +105,3 @@ def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> Flo
         same = abs(to) < _SAME and abs(width - 1.0) < _SAME
         made[k] = polynomials[inner] if same else shifted(polynomials[inner].tolist(), to, width)
     return made
-
-
-def joined(components: tuple[Component, ...], until: float) -> SpatialGround:
-    """Return up to three components as one motion, the same as `ground_of` gives."""
-    if not _alike([part for part in components if part is not None]):
-        return ground_of(*components, until=until)
-    parts = [(which, part.segments()) for which, part in enumerate(components) if part is not None]
-    count = max(segments.count for _, segments in parts)
-    times = np.asarray(np.arange(count + 1) * parts[0][1].step, dtype=np.float64)
-    made = np.zeros((count, 3, 2))
-    for which, segments in parts:
-        made[: segments.count, which] = segments.horizontal
-    kept = int(np.searchsorted(times, until * (1.0 - 1e-12), side="left")) + 1
-    return SpatialGround(times[:kept], made[: kept - 1])
-
-
-def _alike(components: Sequence[Component]) -> bool:
-    """Whether they are records with one step, and without a vertical part of their own."""
-    if not components or not all(isinstance(part, GroundMotion) and part.vertical is None for part in components):
-        return False
-    return len({part.time_step for part in components if isinstance(part, GroundMotion)}) == 1

@@ -53,6 +53,11 @@ class ImpulsePosition:
             self._pieces[number] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
         return self._pieces[number]
 
+    def table(self) -> list[list[float]]:
+        """Return a row for each piece: its first and last azimuth [rad], and coefficients, `HIGHEST` + 1 of them."""
+        rows = [[*ends, *self.piece(k)] for k, ends in enumerate(pairwise(self.breaks))]
+        return [row + [0.0] * (HIGHEST + 3 - len(row)) for row in rows]
+
     def exact(self, angle: float) -> float:
         """Return k of the landing at an azimuth from x towards y [rad], straight from the integrals over the mass."""
         found, x, y = self.solid.local_moments, math.cos(angle), math.sin(angle)
