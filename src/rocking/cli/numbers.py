@@ -131,7 +131,7 @@ def show_recommendation(page: Page, found: Any) -> None:
     """Write a recommendation on a page, if there is one."""
     if found is None:
         return
-    from rocking.evidence.judgement import LEGEND
+    from rocking.evidence.recommendation import LEGEND
 
     page.line("\nWhich model to use", "bold")
     head, rows = found.table

@@ -8,13 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FEET, NORMAL_95, Foot, percent
-from rocking.evidence import judgement
+from rocking.evidence._coefficient_table import CALIBRATED
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord
 from rocking.exported import Exported
 from rocking.outcome import Outcome
 
 if TYPE_CHECKING:
     from rocking.tables import Table
+
+LEGEND = (
+    "kept: energy left after two impacts, one onto each foot; to half: impacts that halve the energy; bias, error: "
+    "mean and root mean square of r less the measurement."
+)
+"""What the columns of the table are, those of r apart."""
+APART = 3.92  # standard errors between two values, so that 97.5 % of measurements lie nearer to the right one
 
 
 def product(coefficients: Mapping[str, float]) -> float:
@@ -63,6 +70,25 @@ class ModelForBody:
         """Impacts that halve the energy, and with it the amplitude of small rotations; 0 where the body stops [-]."""
         kept = self.energy_left
         return 0.0 if kept == 0.0 else math.inf if kept >= 1.0 else 2.0 * math.log(0.5) / math.log(kept)
+
+    @property
+    def with_intervals(self) -> str:
+        """Coefficients with their intervals, in words; once, if both feet have the same."""
+        found = [f"{self.coefficients[foot]:.4f} ({self.low[foot]:.4f} to {self.high[foot]:.4f})" for foot in FEET]
+        return found[0] if found[0] == found[1] else f"{found[0]} onto the left foot, {found[1]} onto the right"
+
+    @property
+    def plain(self) -> str:
+        """Name and coefficients alone, in words."""
+        found = [f"{value:.4f}" for value in self.coefficients.values()]
+        return f"{self.name} (r = {' and '.join(dict.fromkeys(found))})"
+
+    def cell(self, place: str) -> str:
+        """Return the coefficient at a place with half of its interval, for a table."""
+        if place not in self.coefficients:
+            return "-"
+        half = f" +- {0.5 * (self.high[place] - self.low[place]):.3f}" if place in self.low else ""
+        return f"{self.coefficients[place]:.4f}{half}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as plain values, None where something does not exist."""
@@ -152,23 +178,118 @@ class Recommendation(Exported):
     @property
     def evidence(self) -> tuple[str, ...]:
         """What the measurements say of the models, and which do not hold, in sentences."""
-        return tuple(judgement.evidence(self))
+        lines, judged = [], self.judgement
+        if judged is not None:
+            first = next(each for each in self.models if each.standing is Standing.CLOSEST)
+            close, off = map(self._behind, (Standing.UNRESOLVED, Standing.SET_ASIDE))
+            lines.append(
+                f"Judged by {judged.words}: closest is {first.name}, with a root mean square error of r of "
+                f"{first.record.rmse:.4f}."  # type: ignore[union-attr]
+            )
+            lines.append(
+                f"Not resolved from it: {close} (the 95 % paired bootstrap interval of the difference includes zero, "
+                f"or the difference is below the rounding of what was printed, {judged.rounding:.4f}). "
+                f"Further off: {off}."
+            )
+            if self.outside and off != "none":
+                lines.append("They are not set aside for this body, which is outside of what was measured.")
+        lines += [f"{each.name} does not hold: {'; '.join(each.reasons)}." for each in self.models if each.reasons]
+        lines += [f"{each.name}: {'; '.join(each.concerns)}." for each in self.models if each.concerns]
+        lines += [f"Extrapolation: {each}." for each in self.outside]
+        return (*lines, *self.notes)
+
+    def _behind(self, standing: Standing) -> str:
+        found = [each for each in self.models if each.standing is standing and each.record is not None]
+        return ", ".join(f"{each.name} by {each.record.behind}" for each in found) or "none"  # type: ignore[union-attr]
 
     @property
     def advice(self) -> tuple[str, ...]:
         """What to use, for a number and for a decision, and what would settle it, in sentences."""
-        return tuple(judgement.advice(self))
+        if not self.envelope:
+            return ("No coefficient is recommended.",)
+        low, high = self[self.envelope[0]], self[self.envelope[-1]]
+        number, steps = "For a number: nothing measured prefers a model.", []
+        if self.prediction:
+            why = "" if self.prediction == CALIBRATED else ", because the calibrated default is further off"
+            how = ", an extrapolation" if self.outside else ""
+            number = f"For a number: {self.prediction}, r = {self[self.prediction].with_intervals}{how}{why}."
+            steps.append(f"let r scatter about {self.prediction} from history to history")
+        if low is high:
+            steps.append(f"run {low.plain}, beside which no model remains")
+        else:
+            steps.append(
+                f"run {low.plain} and {high.plain} and report both: what remains lies between them, and none of it is "
+                "resolved better for this body"
+            )
+        return (number, f"For a decision: {'; '.join(steps)}.", *self._verdict(), *self._settled(low, high))
+
+    def _verdict(self) -> list[str]:
+        share = self.overturned
+        if share is None:
+            return []
+        remains = [each for each in self.models if self._remains(each)]
+        over = [each.name for each in remains if each.outcome is Outcome.OVERTURNED]
+        if len(remains) == 1:
+            words = f"Under this motion it {'overturns' if over else 'does not overturn'} by the one model that remains"
+        else:
+            words = f"Under this motion {len(over)} of the {len(remains)} models that remain overturn it"
+            words += f" ({', '.join(over)})" if over else ""
+        sure = (len(over) == len(remains) and share.low > 0.95) or (not over and share.high < 0.05)
+        end = "the choice of the model does not decide" if sure else "the coefficient decides: report both verdicts"
+        return [f"{words}, and {share}: {end}."]
+
+    def _settled(self, low: ModelForBody, high: ModelForBody) -> list[str]:
+        """Say what a measurement must be, to tell the models of the envelope apart."""
+        if low is high:
+            return ["r measured on this body would replace every model."]
+        apart, place = max((abs(high.coefficients[key] - low.coefficients[key]), key) for key in low.coefficients)
+        words = f"What would settle it: r measured on this body{{}} with a standard error below {apart / APART:.2g}"
+        if not self.prediction:
+            return [words.format(",") + "."]
+        spread = self[self.prediction].scatter("left" if place == "left" else "right")
+        if apart < 0.5 * spread:
+            return [
+                f"The choice hardly matters: what remains differs by {apart:.2g} in r, and bodies scatter by "
+                f"{spread:.2g}; r measured on this body would replace every model."
+            ]
+        count = math.ceil((APART * spread / apart) ** 2)
+        many = f"the mean of {count} such bodies" if count > 1 else "any one such body"
+        return [words.format("") + f", which then replaces every model; or {many}, since they scatter by {spread:.2g}."]
 
     @property
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Heading and rows of words."""
-        return judgement.table(self)
+        places = list(dict.fromkeys(place for each in self.models for place in each.coefficients))
+        same = all(len({f"{v:.12f}" for v in each.coefficients.values()}) <= 1 for each in self.models)
+        shown = places[:1] if same else places
+        head = ["model", *(["r"] if same else [f"r {place}" for place in shown])]
+        head += ["kept", "to half", "bias", "error"] if self.judgement is not None else []
+        head += ["standing", *(["peak", "ends"] if self.overturned else [])]
+        rows = []
+        for each in self.models:
+            cells = [each.name, *map(each.cell, shown)]
+            if self.judgement is not None:
+                known, record = bool(each.coefficients), each.record
+                cells += [f"{100.0 * each.energy_left:.1f} %", f"{each.impacts_to_half:.1f}"] if known else ["-", "-"]
+                cells += ["-", "-"] if record is None else [f"{record.bias:+.4f}", f"{record.rmse:.4f}"]
+            cells.append(each.standing.value)
+            if self.overturned:
+                ends = "-" if each.outcome is None else each.outcome.name.lower().replace("_", " ")
+                stood = each.outcome not in (None, Outcome.OVERTURNED)
+                cells += [f"{each.peak_ratio:.2f}" if stood else "-", ends]
+            rows.append(tuple(cells))
+        return tuple(head), rows
+
+    @property
+    def _legend(self) -> str:
+        peak = " peak: largest rotation over the slenderness angle." if self.overturned else ""
+        return "" if self.judgement is None else f"r: coefficient and half of its 95 % interval; {LEGEND}{peak}"
 
     def __str__(self) -> str:
         head, rows = self.table
         widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows)]
-        shown = [*(line.rstrip() for line in lines), *filter(None, [judgement.legend(self)]), ""] if rows else []
+        shown = [*(line.rstrip() for line in lines), *filter(None, [self._legend]), ""] if rows else []
         return "\n".join([*shown, *self.evidence, *self.advice])
 
     __repr__ = __str__
@@ -176,7 +297,7 @@ class Recommendation(Exported):
     def _repr_markdown_(self) -> str:
         head, rows = self.table
         lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
-        shown = [*lines, "", judgement.legend(self), ""] if rows else []
+        shown = [*lines, "", self._legend, ""] if rows else []
         return "\n".join([*shown, *(f"- {each}" for each in (*self.evidence, *self.advice))])
 
     def as_dict(self) -> dict[str, Any]:
