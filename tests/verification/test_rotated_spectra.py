@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rocking.motions import GroundMotion, response_spectrum, rotated, rotd, rotd_spectrum
-from rocking.motions.rotd import directional_spectra
+from rocking.motions import GroundMotion, response_spectrum, rotated, rotd_spectrum, spectrum
+from rocking.motions.spectrum import directional_spectra
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 
@@ -76,12 +76,12 @@ def test_every_direction_is_that_of_the_turned_motion():
 @pytest.mark.parametrize("narrow", [1.0, 1e-3, 0.0])
 def test_no_place_that_is_passed_over_matters(narrow, monkeypatch):
     """The compiled module passes over what lies within the outline: no direction notices, save one a degree beside."""
-    if rotd.compiled() is None:
+    if spectrum.compiled() is None:
         pytest.skip("without the compiled module nothing is passed over")
     across = GroundMotion(narrow * SECOND.acceleration + 0.7 * FIRST.acceleration, 0.01)
     periods = np.geomspace(0.015, 4.0, 9)
     quick = directional_spectra(FIRST, across, periods)
-    monkeypatch.setattr(rotd, "compiled", lambda: None)
+    monkeypatch.setattr(spectrum, "compiled", lambda: None)
     plain = directional_spectra(FIRST, across, periods)
     # across a path that is a line nearly nothing is left: rounding of the whole
     room = 1e-9 * plain.max(axis=1, keepdims=True)

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from rocking.motions.components import with_vertical as with_vertical
     from rocking.motions.flatfiles import Flatfile as Flatfile
     from rocking.motions.flatfiles import flatfile as flatfile
-    from rocking.motions.fourier import fourier_amplitudes as fourier_amplitudes
     from rocking.motions.integrals import arias_intensity as arias_intensity
     from rocking.motions.integrals import ground_displacement as ground_displacement
     from rocking.motions.integrals import ground_velocity as ground_velocity
@@ -46,10 +45,11 @@ if TYPE_CHECKING:
     from rocking.motions.processing import trimmed as trimmed
     from rocking.motions.processing import trimmed_to_significant as trimmed_to_significant
     from rocking.motions.pulse import Pulse as Pulse
-    from rocking.motions.rotd import rotd_spectrum as rotd_spectrum
     from rocking.motions.selection import selected as selected
     from rocking.motions.spectrum import ResponseSpectrum as ResponseSpectrum
+    from rocking.motions.spectrum import fourier_amplitudes as fourier_amplitudes
     from rocking.motions.spectrum import response_spectrum as response_spectrum
+    from rocking.motions.spectrum import rotd_spectrum as rotd_spectrum
     from rocking.motions.target_spectra import target_spectrum as target_spectrum
 else:
     __all__, __getattr__, __dir__ = exports(__name__)

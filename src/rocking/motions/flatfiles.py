@@ -13,8 +13,7 @@ from rocking.errors import RockingError
 from rocking.motions.components import Components, rotd_pga
 from rocking.motions.formats.record_set import mapped
 from rocking.motions.intensity import MEASURES
-from rocking.motions.rotd import directional_spectra
-from rocking.motions.spectrum import response_spectrum
+from rocking.motions.spectrum import directional_spectra, response_spectrum
 from rocking.tables import Column, Table, text_array, to_dataset
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.formats.record_set import RecordSet, mapped
-from rocking.motions.rotd import rotd_spectrum
-from rocking.motions.spectrum import response_spectrum
+from rocking.motions.spectrum import response_spectrum, rotd_spectrum
 from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
 
 POINTS = 25  # periods at which spectra are compared, in equal ratios

@@ -1,6 +1,7 @@
-"""Response spectra of linear oscillators, exact for straight lines between the samples."""
+"""Spectra of a record: of linear oscillators, exact for straight lines between the samples, and of Fourier."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.motions.components import ANGLES, matching
 from rocking.motions.filters import compiled
 from rocking.motions.integrals import quadratic_roots
 from rocking.motions.motion import GroundMotion, checked_motion
@@ -23,8 +25,9 @@ FREE_POINTS = 288
 MARGIN = 1.001
 """Room for cubics, which leave the true response by less than 0.01 %, in the bound of what a step can hold [-]."""
 
-
 SHORTEST_PERIOD = 0.05  # shortest period in time steps: below, the record says nothing about what the oscillator feels
+_TURN = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # one direction a row: every degree of half a turn
+_WITHIN = (0.25, 0.5, 0.75)  # places in a step where a cubic is looked at: 144 points a period miss at most 0.024 %
 ComplexArray = NDArray[np.complex128]
 Pair = tuple[FloatArray, FloatArray]
 """A response and its rate of change."""
@@ -197,3 +200,129 @@ def _response(states: ComplexArray, ground: Any, rates: Any) -> list[Pair]:
     absolute = -friction * v - omega2 * u
     change = absolute - ground
     return [(u, v), (v, change), (absolute, -friction * change - omega2 * v)]
+
+
+def rotd_spectrum(
+    first: GroundMotion,
+    second: GroundMotion,
+    periods: ArrayLike,
+    damping: float = 0.05,
+    percentiles: ArrayLike = (50.0, 100.0),
+) -> FloatArray:
+    """Return percentiles over all directions of the pseudo-spectral acceleration.
+
+    Boore (2010), DOI 10.1785/0120090400: the directions are every degree over half a turn. Exact for straight lines
+    between the samples but for the look for peaks, which misses less than 0.03 %.
+
+    Parameters
+    ----------
+    first, second : GroundMotion
+        Perpendicular horizontal components, of one step and length.
+    periods : array_like
+        Undamped natural periods, at least 1/20 of the time step [s].
+    damping : float
+        Damping ratio, from 0 to below 1 [-].
+    percentiles : array_like
+        50 for RotD50, 100 for RotD100, 0 for RotD00 [%].
+
+    Returns
+    -------
+    ndarray, shape (percentiles, periods)
+        PSA [m/s2].
+
+    Raises
+    ------
+    InvalidValueError
+        If the components do not match, or a period, the damping or a percentile is outside of its range.
+
+    Examples
+    --------
+    >>> along, across = GroundMotion([3.0] * 101, 0.01), GroundMotion([4.0] * 101, 0.01)
+    >>> rotd_spectrum(along, across, [0.1, 0.2], damping=0.0, percentiles=[100]).round(2).tolist()
+    [[10.0, 10.0]]
+    """
+    wanted = np.atleast_1d(checks.real_array("percentiles", percentiles, "%"))
+    for each in wanted.tolist():
+        checks.within("percentiles", each, 0.0, 100.0, unit="%")
+    peaks = directional_spectra(first, second, periods, damping)
+    return np.asarray(np.percentile(peaks, wanted, axis=1), dtype=np.float64)
+
+
+def directional_spectra(
+    first: GroundMotion, second: GroundMotion, periods: ArrayLike, damping: float = 0.05
+) -> FloatArray:
+    """Return the pseudo-spectral acceleration in every direction, one row a period [m/s2]."""
+    # turned into another direction the displacement along each component is a sum of both
+    matching(first, second)
+    given, _, rates = oscillators(first, periods, damping)
+    parts = np.ceil(POINTS_PER_PERIOD * first.time_step / given).astype(np.int64)
+    found = np.zeros((given.size, len(ANGLES)))
+    if (module := compiled()) is not None:
+        both, step = (first.acceleration, second.acceleration), first.time_step
+        module.directions(*both, step, rates, np.cos(ANGLES), np.sin(ANGLES), parts, FREE_POINTS, found)
+    else:
+        for row, rate, number in zip(found, rates, parts.tolist(), strict=True):
+            for places in _path(first, second, rate, number):
+                np.maximum(row, np.abs(_TURN @ places).max(axis=1), out=row)  # Eq. 156
+    return np.asarray(found * (2.0 * np.pi / given[:, None]) ** 2, dtype=np.float64)  # Eq. 149
+
+
+def _path(first: GroundMotion, second: GroundMotion, rate: complex, parts: int) -> Iterator[FloatArray]:
+    """Yield places on the path of one oscillator that two components drive, on so many parts of each step [m]."""
+    h, one = first.time_step, np.array([rate])
+    state = np.concatenate([states(first, one), states(second, one)])
+    ground = np.stack([first.acceleration, second.acceleration])
+    swing = np.exp(rate * math.pi / rate.imag * np.linspace(0.0, 1.0, FREE_POINTS))
+    yield (state[:, -1:] * swing).imag / rate.imag
+    start, rise, left = state[:, :-1], np.diff(ground), state[:, :-1]
+    for k in range(1, parts + 1):
+        t = k * h / parts
+        level, slope = phi(rate * t)
+        right = np.exp(rate * t) * start - t * level * ground[:, :-1] - t * t / h * slope * rise  # Eq. 151
+        y, z = left.imag / rate.imag, right.imag / rate.imag  # Eq. 150
+        d, e = (h / parts * (side.real + rate.real * at) for side, at in ((left, y), (right, z)))
+        for at in (*_WITHIN, 1.0):
+            yield y + at * (d + at * (3.0 * (z - y) - 2.0 * d - e + at * (d + e - 2.0 * (z - y))))
+        left = right
+
+
+def fourier_amplitudes(
+    motion: GroundMotion, frequencies: ArrayLike | None = None, bandwidth: float = 40.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return the Fourier amplitudes of the acceleration.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; its horizontal part counts.
+    frequencies : array_like, optional
+        Where the amplitudes are wanted, smoothed over their neighbours by the window of Konno & Ohmachi (1998); those
+        of the transform as they are if not given [Hz].
+    bandwidth : float
+        b of the window: the larger, the narrower [-].
+
+    Returns
+    -------
+    tuple of ndarray
+        Frequencies [Hz] and amplitudes of one side [m/s].
+
+    Examples
+    --------
+    >>> _, amplitudes = fourier_amplitudes(GroundMotion([0.0, 2.0, 2.0, 0.0], 0.5))
+    >>> float(amplitudes[0])
+    2.0
+    """
+    motion = checked_motion(motion)
+    every = np.fft.rfftfreq(len(motion), motion.time_step)
+    amplitudes = motion.time_step * np.abs(np.fft.rfft(motion.acceleration))  # Eq. 304
+    if frequencies is None:
+        return np.asarray(every, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
+    wanted = np.atleast_1d(checks.positive_array("frequencies", frequencies, "Hz"))
+    checks.all_within("frequencies", wanted, every[1], every[-1], wanted)
+    b = checks.positive("bandwidth", bandwidth)
+    smooth = np.empty(wanted.size)
+    for k, centre in enumerate(wanted.tolist()):
+        x = b * np.log10(every[1:] / centre)
+        window = np.sinc(x / np.pi) ** 4  # Eq. 305
+        smooth[k] = float((window * amplitudes[1:]).sum() / window.sum())
+    return wanted.copy(), smooth
