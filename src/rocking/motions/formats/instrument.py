@@ -8,11 +8,10 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.filters import cosine_sine
-from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Source
+from rocking.motions.formats.sac import OBSPY
 from rocking.motions.motion import GroundMotion, checked_motion
 
-_OBSPY = ForeignReader(Path(__file__).with_name("obspy_response.py"), "ObsPy", "obspy")
 ABOVE = 1.25  # the edge of the band goes to zero at so many times its upper end, and at half its lower end [-]
 
 
@@ -32,7 +31,7 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
     channel["channel"] = motion.metadata["component"]
     source = Source.of_path(stations)
     request = {"channel": channel, "start": motion.metadata["starttime"], "step": motion.time_step, "count": count}
-    found, arrays = _OBSPY.answer(source, request, source.content)
+    found, arrays = OBSPY.answer(source, request, source.content)
     if not arrays:
         what = f"it must describe {channel['channel']} once, with its response, found {found['channels']}"
         raise source.error(None, what)

@@ -1,4 +1,4 @@
-"""What ObsPy does with a file, in a process of its own (see `foreign_worker`, which runs this file)."""
+"""What ObsPy does with a file or says of an instrument, in a process of its own (`foreign_worker` runs this file)."""
 
 import io
 import math
@@ -23,6 +23,8 @@ def prepare() -> None:
 
 def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
     """Return descriptions of a file's traces, each with its own channels of a StationXML file, and their samples."""
+    if "channel" in request:
+        return _response(request, content)
     obspy = import_module("obspy")
     warnings.simplefilter("error")
     traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
@@ -72,3 +74,17 @@ def _channel(channel: Any) -> dict[str, Any]:
         "rate": float(channel.sample_rate or math.nan),
         "sensitivity": None if not total else [float(total.value), str(total.input_units), str(total.output_units)],
     }
+
+
+def _response(request: dict[str, Any], content: bytes) -> tuple[dict[str, Any], list[Any]]:
+    """Return the response of a channel to acceleration, over its overall sensitivity, at the frequencies of an FFT."""
+    warnings.simplefilter("ignore")
+    obspy = import_module("obspy")
+    inventory = obspy.read_inventory(io.BytesIO(content), format="STATIONXML")
+    found = inventory.select(**request["channel"], time=obspy.UTCDateTime(request["start"]))
+    channels = [channel for network in found for station in network for channel in station]
+    if len(channels) != 1 or not channels[0].response or not channels[0].response.instrument_sensitivity:
+        return {"channels": len(channels)}, []
+    response = channels[0].response
+    values, _ = response.get_evalresp_response(request["step"], request["count"], output="ACC")
+    return {"channels": 1}, [np.asarray(values / response.instrument_sensitivity.value, dtype=np.complex128)]

@@ -118,7 +118,7 @@ class Trace:
     samples: Any  # as they stand in the file
 
 
-_OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obspy")
+OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obspy")
 
 
 def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
@@ -126,7 +126,7 @@ def read_traces(source: Source, form: str, stations: Source | None = None, **opt
     if find_spec("obspy") is None:
         need_obspy(form)
     files = [source.content] if stations is None else [source.content, stations.content]
-    found, arrays = _OBSPY.answer(source, {"format": form, "options": options}, *files)
+    found, arrays = OBSPY.answer(source, {"format": form, "options": options}, *files)
     if "stations" in found and stations is not None:
         raise stations.error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
     if not found["traces"]:
