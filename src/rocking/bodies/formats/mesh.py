@@ -16,11 +16,11 @@ from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.formats.words import MOST_VERTICES, blamed, checked_file
 from rocking.bodies.solid._changes import Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
-from rocking.bodies.solid._resting import settled, stands
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.solid import Solid
+from rocking.bodies.solid.standing import settled, stands
 from rocking.bodies.solid.surfaces import vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray

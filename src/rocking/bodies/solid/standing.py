@@ -1,4 +1,4 @@
-"""How parts can stand: equilibria, rings of what is turned; parts set down, and seen from the side."""
+"""How parts can stand: equilibria, rings of what is turned; parts set down or let down, and seen from the side."""
 
 import math
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from rocking.bodies.equilibria import Equilibria, Equilibrium, Ring, StablePose, equilibria
+from rocking.bodies.equilibria import Equilibria, Equilibrium, Ring, StablePose, equilibria, poses
 from rocking.bodies.moments import SolidMoments
 from rocking.bodies.section import Section
 from rocking.bodies.solid.base import Base, RoundBase, SupportPolygon, hull
@@ -24,6 +24,7 @@ _ROUND = 1e-4
 _COAXIAL = 1e-9
 _CHORDS = 4000
 _CHORD = 0.02
+_AHEAD = 1e-9
 
 
 def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, least_barrier: float | None) -> Equilibria:
@@ -58,6 +59,33 @@ def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list
     ]
     on_rim = any(footprint(part, 0.0, _COAXIAL * size)[1] for part in turned)
     return turned, None if on_rim else hull(pose.support)
+
+
+def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
+    """Return whether the centre lies above the hull of the points that are within a tolerance of the lowest [m]."""
+    low = points[points[:, 2] <= points[:, 2].min() + tolerance, :2]
+    try:
+        return hull(low).margin(centre[:2]) > 1e-12 * float(np.ptp(points, axis=0).max())
+    except GeometryError:
+        return False
+
+
+def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
+    """Return the rotation that lets a body down, from as it is onto a facet of its hull that holds its centre."""
+    # The ray from the centre downward leaves the hull through a facet; the body is turned onto that, and again, until
+    # the ray leaves through the facet that it lies on. The centre comes lower each time: from z / cos(angle) to z.
+    from scipy.spatial import ConvexHull
+
+    equations = ConvexHull(points - centre).equations
+    normals, distances = equations[:, :3], -equations[:, 3]
+    down, lowest = np.array([0.0, 0.0, -1.0]), np.inf
+    while True:
+        ahead = normals @ down
+        through = np.divide(distances, ahead, out=np.full(len(ahead), np.inf), where=ahead > _AHEAD)
+        facet = int(np.argmin(through))
+        if not distances[facet] < lowest * (1.0 - 1e-12):
+            return poses.set_down(down)
+        down, lowest = normals[facet], float(distances[facet])
 
 
 def _axis(parts: Sequence[Part], centre: FloatArray, size: float) -> FloatArray | None:

@@ -13,7 +13,7 @@ from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.solid import _shells, box, extrusion, rotation_about
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
 from rocking.bodies.solid._repair import repaired
-from rocking.bodies.solid._resting import settled
+from rocking.bodies.solid.standing import settled
 from rocking.cli import main
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
