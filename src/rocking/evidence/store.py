@@ -6,9 +6,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rocking.errors import InvalidValueError, MeasurementError, RockingError
+from rocking.errors import InvalidValueError, MeasurementError
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets, joined
-from rocking.tables.table import written_whole
+from rocking.tables.table import writing, written_whole
 
 PUBLISHED, OWN = "published", "own"
 """Words of a selection: the 39 coefficients of the package, and all files of the store."""
@@ -72,12 +72,10 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
     if target.exists():
         return target, data, False
     _once([*((str(kept), each) for kept, each in own_sets()), (str(path), data)])
-    try:
+    with writing(f"to {target.parent}"):
         target.parent.mkdir(parents=True, exist_ok=True)
         with written_whole(target) as unfinished:
             unfinished.write_bytes(content)
-    except OSError as error:
-        raise RockingError(f"cannot write to {target.parent}: {error.strerror}") from error
     return target, data, True
 
 

@@ -23,6 +23,7 @@ from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_unt
 from rocking.plots.body import closed
 from rocking.plots.response import motion_curves, over_slenderness
 from rocking.plots.style import DASHED, GREY, INK, PALE, in_journal_style
+from rocking.tables.table import writing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,10 +74,8 @@ def animate_html(response: Response | InSpace, path: str | Path) -> Path:
     """
     target = target_of(path, ".html")
     _until(response)
-    try:
+    with writing(target):
         target.write_text(page(response), encoding="utf-8")
-    except OSError as error:
-        raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
     return target
 
 
@@ -211,10 +210,8 @@ def animate_gif(
             f"a GIF has at most {MOST_FRAMES} frames, got {count}: {end:.3g} s of response at fps = {fps:g}; "
             f"speed = {slowest_speed(response, fps):.3g} would do, or a web page"
         )
-    try:
+    with writing(target):
         _film(response, target, lasts, lasts * speed, progress)
-    except OSError as error:
-        raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
     return target
 
 

@@ -8,12 +8,13 @@ import numpy as np
 
 from rocking import checks
 from rocking.dynamics.response import Response
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.plots.animation import MOST_FRAMES, draw_body, draw_ground, target_of
 from rocking.plots.animation_scene import Scene, scene_of
 from rocking.plots.response import motion_curves, over_slenderness
 from rocking.plots.style import DASHED, GREY, PALE, in_journal_style, look
+from rocking.tables.table import writing
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -89,10 +90,8 @@ def animate_comparison(
             f"a GIF has at most {MOST_FRAMES} frames, got {count}: {end:.3g} s of response at fps = {fps:g}; "
             f"until, or a higher speed than {speed:g}, makes it shorter"
         )
-    try:
+    with writing(target):
         _save(_frames(responses, scenes, title, count, end), target, lasts)
-    except OSError as error:
-        raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
     return target
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from rocking.errors import RockingError, extra
 from rocking.restitution import models
+from rocking.tables.table import writing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -245,9 +246,6 @@ def write(figure: "Figure", path: str | Path) -> Path:
     }
     if path.suffix not in metadata:
         raise RockingError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
-    try:
-        with journal_style():
-            figure.savefig(path, metadata=metadata[path.suffix])
-    except OSError as error:
-        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
+    with writing(path), journal_style():
+        figure.savefig(path, metadata=metadata[path.suffix])
     return path

@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from rocking.errors import InvalidValueError, MissingExtraError, RockingError, extra
+from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.reports.document import render_pdf, write_html
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_photos import thumbnails
@@ -26,7 +26,7 @@ from rocking.studies.inventory.table import (
     words_of,
 )
 from rocking.tables import escaped
-from rocking.tables.table import written_whole
+from rocking.tables.table import writing, written_whole
 
 STEM = "inventory"  # name of every file, before its suffix
 
@@ -38,10 +38,8 @@ _WIDTHS = {"name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "rema
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
     """Write an assessment in every form; return the files, and sentences on those that need a missing library."""
-    try:
+    with writing(f"to {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RockingError(f"cannot write to {folder}: {error.strerror}") from error
     written: list[Path] = []
     left_out: list[str] = []
     for suffix in _WRITERS:
@@ -70,11 +68,8 @@ def _form(path: Path) -> str:
 
 
 def _write_whole(assessment: Assessment, path: Path) -> Path:
-    try:
-        with written_whole(path) as unfinished:
-            _WRITERS[_form(path)](assessment, unfinished)
-    except OSError as error:
-        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
+    with writing(path), written_whole(path) as unfinished:
+        _WRITERS[_form(path)](assessment, unfinished)
     return path
 
 

@@ -7,10 +7,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import MissingExtraError, RockingError
+from rocking.errors import MissingExtraError
 from rocking.evidence._errata import TableRow
 from rocking.reports.document import Document, ReportTable, made_with, render_pdf, write_html
 from rocking.reports.paper_document import Reproduction, paper_document
+from rocking.tables.table import writing
 
 Step = Callable[[str], None]
 
@@ -20,11 +21,9 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
     # returns the files to look at, and what was not written since an optional package is missing, with how to install
     # it
     pictures, tables = folder / "figures", folder / "tables"
-    try:
+    with writing(f"to {folder}"):
         for each in (pictures, tables):
             each.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RockingError(f"cannot write to {folder}: {error.strerror}") from error
     written: list[Path] = []
     left_out: list[str] = []
     try:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.quantities import QUANTITIES, Quantity
 
 PIECE = 1 << 16
@@ -241,6 +241,15 @@ def target_of(path: str | os.PathLike[str]) -> Path:
     if not target.parent.is_dir():
         raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
     return target
+
+
+@contextmanager
+def writing(path: Path | str) -> Iterator[None]:
+    """Say which file or folder could not be written, and why, where the system refuses it."""
+    try:
+        yield
+    except OSError as error:
+        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 @contextmanager
