@@ -82,6 +82,28 @@ UNCOUNTED = 1_000_000
 """Impacts, and mode, of a body in space that has overturned: they go on as it falls, and are not counted."""
 
 
+_MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact",
+          UNCOUNTED: "overturns"}  # fmt: skip
+
+
+def mode_words(mode: int) -> str:
+    """Return in words how a history ends.
+
+    >>> mode_words(-1), mode_words(2)
+    ('rocks, stays standing', 'overturns after 2 impacts')
+    """
+    return _MODES.get(mode) or f"overturns after {mode} impact{'s' if mode != 1 else ''}"
+
+
+def mode_shares(modes: Any) -> list[dict[str, Any]]:
+    """Return mode, meaning, count and share [-] of the histories that end in each way."""
+    counted = zip(*(part.tolist() for part in np.unique(modes, return_counts=True)), strict=True)
+    return [
+        {"mode": mode, "meaning": mode_words(mode), "count": count, "share": count / modes.size}
+        for mode, count in counted
+    ]
+
+
 def overturned(outcome: Any) -> FloatArray:
     """Return 1 for histories that overturned, 0 for others."""
     # NaN without a result, which is neither a fall nor a stand

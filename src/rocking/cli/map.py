@@ -11,7 +11,7 @@ import typer
 from rocking.cli import options
 from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
 from rocking.cli.page import Page, bar, deliver
-from rocking.outcome import UNCOUNTED
+from rocking.outcome import mode_shares
 from rocking.spec.document import MapTable
 
 if TYPE_CHECKING:
@@ -30,10 +30,6 @@ _AXIS = (
     ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "
     "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16"
 )
-_MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact",
-             UNCOUNTED: "overturns"}  # fmt: skip
-
-
 EXPORTS = {
     "picture": Export(PICTURES, draw),
     "csv": Export((".csv",), lambda answer, path: write_dataset(answer.whole, path)),
@@ -215,7 +211,7 @@ class MapAnswer:
             "mode": arrays["mode"],
             "peak_ratio": arrays["peak_ratio"],
             "cells": arrays["mode"].size,
-            "modes": self.shares(),
+            "modes": mode_shares(arrays["mode"]),
             "refined_points": arrays.points,
             "islands": {
                 "count": len(islands),
@@ -235,16 +231,6 @@ class MapAnswer:
 
     def _pairs(self) -> list[tuple[str, str, Any]]:
         return [(a, b, self.compared.flips_between(a, b)) for a, b in combinations(self.compared.labels, 2)]
-
-    def shares(self) -> list[dict[str, Any]]:
-        """Return mode, meaning, count and share [-] of the cells that end in each way."""
-        import numpy as np
-
-        modes, counts = np.unique(self.arrays["mode"], return_counts=True)
-        return [
-            {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / self.arrays["mode"].size}
-            for mode, count in zip(modes.tolist(), counts.tolist(), strict=True)
-        ]
 
     def extent(self) -> dict[str, Any] | None:
         """Return least and greatest x and y at which anything overturns, and the lowest point along y; or None."""
@@ -291,7 +277,7 @@ class MapAnswer:
 
     def _share_rows(self) -> list[tuple[str, ...]]:
         """Return a row for each way to end; under long records the many late ones are one row."""
-        shares = self.shares()
+        shares = mode_shares(self.arrays["mode"])
         late, rows = [one for one in shares if one["mode"] > _LAST], [one for one in shares if one["mode"] <= _LAST]
         if len(late) > 1:
             total = {name: sum(one[name] for one in late) for name in ("count", "share")}
@@ -325,12 +311,3 @@ class MapAnswer:
     def _value(self, axis: "Axis", value: float) -> str:
         unit, size = self.unit(axis)
         return f"{value / size:.4g}{'' if unit == '1' else f' {unit}'}"
-
-
-def meaning(mode: int) -> str:
-    """Return a mode in words.
-
-    >>> meaning(-1), meaning(2)
-    ('rocks, stays standing', 'overturns after 2 impacts')
-    """
-    return _MEANINGS.get(mode) or f"overturns after {mode} impact{'s' if mode != 1 else ''}"

@@ -12,7 +12,7 @@ from rocking.app.api.response import answer_facts
 from rocking.app.errors import NotFound
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import motions_in
-from rocking.app.studies.results import meaning, plain
+from rocking.app.studies.results import plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_file import body_to_toml
 from rocking.dynamics import simulate
@@ -21,7 +21,7 @@ from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.motions.pulses import pulse
-from rocking.outcome import Outcome
+from rocking.outcome import Outcome, mode_words
 from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseProblem
@@ -231,7 +231,7 @@ def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
     """Return what a study has of a history, as it was computed, `StoredHistory`."""
     history = study.history(place.number)
     results = {key: plain(history[name]) for name, key in _STORED.items()}
-    return {"history": place.number, "meaning": meaning(results["mode"]), **results}
+    return {"history": place.number, "meaning": mode_words(results["mode"]), **results}
 
 
 def _responded(

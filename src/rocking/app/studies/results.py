@@ -14,12 +14,9 @@ from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.outcome import contact_words, lost_contact
+from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.version import __version__
-
-MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
-"""Ways to end in words; n > 0 overturns after n impacts."""
 
 NAME = f"result-{__version__}.json"  # another version may tell other things
 _LARGEST = 20_000
@@ -57,23 +54,6 @@ def packed(values: np.ndarray) -> Any:
         kind = next(each for each in _WHOLE if (ends == ends.astype(each)).all())
     data = base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
     return {"kind": kind, "shape": values.shape, "base64": data}
-
-
-def meaning(mode: int) -> str:
-    """Return a way to end in words.
-
-    >>> meaning(-1), meaning(1)
-    ('rocks, stays standing', 'overturns after 1 impact')
-    """
-    return MODES.get(mode) or f"overturns after {mode} impact{'s' if mode != 1 else ''}"
-
-
-def shares(modes: np.ndarray) -> list[dict[str, Any]]:
-    """Return how many histories end in which way, by mode."""
-    counts = zip(*(part.tolist() for part in np.unique(modes, return_counts=True)), strict=True)
-    return [
-        {"mode": mode, "meaning": meaning(mode), "count": count, "share": count / modes.size} for mode, count in counts
-    ]
 
 
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
@@ -134,7 +114,7 @@ def product_result(study: OpenStudy) -> dict[str, Any]:
         median = np.nanmedian(np.where(known & (modes < 0), peaks, np.nan), axis=1)
     return {
         **coordinates(study, motions="motion", bodies="body", scales="scale", slenderness_angles="slenderness_angle"),
-        "shares": [shares(each) for each in modes],
+        "shares": [mode_shares(each) for each in modes],
         "cells": {
             "computed": known.sum(axis=1),
             "lifted": (known & (modes > -2)).sum(axis=1),
@@ -166,7 +146,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     return {
         **coordinates(study, x="period", angles="slenderness_angle", motions="motion", semi_diagonals="semi_diagonal"),
         "curves": curves,
-        "shares": [shares(each) for each in modes],
+        "shares": [mode_shares(each) for each in modes],
     }
 
 
@@ -179,10 +159,10 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         **axes,
         "outcome": packed(by_restitution(study, "outcome")),
         "mode": packed(modes),
-        "mode_words": {mode: meaning(mode) for mode in np.unique(modes).tolist()},
+        "mode_words": {mode: mode_words(mode) for mode in np.unique(modes).tolist()},
         "peak": packed(by_restitution(study, "peak_ratio")),
         "impacts": packed(by_restitution(study, "impacts")),
-        "shares": [shares(each) for each in modes],
+        "shares": [mode_shares(each) for each in modes],
         "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
