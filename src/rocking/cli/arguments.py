@@ -4,7 +4,7 @@ import re
 import shlex
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -227,6 +227,19 @@ class Arguments:
         _, words = self.body_and_motions()
         several = len(words) > 1 or any(is_set(word, CommandFiles(Path())) for word in words)
         return words if several and not any(word[:2] in {"x=", "y=", "z="} for word in words) else []
+
+    def hinted(self) -> AbstractContextManager[None]:
+        """Say what to type, or what a file may be, where that of the body or the first motion is refused."""
+        body, motions = self.body_and_motions()
+        axis, _, rest = motions[0].partition("=") if motions else ("", "", "")
+        return hinted(body, rest if axis in {"x", "y", "z"} else next(iter(motions), None))
+
+    def restitution(self, usual: Tables | None = None) -> Tables:
+        """Return the table [restitution]: what `--set` says, or the usual one, which has the model of the option."""
+        keys: Tables = self.sets.get("restitution", {})
+        if keys and (option := self.spelt("restitution")):
+            raise InvalidValueError(f"{option} and --set restitution.{next(iter(keys))} say the same: leave one out")
+        return keys or ({"model": self.options["restitution"]} if usual is None else usual)
 
     def body_table(self, file: str | None) -> Tables:
         values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}

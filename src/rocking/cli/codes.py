@@ -49,7 +49,7 @@ def codes(
     record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
     synthetic: options.Family = None,
-    count: Annotated[int | None, typer.Option(help="How many synthetic motions, 100 if not given.")] = None,
+    count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
     measure: Annotated[
         str, typer.Option(help="Intensity that the motions are brought to, as of rocking fragility.")
@@ -104,15 +104,11 @@ def codes(
 
 
 def _problem(arguments: "Arguments") -> "StudyProblem":
-    from rocking.cli.arguments import NO_MOTION, hinted
-    from rocking.cli.study import family, in_lists, problem_of
+    from rocking.cli.study import motions_of, problem_of
 
-    body, named = arguments.body_and_motions()
-    synthetic = family(arguments, {"count": COUNT, "seed": SEED})
-    if synthetic is not None and "synthetic" not in synthetic:
-        raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
-    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
-        motions = [synthetic] if synthetic else [in_lists(each) for each in arguments.each(named, arguments.of_body)]
+    with arguments.hinted():
+        motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
+        body, _ = arguments.body_and_motions()
         tables = {"body": _bodies(arguments, body), "restitution": {"models": [arguments.options["restitution"]]}}
         return problem_of("histories", arguments, motions, **tables)
 

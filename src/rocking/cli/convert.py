@@ -9,7 +9,7 @@ import typer
 
 from rocking import plausibility
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, deliver
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
@@ -46,7 +46,7 @@ def _kinds() -> dict[str, Export]:
     from rocking.motions.formats import formats
 
     known = {name: Export(form.suffixes, _as(name)) for name, form in formats().items()}
-    others = {"picture": Export(PICTURES, draw, "matplotlib"), "provenance": Export((".json",), _provenance)}
+    others = {"picture": DRAWN, "provenance": Export((".json",), _provenance)}
     return {"columns": known["columns"], **known, **others}
 
 

@@ -11,7 +11,7 @@ import typer
 from rocking.bodies import Solid
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
-from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
+from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
 from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendation, side_line
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
@@ -42,7 +42,7 @@ def _stages(answer: Any, path: Path) -> None:
 
 
 EXPORTS = {
-    "picture": Export(PICTURES, draw),
+    "picture": DRAWN,
     "csv": Export((".csv",), lambda answer, path: answer.write_csv(path)),
     "stages": Export(PICTURES, _stages),
     "space": Export((".glb",), lambda answer, path: answer.write_glb(path)),

@@ -13,7 +13,7 @@ from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, Sta
 from rocking.cli import options
 from rocking.cli.arguments import Arguments
 from rocking.cli.cor import named_body
-from rocking.cli.exports import PICTURES, Export, Exports, draw, write_records
+from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
 from rocking.cli.solids import body_facts, show_body
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 DIRECTIONS = 12  # azimuths towards which barriers are printed, from x towards y
 
 EXPORTS = {
-    "picture": Export(PICTURES, draw),
+    "picture": DRAWN,
     "space": Export((".glb",), lambda answer, path: answer.write_glb(path)),
     "csv": Export((".csv",), lambda answer, path: write_records(path, answer.facts()["stable"])),
 }

@@ -112,6 +112,7 @@ def _report(answer: Any, path: Path) -> None:
     report(answer.found, path, name=getattr(answer, "name", ""))
 
 
+DRAWN = Export(PICTURES, draw, "matplotlib")
 # of answers whose `found` has a report, and knows what its files hold (`rocking.exported`)
 PICTURE = Export((".png", ".svg"), draw, "matplotlib")
 REPORTED = {"picture": PICTURE, "report": Export((".pdf", ".html"), _report, "matplotlib")}
@@ -132,6 +133,14 @@ def write_dataset(dataset: Any, path: Path) -> None:
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
     # names of restitutions have no unit
     write_columns(path, {str(name): (row, dataset[name].attrs.get("units", "")) for name, row in rows.items()})
+
+
+def _write_dataset(answer: Any, path: Path) -> None:
+    write_dataset(answer.dataset, path)
+
+
+# of answers that are a dataset
+DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf": Export((".nc",), _write_dataset)}
 
 
 def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
 from rocking.errors import InvalidValueError
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from rocking.cli.fragility_answer import FragilityAnswer
     from rocking.spec.study import StudyProblem
 
-_SHAKING = "What shakes it"
 ANALYSES = ("stripes", "cloud", "incremental")
 MOST_HISTORIES = 10_000_000
 """A larger analysis is a campaign."""
@@ -45,7 +44,7 @@ def _of_curves(writer: str, *more: str) -> Any:
 
 
 EXPORTS = {
-    "picture": Export(PICTURES, draw, "matplotlib"),
+    "picture": DRAWN,
     "csv": Export((".csv",), _csv),
     "p58": Export((".csv",), _of_curves("to_csv", "fema-p58")),
     "pelicun": Export((".csv",), _of_curves("to_csv", "pelicun")),
@@ -62,24 +61,11 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 def fragility(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: Annotated[
-        list[str] | None,
-        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
-    ] = None,
+    record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
-    synthetic: Annotated[
-        str | None,
-        typer.Option(
-            help="Family of motions in their place: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like.",
-            rich_help_panel=_SHAKING,
-        ),
-    ] = None,
-    count: Annotated[
-        int | None, typer.Option(help="How many synthetic motions, 100 if not given.", rich_help_panel=_SHAKING)
-    ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
-    ] = None,
+    synthetic: options.Family = None,
+    count: Annotated[int | None, options.count(COUNT)] = None,
+    seed: options.Seed = None,
     analysis: Annotated[
         str,
         typer.Option(
@@ -195,18 +181,13 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
 
 def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     from rocking.cli.arguments import as_typed
-    from rocking.cli.study import family, in_lists, of_body
+    from rocking.cli.study import motions_of, of_body
 
     kind, restitution = arguments.options["analysis"], arguments.options["restitution"] or ["ked"]
-    synthetic = family(arguments, {"count": COUNT, "seed": SEED})
-    if synthetic is None:
-        motions = [in_lists(each) for each in arguments.each(arguments.body_and_motions()[1], arguments.of_body)]
-    elif "synthetic" not in synthetic:
-        raise InvalidValueError("what shakes it? Give --motion FILE, or --synthetic firm-ground")
-    else:
-        count, motions = synthetic["count"], [synthetic]
-        if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
-            raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {count}; rocking campaign takes more")
+    motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
+    count = motions[0].get("count")
+    if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
+        raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {count}; rocking campaign takes more")
     with as_typed():
         if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
             bare = {key: own[key] for key in ("measure", "states")}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
+from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import mode_shares
 from rocking.spec.document import MapTable
@@ -30,11 +30,6 @@ _AXIS = (
     ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "
     "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16"
 )
-EXPORTS = {
-    "picture": Export(PICTURES, draw),
-    "csv": Export((".csv",), lambda answer, path: write_dataset(answer.whole, path)),
-    "netcdf": Export((".nc",), lambda answer, path: write_dataset(answer.whole, path)),
-}
 
 
 @options.sized
@@ -50,14 +45,14 @@ def map(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    out: Annotated[list[str] | None, options.out(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
     from rocking.cli.arguments import Arguments, as_typed, document_file
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(out, DATASET)
     written: dict[str, str] = {}
     length = None
     if file := document_file(context, body, ("campaign", "map"), ["threads"]):
@@ -158,7 +153,7 @@ class MapAnswer:
         return safe_islands(self.arrays)
 
     @property
-    def whole(self) -> "xr.Dataset":
+    def dataset(self) -> "xr.Dataset":
         """Everything as one dataset, over ``restitution`` too where there are several."""
         if self.compared is None:
             return self.arrays.to_xarray()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw, write_columns
+from rocking.cli.exports import DRAWN, Export, Exports, write_columns
 from rocking.cli.numbers import beside_g, in_unit, quantity
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
@@ -43,7 +43,7 @@ def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
     write_columns(path, {name: (values, "") for name, values in columns})
 
 
-EXPORTS = {"picture": Export(PICTURES, draw), "csv": Export((".csv",), _write_csv)}
+EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 
 @options.sized

@@ -9,7 +9,7 @@ import typer
 
 from rocking import checks
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, deliver
 from rocking.conventions import ACCELERATION_UNITS, g
@@ -43,7 +43,7 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
     to_csv(Table("sample", {name: Column(values, "") for name, values in columns.items()}), path, blank=False)
 
 
-EXPORTS = {"picture": Export(PICTURES, draw), "csv": Export((".csv",), _write_csv)}
+EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 
 def motion(

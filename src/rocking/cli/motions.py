@@ -8,7 +8,7 @@ import typer
 
 from rocking import checks
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import ACCELERATION_UNITS
@@ -44,7 +44,7 @@ EXPORTS = {
     "csv": Export((".csv",), _csv),
     "excel": Export((".xlsx",), _excel, "openpyxl"),
     "netcdf": Export((".nc",), _netcdf, "h5netcdf"),
-    "picture": Export(PICTURES, draw, "matplotlib"),
+    "picture": DRAWN,
 }
 
 

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from rocking import checks
@@ -112,6 +113,13 @@ def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
 def beside_g(unit: str) -> str:
     """Return the unit in which an acceleration is written where it stands in g too: m/s2 in place of g."""
     return "m/s2" if unit == "g" else unit
+
+
+def number_or_name(text: str | None) -> float | str | None:
+    """Return a coefficient where a number was typed, else the name of a model, or none."""
+    with suppress(TypeError, ValueError):
+        return float(text or "")
+    return text
 
 
 def side_line(side: Any, length: str) -> str:

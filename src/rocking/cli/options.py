@@ -10,7 +10,7 @@ import typer
 from rocking.cli import completion
 from rocking.spec import document as tables
 
-SIZE, HOW, OUTPUT = "Size, in place of a body file", "How it is computed", "Output"
+SIZE, SHAKING, HOW, OUTPUT = "Size, in place of a body file", "What shakes it", "How it is computed", "Output"
 
 
 def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
@@ -99,7 +99,10 @@ Motions = Annotated[
     list[str] | None,
     typer.Option("--motion", help="The same, as an option; again for more.", autocompletion=completion.pulses),
 ]
-SeveralRecords = Annotated[list[str] | None, typer.Argument(help="Record files, file#COMPONENT, or pulses.")]
+SeveralRecords = Annotated[
+    list[str] | None,
+    typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=3,period=0.8."),
+]
 SeveralMotions = Annotated[
     list[str] | None,
     typer.Option(
@@ -125,9 +128,22 @@ MeasuredRestitution = Annotated[
     str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
 ]
 FrictionOfRange = Annotated[float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")]
-Family = Annotated[str | None, typer.Option(help="Family of motions in their place, such as firm-ground.")]
-Seed = Annotated[int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.")]
+Family = Annotated[
+    str | None,
+    typer.Option(
+        help="Family of motions in their place: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like.",
+        rich_help_panel=SHAKING,
+    ),
+]
+Seed = Annotated[
+    int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=SHAKING)
+]
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
+
+
+def count(usual: int) -> Any:
+    """Return the option of how many synthetic motions there are."""
+    return typer.Option(help=f"How many synthetic motions, {usual} if not given.", rich_help_panel=SHAKING)
 
 
 def out(kinds: dict[str, Any]) -> Any:

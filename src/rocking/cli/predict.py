@@ -1,7 +1,6 @@
 """`rocking predict` and `rocking assess`: how likely a body is to overturn, how far it is from that, what to do."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,9 +10,9 @@ import typer
 
 from rocking.cli import options
 from rocking.cli.exports import CSV, NETCDF, PICTURE, REPORTED, Export, Exports
+from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import percent
-from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment
@@ -38,7 +37,7 @@ def predict(
     record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
     synthetic: options.Family = None,
-    count: Annotated[int | None, typer.Option(help="How many synthetic motions, 20 if not given.")] = None,
+    count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
     restitution: options.MeasuredRestitution = None,
     friction: options.FrictionOfRange = None,
@@ -84,32 +83,20 @@ def typed(
     context: typer.Context, kind: type[D], told: dict[str, Any], own: dict[str, dict[str, Any]] | None = None
 ) -> "tuple[D, InputFiles]":
     """Return the document that was typed; told: its [predict], own: tables that predict does not have."""
-    from rocking.cli.arguments import NO_MOTION, Arguments, hinted
-    from rocking.cli.study import family, in_lists
+    from rocking.cli.arguments import Arguments
+    from rocking.cli.study import motions_of
     from rocking.spec.reading import CommandFiles, checked
 
     arguments = Arguments(context, *TABLES, *(own or ()))
-    body, named = arguments.body_and_motions()
-    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
+    with arguments.hinted():
         document: dict[str, Any] = {
-            "body": arguments.body_table(body),
+            "body": arguments.body_table(arguments.body_and_motions()[0]),
             "predict": arguments.table("predict", told),
             "settings": arguments.table("settings", {}),
             **{name: arguments.table(name, keys) for name, keys in (own or {}).items()},
         }
-        synthetic = family(arguments, {"count": COUNT, "seed": SEED})
-        if synthetic is not None and "synthetic" not in synthetic:
-            raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
-        each = [synthetic] if synthetic else map(in_lists, arguments.each(named, arguments.components))
-        document["motions"] = list(each)
+        document["motions"] = motions_of(arguments, arguments.components, {"count": COUNT, "seed": SEED})
         return checked(kind, document), CommandFiles(Path())
-
-
-def number_or_name(text: Any) -> Any:
-    """Return a coefficient where a number was typed, else the name of a model."""
-    with suppress(TypeError, ValueError):
-        return float(text)
-    return text
 
 
 @dataclass(frozen=True)
@@ -181,7 +168,7 @@ def assess(
     record: options.SeveralRecords = None,
     motion: options.SeveralMotions = None,
     synthetic: options.Family = None,
-    count: Annotated[int | None, typer.Option(help="How many synthetic motions, 20 if not given.")] = None,
+    count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
     restitution: Annotated[
         list[str] | None, typer.Option(help="Model or coefficient, again for more; all models if none.")

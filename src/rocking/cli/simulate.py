@@ -11,8 +11,8 @@ import typer
 from rocking import plausibility
 from rocking.bodies import Body
 from rocking.cli import completion, options
-from rocking.cli.arguments import Arguments, document_file, hinted, parsed_sets, with_sets
-from rocking.cli.exports import PICTURES, Export, Exports, draw
+from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
+from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
@@ -58,7 +58,7 @@ def _animate(answer: Any, path: Path) -> None:
 
 
 EXPORTS = {
-    "picture": Export(PICTURES, draw),
+    "picture": DRAWN,
     "animation": Export((".html", ".gif", ".glb"), _animate),
     "csv": Export((".csv",), lambda answer, path: answer.response.to_csv(path)),
     "mat": Export((".mat",), lambda answer, path: answer.response.to_mat(path)),
@@ -133,12 +133,11 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
         raise InvalidValueError(
             "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
         )
-    axis, _, rest = motions[0].partition("=") if motions else ("", "", "")
-    with hinted(body, rest if axis in {"x", "y", "z"} else next(iter(motions), None)):
+    with arguments.hinted():
         tables: dict[str, Any] = {
             "body": arguments.body_table(body),
             "response": response,
-            "restitution": _restitution(arguments),
+            "restitution": arguments.restitution(),
             "settings": arguments.sets.get("settings", {}),
         }
         if not free:
@@ -156,10 +155,10 @@ def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAns
     if arguments.options["free"] is not None:
         raise InvalidValueError(f"give a motion or --free, not both; got {words[0][:100]!r}")
     files = CommandFiles(Path())
-    with hinted(body, words[0]):
+    with arguments.hinted():
         own = {name: arguments.options[name] for name in ("friction", "bounce")}
         tables = {
-            "response": arguments.table("response", own), "restitution": _restitution(arguments),
+            "response": arguments.table("response", own), "restitution": arguments.restitution(),
             "settings": arguments.sets.get("settings", {}),
         }  # fmt: skip
         scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})
@@ -215,14 +214,6 @@ class SeveralAnswer:
 def _peak(response: Any) -> float:
     """Return the largest rotation of a plane body, or tilt of one in space [rad]."""
     return abs(float(response.peak_tilt if hasattr(response, "peak_tilt") else response.peak_rotation))
-
-
-def _restitution(arguments: Arguments) -> dict[str, Any]:
-    """Return the table [restitution]: what `--set` says takes the place of the usual model."""
-    keys: dict[str, Any] = arguments.sets.get("restitution", {})
-    if keys and (option := arguments.spelt("restitution")):
-        raise InvalidValueError(f"{option} and --set restitution.{next(iter(keys))} say the same: leave one out")
-    return keys or {"model": arguments.options["restitution"]}
 
 
 def _check_share(body: Body, free: float, option: str) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import PICTURES, Export, Exports, draw, write_dataset
+from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
@@ -21,19 +21,9 @@ if TYPE_CHECKING:
 _MOST = 10_000_000  # histories; more are a campaign
 
 
-EXPORTS = {
-    "picture": Export(PICTURES, draw),
-    "csv": Export((".csv",), lambda answer, path: write_dataset(answer.dataset, path)),
-    "netcdf": Export((".nc",), lambda answer, path: write_dataset(answer.dataset, path)),
-}
-
-
 def spectrum(
     context: typer.Context,
-    motions: Annotated[
-        list[str] | None,
-        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=3,period=0.8."),
-    ] = None,
+    motions: options.SeveralRecords = None,
     motion: options.Motions = None,
     slenderness: Annotated[
         str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
@@ -47,14 +37,14 @@ def spectrum(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    out: Annotated[list[str] | None, options.out(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
     from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(out, DATASET)
     named = [*(motions or ()), *(motion or ())]
     marks = ("campaign", "spectrum")
     if file := document_file(context, named[0] if len(named) == 1 else None, marks, ["threads"]):

@@ -1,12 +1,12 @@
 """What the commands of many histories have in common: their document, its problem, and the head of their pages."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
-from rocking.cli.arguments import NO_MOTION, Arguments, hinted, parsed_sets, with_sets
+from rocking.cli.arguments import NO_MOTION, Arguments, parsed_sets, with_sets
 from rocking.cli.numbers import in_unit, side_line
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
@@ -39,9 +39,7 @@ def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], *
     """Return the problem of the document that was typed, which has some tables beside the settings."""
     own = NEEDS[kind]
     settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
-    if stated := arguments.sets.get("restitution"):
-        if option := arguments.spelt("restitution"):
-            raise InvalidValueError(f"{option} and --set restitution.{next(iter(stated))} say the same: leave one out")
+    if stated := arguments.restitution(tables.get("restitution", {})):
         tables["restitution"] = stated
     document = {"campaign": {"name": own, "kind": kind}, "motions": motions, **settings, **tables}
     return _in_memory(checked(CampaignDocument, document), CommandFiles(Path()))
@@ -76,10 +74,10 @@ def of_body(
     arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str], motions: list[dict[str, Any]]
 ) -> StudyProblem:
     """Return the problem of a study of one body under motions; own: the study's own table."""
-    body, named = arguments.body_and_motions()
     if twice := next((text for text in restitution if restitution.count(text) > 1), None):
         raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
-    with hinted(body, named[0].partition("=")[2] or named[0] if named else None):
+    with arguments.hinted():
+        body, _ = arguments.body_and_motions()
         tables = {"body": arguments.body_table(body), "restitution": {"models": list(restitution)}, NEEDS[kind]: own}
         return problem_of(kind, arguments, motions, **tables)
 
@@ -102,6 +100,17 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     if odd := [*odd, *(f"motion.{key}" for key in arguments.sets.get("motion", {}) if key in of_files)]:
         raise InvalidValueError(f"{', '.join(odd)} is for record files: leave it out, or give --motion")
     return {**usual, **arguments.table("motion", options)}
+
+
+def motions_of(
+    arguments: Arguments, table: Callable[[Sequence[str]], dict[str, Any]], usual: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Return the tables of the motions that were named, each made by `table`, or that of synthetic ones."""
+    if (synthetic := family(arguments, usual)) is None:
+        return [in_lists(each) for each in arguments.each(arguments.body_and_motions()[1], table)]
+    if "synthetic" not in synthetic:
+        raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
+    return [synthetic]
 
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:

@@ -1,6 +1,5 @@
 """`rocking validate`: how good predictions are, where the outcomes are known."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,6 +8,7 @@ import typer
 
 from rocking.cli import options
 from rocking.cli.exports import CSV, REPORTED, Exports
+from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ def _document(context: typer.Context, files: "FolderFiles") -> "tuple[Validation
     from rocking.spec.validation import is_question
 
     arguments = Arguments(context, *TABLES)
-    told = {name: arguments.options[name] for name in ("restitution", "friction")}
-    with suppress(TypeError, ValueError):  # none, or the name of a model
-        told["restitution"] = float(told["restitution"])
+    told = {
+        "restitution": number_or_name(arguments.options["restitution"]), "friction": arguments.options["friction"]
+    }  # fmt: skip
     typed = {
         "body": arguments.table("body", {"units": arguments.length}),
         "predict": arguments.table("predict", told),
@@ -111,9 +111,7 @@ class ValidationAnswer:
             ]
             page.table(("said", "happened", "95 %", "outcomes"), rows)
             page.line()
-        page.line(
-            "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
-        )
+        page.line(NOTE)
         page.facts([("assumed", each) for each in self.found.prediction.assumed])
         if self.found.ignored:
             page.line(f"Columns that were not read: {', '.join(self.found.ignored)}")

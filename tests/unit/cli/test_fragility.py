@@ -310,7 +310,7 @@ def test_nothing_to_export(run, tmp_path):
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        ((*SIZE, *LEVELS), "what shakes it?"),
+        ((*SIZE, *LEVELS), "what moves the ground?"),
         ((*FAMILY, *LEVELS), "a body is a file, or --width"),
         ((*SIZE, *FAMILY, "--motion", "sine:amplitude=1,period=1"), "is for synthetic motions"),
         ((*SIZE, *FAMILY, "--units", "g"), "--units is for record files"),
