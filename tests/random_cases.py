@@ -146,7 +146,8 @@ def components(random: Random, duration: float, time_step: float) -> tuple[rk.Gr
     made = []
     for strength in (1.0, 1.0, 0.5):
         waves = np.sin(2.0 * np.pi * frequency[:, None] * time + random.uniform(0.0, 2.0 * np.pi, (40, 1)))
-        made.append(rk.GroundMotion(strength * rise_and_fall * ((1.0 / (1.0 + frequency)) @ waves), time_step))
+        sway = (waves / (1.0 + frequency)[:, None]).sum(axis=0)
+        made.append(rk.GroundMotion(strength * rise_and_fall * sway, time_step))
     return tuple(made)
 
 

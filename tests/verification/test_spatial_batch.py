@@ -9,6 +9,7 @@ import os
 
 import numpy as np
 import pytest
+from random_cases import components, solid
 
 import rocking as rk
 from rocking import conventions
@@ -32,31 +33,6 @@ LAWS = ("housner-3d", "horizontal-momentum-3d", 0.9)
 BAND = 1e-6
 
 
-def _record(rng, duration=LENGTH):
-    """Three components: noise of 40 sines under an envelope, the vertical one half as strong."""
-    time = np.arange(round(duration / STEP) + 1) * STEP
-    rise_and_fall = np.minimum(1.0, time) * np.exp(-np.maximum(0.0, time - 0.6 * duration))
-    frequency = rng.uniform(0.3, 6.0, 40)
-    made = []
-    for strength in (1.0, 1.0, 0.5):
-        waves = np.sin(2.0 * np.pi * frequency[:, None] * time + rng.uniform(0.0, 2.0 * np.pi, (40, 1)))
-        made.append(rk.GroundMotion(strength * rise_and_fall * ((1.0 / (1.0 + frequency)) @ waves), STEP))
-    return tuple(made)
-
-
-def _polygon(rng):
-    """A convex base of 3 to 8 vertices on a circle, and an off-centre, inhomogeneous body over it."""
-    count = int(rng.integers(3, 9))
-    angle = np.sort((np.arange(count) + rng.uniform(-0.3, 0.3, count)) * 2.0 * np.pi / count)
-    radius, height = rng.uniform(0.2, 0.7), rng.uniform(0.8, 2.5)
-    base = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    centre = np.array([*(base.mean(axis=0) + 0.02 * radius * rng.uniform(-1.0, 1.0, 2)), height])
-    arms = rng.normal(size=(30, 3)) * np.array([radius, 0.8 * radius, 0.6 * height])
-    arms -= arms.mean(axis=0)
-    inertia = 50.0 * (np.square(arms).sum() * np.eye(3) - arms.T @ arms)
-    return SpatialBody(1500.0, centre, inertia, base)
-
-
 def _let_go(start, law):
     return rk.free_rocking(TOWER, restitution=law, start=SpatialStart(**start), duration=3.0)
 
@@ -64,8 +40,8 @@ def _let_go(start, law):
 def _case(seed):
     rng = np.random.default_rng(seed)
     box = SpatialBody.box(rng.uniform(0.3, 1.4), rng.uniform(0.3, 1.4), rng.uniform(1.5, 5.0))
-    body = box if seed % 2 else _polygon(rng)
-    return body, _record(rng), float(rng.uniform(0.3, 1.6)), LAWS[seed % 3]
+    body = box if seed % 2 else solid(rng)
+    return body, components(rng, LENGTH, STEP), float(rng.uniform(0.3, 1.6)), LAWS[seed % 3]
 
 
 def _both(seed):
@@ -259,7 +235,7 @@ def test_ked_is_that_of_the_reference_engine_on_tilted_landings():
 @pytest.mark.parametrize("turned", [0.4, 2.0])
 def test_turning_body_and_motion_together_turns_the_result(turned):
     """The vertical axis is arbitrary: outcome and peak stay, the direction of overturning turns along, to 1e-6."""
-    x, y, z = _record(np.random.default_rng(5))
+    x, y, z = components(5, LENGTH, STEP)
     c, s = math.cos(turned), math.sin(turned)
     a, b = np.asarray(x.acceleration), np.asarray(y.acceleration)
     moved = rk.GroundMotion(c * a - s * b, STEP), rk.GroundMotion(s * a + c * b, STEP), z

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from random_cases import components, solid
 
 import rocking as rk
 from rocking.dynamics.space import SpatialBody, fast_engine, reference
@@ -21,36 +22,11 @@ LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]
 built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
-def _record(rng):
-    """Three components: noise of 40 sines under an envelope, the vertical one half as strong."""
-    time = np.arange(round(LENGTH / STEP) + 1) * STEP
-    envelope = np.minimum(1.0, time) * np.exp(-np.maximum(0.0, time - 0.6 * LENGTH))
-    frequency = rng.uniform(0.3, 6.0, 40)
-    made = []
-    for strength in (1.0, 1.0, 0.5):
-        waves = np.sin(2.0 * np.pi * frequency[:, None] * time + rng.uniform(0.0, 2.0 * np.pi, (40, 1)))
-        made.append(rk.GroundMotion(strength * envelope * ((1.0 / (1.0 + frequency)) @ waves), STEP))
-    return tuple(made)
-
-
-def _polygon(rng):
-    """A convex base of 3 to 8 vertices on a circle, and an off-centre, inhomogeneous body over it."""
-    count = int(rng.integers(3, 9))
-    angle = np.sort((np.arange(count) + rng.uniform(-0.3, 0.3, count)) * 2.0 * np.pi / count)
-    radius, height = rng.uniform(0.2, 0.7), rng.uniform(0.8, 2.5)
-    base = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    centre = np.array([*(base.mean(axis=0) + 0.02 * radius * rng.uniform(-1.0, 1.0, 2)), height])
-    arms = rng.normal(size=(30, 3)) * np.array([radius, 0.8 * radius, 0.6 * height])
-    arms -= arms.mean(axis=0)
-    inertia = 50.0 * (np.square(arms).sum() * np.eye(3) - arms.T @ arms)
-    return SpatialBody(1500.0, centre, inertia, base)
-
-
 def _case(seed):
     rng = np.random.default_rng(seed)
     box = SpatialBody.box(rng.uniform(0.3, 1.4), rng.uniform(0.3, 1.4), rng.uniform(1.5, 5.0))
-    body = box if seed % 2 else _polygon(rng)
-    return body, _record(rng), 1.5 * float(rng.uniform(0.3, 1.6))
+    body = box if seed % 2 else solid(rng)
+    return body, components(rng, LENGTH, STEP), 1.5 * float(rng.uniform(0.3, 1.6))
 
 
 def _reference(seed, law):

@@ -9,6 +9,7 @@ import os
 
 import numpy as np
 import pytest
+from random_cases import components
 from scipy.integrate import trapezoid
 
 import rocking as rk
@@ -38,18 +39,6 @@ COUNTS = {"three": 200, "one": 80, "along and up": 80} if CAMPAIGN else {"three"
 built = pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built")
 
 
-def _record(rng):
-    """Three components: noise of 40 sines under an envelope, the vertical one half as strong."""
-    time = np.arange(round(LENGTH / STEP) + 1) * STEP
-    envelope = np.minimum(1.0, time) * np.exp(-np.maximum(0.0, time - 0.6 * LENGTH))
-    frequency = rng.uniform(0.3, 6.0, 40)
-    made = []
-    for strength in (1.0, 1.0, 0.5):
-        waves = np.sin(2.0 * np.pi * frequency[:, None] * time + rng.uniform(0.0, 2.0 * np.pi, (40, 1)))
-        made.append(rk.GroundMotion(strength * envelope * (waves / (1.0 + frequency)[:, None]).sum(axis=0), STEP))
-    return tuple(made)
-
-
 def _frustum(rng):
     """A solid of revolution whose radius grows or shrinks linearly upwards, by quadrature over its height."""
     radius, height = rng.uniform(0.15, 0.6), rng.uniform(1.0, 4.0)
@@ -66,7 +55,7 @@ def _frustum(rng):
 def _case(seed):
     rng = np.random.default_rng(seed)
     body = SpatialBody.cylinder(rng.uniform(0.3, 1.2), rng.uniform(1.0, 4.0)) if seed % 2 else _frustum(rng)
-    return body, _record(rng), float(rng.uniform(0.5, 3.0))
+    return body, components(rng, LENGTH, STEP), float(rng.uniform(0.5, 3.0))
 
 
 def _reference(seed, **options):

@@ -27,6 +27,7 @@ TOWER = SpatialBody.box(1.0, 1.3, 4.0)
 SQUARE = SpatialBody.box(1.0, 1.0, 4.0)
 ANGLE = st.floats(-math.pi, math.pi)
 SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
+LAW = st.sampled_from(["housner", "ked"])
 
 
 def _records(seed):
@@ -36,14 +37,14 @@ def _records(seed):
 
 @pytest.mark.verifies("invariant", "body and motion turned about the vertical", within="1e-9")
 @settings(max_examples=4 * TIMES)
-@given(ANGLE, st.integers(0, 50))
-def test_turning_body_and_motion_turns_the_response(angle, seed):
+@given(ANGLE, st.integers(0, 50), LAW)
+def test_turning_body_and_motion_turns_the_response(angle, seed, law):
     """Rotated about the vertical together, body and motion give the rotated response until the fifth impact, 1e-9."""
     x, y, z = _records(seed)
     turned = math.cos(angle) * x - math.sin(angle) * y, math.sin(angle) * x + math.cos(angle) * y
     first, second = (
         rk.simulate(
-            TOWER, tuple(rk.GroundMotion(a, 0.02) for a in (*pair, 0.3 * z)), "housner",
+            TOWER, tuple(rk.GroundMotion(a, 0.02) for a in (*pair, 0.3 * z)), law,
             start=SpatialStart(0.02, 0.4 + yaw, yaw), duration=3.0,
         )
         for pair, yaw in (((x, y), 0.0), (turned, angle))
@@ -57,18 +58,14 @@ def test_turning_body_and_motion_turns_the_response(angle, seed):
 
 @pytest.mark.verifies("invariant", "the mirror image", within="1e-9")
 @settings(max_examples=4 * TIMES)
-@given(ANGLE, SPIN)
-def test_a_mirrored_start_gives_the_mirrored_response(azimuth, spin):
+@given(ANGLE, SPIN, LAW)
+def test_a_mirrored_start_gives_the_mirrored_response(azimuth, spin, law):
     """Mirrored in the x-z plane: the same tilt, the opposite direction, to 1e-9 until the fourth impact."""
     assume(abs(math.sin(2.0 * azimuth)) > 0.05)  # on an edge with a spin it is left open which end stays
-    first = rk.free_rocking(
-        TOWER, restitution="housner", start=SpatialStart(0.1, azimuth, angular_velocity=spin), duration=2.0
-    )
-    other = rk.free_rocking(
-        TOWER,
-        restitution="housner",
-        start=SpatialStart(0.1, -azimuth, angular_velocity=(-spin[0], spin[1], -spin[2])),
-        duration=2.0,
+    turned = (-spin[0], spin[1], -spin[2])
+    first, other = (
+        rk.free_rocking(TOWER, restitution=law, start=SpatialStart(0.1, a, angular_velocity=w), duration=2.0)
+        for a, w in ((azimuth, spin), (-azimuth, turned))
     )
     until = first.impacts["time"][4] if first.impacts.size > 4 else 2.0
     keep = min(int((first.time < until).sum()), len(other.time))

@@ -112,15 +112,23 @@ def test_the_order_of_the_steps_is_the_declared_one(order):
     assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.35)  # the slope itself converges as 1 / count
 
 
-@pytest.mark.verifies("closed form", "59/71 and 64/71", within="1e-9")
-def test_the_diagonal_impact_of_a_prism_is_the_reference():
-    """Corner to opposite corner 59/71 at every impact, symmetric for ever; horizontal momentum 64/71."""
-    for law, ratio in (("housner-3d", 59.0 / 71.0), ("horizontal-momentum-3d", 64.0 / 71.0)):
-        run = rk.free_rocking(SQUARE, restitution=law, start=SpatialStart(0.12, 0.25 * math.pi), duration=2.5)
-        assert set(run.impacts["vertices"]) == {"0", "2"}
-        left = run.impacts["energy_after"] / run.impacts["energy_before"]
-        np.testing.assert_allclose(np.sqrt(left), ratio, rtol=1e-9)
-        np.testing.assert_allclose(run.centre[:, 0], run.centre[:, 1], rtol=0.0, atol=1e-12)
+@pytest.mark.verifies("closed form", "59/71 and 64/71, coefficients by KED to 13 digits", within="1e-9")
+@pytest.mark.parametrize(
+    ("law", "ratio"),
+    [
+        ("housner-3d", 59.0 / 71.0),
+        ("horizontal-momentum-3d", 64.0 / 71.0),
+        ("ked-3d-point", 0.9132455302034),
+        ("ked-3d", 0.9125115342467),
+    ],
+)
+def test_the_diagonal_impact_of_a_prism_is_the_reference(law, ratio):
+    """Corner to opposite corner, symmetric for ever: 59/71 by projection, 64/71 by horizontal momentum, KED's REF."""
+    run = rk.free_rocking(SQUARE, restitution=law, start=SpatialStart(0.12, 0.25 * math.pi), duration=2.5)
+    assert set(run.impacts["vertices"]) == {"0", "2"}
+    left = run.impacts["energy_after"] / run.impacts["energy_before"]
+    np.testing.assert_allclose(np.sqrt(left), ratio, rtol=1e-9)
+    np.testing.assert_allclose(run.centre[:, 0], run.centre[:, 1], rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.verifies("computed anew", "angular velocities to 8 digits", within="5e-9")

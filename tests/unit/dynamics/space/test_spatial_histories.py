@@ -16,15 +16,6 @@ BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
 ALPHA = math.atan(0.25)
 
 
-def test_a_coefficient_is_that_of_the_plane():
-    """With r = 0.9 impacts come at the times of the plane engine with r = 0.9, to 1e-10."""
-    plane = rk.free_rocking(rk.Block(width=1.0, height=4.0), 0.4 * ALPHA, 0.9, engine="reference")
-    space = rk.free_rocking(BOX, restitution=0.9, start=SpatialStart(0.4 * ALPHA), duration=6.0)
-    np.testing.assert_allclose(space.impacts["time"][:8], plane.impacts["time"][:8], rtol=0.0, atol=1e-10)
-    left = space.impacts["energy_after"][:8] / space.impacts["energy_before"][:8]
-    np.testing.assert_allclose(left, 0.81, rtol=1e-12)
-
-
 def test_under_little_gravity_it_rocks_slower():
     """Let go until it rests under a ten thousandth of g: as many impacts, a hundred times as late."""
     here, there = (rk.free_rocking(BOX, restitution=0.6, start=SpatialStart(0.1), gravity=9.8 * k) for k in (1.0, 1e-4))
