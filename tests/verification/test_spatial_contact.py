@@ -46,7 +46,7 @@ SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4
 @settings(max_examples=8 * TIMES)
 @given(ANGLE, st.floats(0.01, 0.2), SPIN, st.sampled_from(sorted(spatial_models())))
 def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin, law):
-    """Wobbling to rest or overturning, by every model: gaps >= -1e-12 m, the ledger closes, impacts create no energy."""
+    """To rest or overturning, by every model: gaps >= -1e-12 m, the ledger closes, impacts create no energy."""
     run = rk.free_rocking(TOWER, restitution=law, start=SpatialStart(tilt, azimuth, angular_velocity=spin))
     assert run.status is Status.GOOD or run.outcome is Outcome.OVERTURNED
     fine = np.linspace(0.0, run.time[-1], 2000)
