@@ -9,18 +9,19 @@ import pytest
 from engines import built
 
 import rocking as rk
-from rocking.dynamics import Outcome, Status
+from rocking.dynamics import Outcome, SpatialBody, SpatialStart, Status
 from rocking.errors import RockingError
 
 pytestmark = pytest.mark.verifies("damage", control="test_good_input_passes", room="doors")
 
 HALF_PI = 0.5 * math.pi
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
+BOX = SpatialBody.box(1.0, 1.2, 4.0)
 MOTION = rk.GroundMotion(3.0 * np.sin(0.1 * np.arange(60)), 0.05)
 
 NUMBERS = (math.nan, math.inf, -math.inf, 1.0 + 2.0j, "0.1", None, [0.1, 0.2], np.array([0.1, 0.2]), True, b"1", object)
 OPTIONS: dict[str, tuple[Any, ...]] = {
-    "scale": (1e7, -1e7),
+    "scale": (1.1e6, -1.1e6),
     "rotation": (HALF_PI, 15.0, -90.0, 10**400),
     "angular_velocity": (1e4, -720.0),
     "gravity": (0.0, -9.81, 1e7),
@@ -34,21 +35,32 @@ OPTIONS: dict[str, tuple[Any, ...]] = {
     "most_events": (0, 10.0, -1),
     "linear": (0, 1, "no"),
     "engine": ("quick", 1),
+    "friction": (-0.1,),
+    "bounce": (1.0, -0.1),
+    "start": (0.1, SpatialStart(0.1, math.nan), SpatialStart(2.0)),
 }
 DOORS: dict[str, Callable[..., Any]] = {
     "simulate": lambda **options: rk.simulate(BODY, MOTION, **options),
     "free_rocking": lambda **options: rk.free_rocking(BODY, **({"rotation": 0.05} | options)),
     "simulate_many": lambda **options: rk.simulate_many([BODY], [MOTION], **options),
+    "sliding": lambda **options: rk.simulate(BODY, MOTION, **({"friction": 0.4} | options)),
+    "in space": lambda **options: rk.simulate(BOX, MOTION, **options),
+    "let go in space": lambda **options: rk.free_rocking(BOX, **options),
 }
 LACKING = {
     "free_rocking": {"scale"},
     "simulate_many": {"rotation", "angular_velocity", "duration", "stream"},
+    "sliding": {"angular_velocity"},  # as fast as one likes
+    "in space": {"order", "duration"},  # any order from 2, and any duration: at rest it ends
+    "let go in space": {"order", "scale"},
 }
-# what has a meaning there: no duration, usual settings, a linear model, a row of scales, several restitutions
+# what has a meaning there: no duration, usual settings, a linear model, rows of scales, restitutions and frictions
 MEANT = {
     "duration": ("None",), "linear": ("True",), "rest_speed": ("None",), "longest_step": ("None",), "order": ("None",),
     "tolerance": ("None",), "simulate_many scale": ("[0.1, 0.2]", "array([0.1, 0.2])"),
-    "simulate_many restitution": ("[0.1, 0.2]",),
+    "simulate_many restitution": ("[0.1, 0.2]",), "simulate_many friction": ("[0.1, 0.2]", "array([0.1, 0.2])"),
+    "friction": ("None",), "start": ("None",), "sliding restitution": ("None",),
+    "in space angular_velocity": ("None",), "let go in space angular_velocity": ("None",),
 }  # fmt: skip
 
 
@@ -67,10 +79,8 @@ def test_refused_at_the_door(door: str, option: str, value: Any) -> None:
     with pytest.raises(RockingError) as caught:
         DOORS[door](**{option: value})
     words = str(caught.value).lower()
-    named = (
-        option.rsplit("_", maxsplit=1)[-1] in words or "coefficient" in words or "samples" in words or "model" in words
-    )
-    assert named, words
+    names = (option.rsplit("_", maxsplit=1)[-1], "coefficient", "samples", "model", "tilt", "azimuth")
+    assert any(name in words for name in names), words
 
 
 @pytest.mark.parametrize("body", [None, "block", 1.0, math.nan, [BODY], np.zeros(3), MOTION])

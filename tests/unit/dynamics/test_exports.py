@@ -16,6 +16,7 @@ import rocking as rk
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.contact import Start
 from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.quantities import QUANTITIES
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 FORMULA = "=cmd|' /C calc'!A0"
@@ -269,6 +270,10 @@ def test_tables_are_the_response():
     spelt = [(a, b, c.name.lower(), "-".join(map(str, points))) for a, b, c, points in corner.intervals]
     assert list(rows) == spelt
     assert "vertex" in tables["interval"].columns["contact"].values
+    assert corner.exported().columns["tilt"].values.tolist() == corner.tilt.tolist()
+    assert sliding.exported().columns["rotation"].values.tolist() == sliding.rotation.tolist()
+    assert set(sliding.to_dataframe()["regime_meaning"]) <= set(QUANTITIES["regime"].codes.values())
+    assert (sliding.to_xarray().attrs["friction"], corner.to_xarray().attrs["restitution"]) == (0.62, "housner-3d")
     assert EVERY["struck"].exported().beside["impact"].columns["time"].values[0] == 0.0
 
 

@@ -66,9 +66,11 @@ def test_linear(value: Any) -> None:
         Settings(linear=value)
 
 
-@pytest.mark.parametrize("value", [0, 2, 5, 7, 10, -8, "8", math.nan, True])
+@pytest.mark.parametrize(
+    "value", [0, 2, 5, 7, 10, -8, 8.0, np.float64(8.0), "8", math.nan, True, [8], np.array([4, 8])]
+)
 def test_order(value: Any) -> None:
-    """Orders that were not compiled are refused, with those that were."""
+    """Orders that were not compiled, floats that equal one and rows are refused, with those that were."""
     with pytest.raises(InvalidValueError, match=r"order must be one of \(4, 6, 8\), got"):
         Settings(order=value)
 
