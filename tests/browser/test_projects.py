@@ -245,6 +245,37 @@ def test_two_browsers_that_change_different_parts(open_page: Callable[..., Any],
     expect(other.get_by_test_id("clash")).to_be_visible()
 
 
+@pytest.mark.parametrize("apart", [True, False], ids=["another part", "the same part"])
+def test_what_was_not_saved_before_a_reload_is_joined(open_page: Callable[..., Any], served: Any, apart: bool) -> None:
+    """Somebody else changed the project meanwhile: another part is joined after the reload, of the same one is asked."""
+    page = open_page()
+    typed(page, "Width", "0.75")
+    (project,) = served.api("projects", method="GET")["projects"]
+    where = f"projects/{project['id']}"
+    page.route(f"**/api/{where}", lambda route: route.fulfill(status=429, json={"error": {"kind": "too-many",
+        "message": "later"}}) if route.request.method == "POST" else route.continue_())  # fmt: skip
+    page.get_by_label("Height").fill("3")
+    expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
+    document = served.api(where, method="GET")["document"]
+    if apart:
+        document["forms"] = {"decide": {"author": "A. Person"}}
+    else:
+        document["inputs"]["body"]["width"] = 0.77
+    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    page.reload()
+    expect(page.get_by_label("Height")).to_have_value("3")
+    if not apart:
+        expect(page.get_by_test_id("clash")).to_be_visible()
+        return
+    page.unroute_all()
+    page.get_by_label("Width").fill("0.8")
+    saved(page)
+    expect(page.get_by_test_id("clash")).not_to_be_visible()
+    document = served.api(where, method="GET")["document"]
+    assert (document["inputs"]["body"]["width"], document["inputs"]["body"]["height"]) == (0.8, 3)
+    assert document["forms"]["decide"]["author"] == "A. Person"
+
+
 def test_a_project_that_is_worked_on_is_not_gone(open_page: Callable[..., Any], served: Any) -> None:
     """Deleted in another browser while somebody types in it: it is back with what was typed, and both are told."""
     page = open_page()

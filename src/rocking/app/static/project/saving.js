@@ -49,9 +49,9 @@ export const createProjects = (app, first) => {
     note();
     return document;
   };
-  // For a reload: which version this tab has, and whether more than that was typed.
+  // For a reload: which version this tab has, what it held, and whether more than that was typed.
   const note = () =>
-    remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent });
+    remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent, last });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });
   /** @param {any} document */
   const show = (document) => {
@@ -92,9 +92,8 @@ export const createProjects = (app, first) => {
     note();
     try {
       const facts = await ask("", { version: here.value.version, document, words });
-      [sent, refused] = [[], false];
+      [sent, refused, last] = [[], false, document];
       known(facts);
-      last = document;
       saving.value = changed.size ? "saving" : "saved";
       tell();
     } catch (error) {
@@ -127,8 +126,8 @@ export const createProjects = (app, first) => {
     const all = done && same(own(), mine); // nothing was typed meanwhile
     sent = [];
     if (all) changed.clear();
-    known(theirs);
     last = theirs.document;
+    known(theirs);
     saving.value = all ? "saved" : "saving";
     if (!all) save(); // as above
   };
@@ -272,15 +271,14 @@ export const createProjects = (app, first) => {
       const whole = await app.call(`projects/${id}`);
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
       if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, whole.document)) {
-        if (whole.version === kept.version || isOwn(whole, kept.version, kept.sent)) {
-          known(whole);
-          changed.add("inputs");
-          await save();
-        } else {
-          known(whole);
-          changed.add("inputs");
-          clash.value = { theirs: whole, mine };
-        }
+        const ours = whole.version === kept.version || isOwn(whole, kept.version, kept.sent);
+        last = ours ? whole.document : kept.last ?? null;
+        const joined = ours || join(whole.document);
+        if (joined) last = whole.document;
+        changed.add("inputs");
+        known(whole);
+        if (joined) await save();
+        else clash.value = { theirs: whole, mine };
         return;
       }
       if (id === kept?.id && app.inputs.wereKept && same(mine, whole.document)) {
@@ -321,7 +319,7 @@ const remembered = () => {
   }
 };
 
-/** @param {{ id: string, version: number, more: boolean, sent: Own[] }} facts */
+/** @param {{ id: string, version: number, more: boolean, sent: Own[], last: Own | null }} facts */
 const remember = (facts) => {
   try {
     sessionStorage.setItem(OPEN, JSON.stringify(facts));
