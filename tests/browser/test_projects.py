@@ -247,7 +247,7 @@ def test_two_browsers_that_change_different_parts(open_page: Callable[..., Any],
 
 @pytest.mark.parametrize("apart", [True, False], ids=["another part", "the same part"])
 def test_what_was_not_saved_before_a_reload_is_joined(open_page: Callable[..., Any], served: Any, apart: bool) -> None:
-    """Somebody else changed the project meanwhile: another part is joined after the reload, of the same one is asked."""
+    """Somebody else changed it meanwhile: another part is joined after the reload; of the same one is asked."""
     page = open_page()
     typed(page, "Width", "0.75")
     (project,) = served.api("projects", method="GET")["projects"]
@@ -427,6 +427,28 @@ def test_what_was_turned_in_a_project_stays_there(open_page: Callable[..., Any],
     expect(page.get_by_label("Seed")).to_have_value("0")
     motion.locator(".segment", has_text="Record file").click()
     expect(page.get_by_test_id("record-held")).to_be_empty()
+
+
+def test_a_late_file_is_in_no_other_project(open_page: Callable[..., Any], until: Callable[..., None]) -> None:
+    """Another project was opened while it was being sent: it is not in that one, and that is said."""
+    page = open_page(view="records")
+    saved(page)
+    held: list[Any] = []
+    page.route("**/api/files?*", lambda route: held.extend([route]))
+    told = {"name": "hall.csv", "mimeType": "text/csv", "buffer": b"time [s],a [m/s2]\n0,1\n"}
+    page.get_by_label("Drop records or a folder here, or").set_input_files(told)
+    until(page, lambda: held)
+    dialog = opened_dialog(page)
+    dialog.get_by_label("Name of a new project").fill("Another")
+    dialog.get_by_role("button", name="Begin").click()
+    expect(page.get_by_test_id("project")).to_have_text("Another")
+    dialog.get_by_role("button", name="Close").click()
+    held[0].continue_()
+    expect(page.locator("#status")).to_contain_text("it is in neither of them")
+    expect(page.locator("#view-records").get_by_role("list", name="Files")).to_have_count(0)
+    page.unroute_all()
+    page.get_by_label("Drop records or a folder here, or").set_input_files(told)
+    expect(page.locator("#view-records").get_by_role("list", name="Files")).to_contain_text("hall.csv")
 
 
 def test_undo_drops_what_cannot_be_saved(open_page: Callable[..., Any]) -> None:

@@ -229,6 +229,34 @@ def test_one_time_for_the_body_and_every_figure(answered: Callable[..., Any]) ->
     assert told == pytest.approx([there] * 6, abs=0.02)
 
 
+def test_a_body_at_rest_has_all_of_the_time(answered: Callable[..., Any], until: Callable[..., None]) -> None:
+    """Nothing moves: the animation ends with the figures, and what is zero all along has an axis of ones around it."""
+    page = answered(link("sine:amplitude=1,period=0.8"))
+    chart = page.get_by_test_id("chart-velocity")
+    chart.scroll_into_view_if_needed()
+    page.get_by_test_id("scene-time").focus()
+    page.keyboard.press("End")
+    end = float(page.get_by_test_id("scene-now").inner_text().split()[0])
+    told = chart.locator(".chart-readout")
+    until(page, lambda: re.search(r"[1-9]", told.inner_text()))
+    assert float(told.inner_text().split()[1]) == pytest.approx(end, abs=0.02)
+    assert end > 0.8
+    heights = """async data => {
+        const { lineChart } = await import("/charts/line.js");
+        const place = document.body.appendChild(document.createElement("div"));
+        const y = { label: "", unit: "" };
+        const chart = lineChart(place, { title: "", x: y, y, series: [{ label: "", colour: "--ink" }] });
+        chart.setData(data);
+        await new Promise(requestAnimationFrame);
+        const { min, max } = chart.plot.scales.y;
+        chart.destroy();
+        place.remove();
+        return [min, max];
+    }"""
+    assert page.evaluate(heights, [[0, 1, 2], [0, 0, 0]]) == [-1, 1]
+    assert page.evaluate(heights, [[0, 1, 2], [0, 5, 10]]) == [0, 11]
+
+
 def test_impacts_are_ticks_on_the_axis(answered: Callable[..., Any]) -> None:
     """A figure has a short tick for each impact of the model that is looked at, where it lies in time."""
     page = answered()

@@ -1,6 +1,7 @@
 // What the page uses of uPlot; drawing reads `_splits` and `_values` of its axes too.
 declare class uPlot {
   constructor(options: any, data: any, place: HTMLElement);
+  static rangeNum(low: number, high: number, pad: number, soft: boolean): [number, number];
   width: number;
   height: number;
   bbox: { left: number; top: number; width: number; height: number };

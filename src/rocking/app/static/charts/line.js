@@ -135,7 +135,14 @@ const axisWords = ({ label, unit }) => (unit && unit !== "-" ? `${label} [${pret
 /** @param {ChartAxis} y */
 const scaleOf = (y) => {
   if (y.log) return { distr: 3 };
-  return y.range ? { range: y.range } : {};
+  return { range: y.range ?? around };
+};
+
+// What is zero all along has an axis of ones: by itself it would reach to 100.
+/** @param {uPlot} _ @param {number | null} low @param {number | null} high */
+const around = (_, low, high) => {
+  if (low === null || high === null) return [null, null];
+  return low === 0 && high === 0 ? [-1, 1] : uPlot.rangeNum(low, high, 0.1, true);
 };
 
 /** @param {ChartSeries} series */

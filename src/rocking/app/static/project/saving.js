@@ -214,6 +214,14 @@ export const createProjects = (app, first) => {
 
   return {
     here, saving, clash, open, save,
+    /** Wait for what belongs to the open project; where another one is opened meanwhile, it is in neither.
+     * @type {<Of>(work: Promise<Of>) => Promise<Of>} */
+    within: async (work) => {
+      const { id } = here.value;
+      const found = await work;
+      if (id === here.value.id) return found;
+      throw new Error("Another project was opened before this had arrived: it is in neither of them. Do it once more.");
+    },
     undo: step("undo"),
     redo: step("redo"),
     /** Try again to save what could not be saved. */
@@ -272,9 +280,9 @@ export const createProjects = (app, first) => {
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
       if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, whole.document)) {
         const ours = whole.version === kept.version || isOwn(whole, kept.version, kept.sent);
-        last = ours ? whole.document : kept.last ?? null;
+        last = ours ? /** @type {Own} */ (whole.document) : kept.last ?? null;
         const joined = ours || join(whole.document);
-        if (joined) last = whole.document;
+        if (joined) last = /** @type {Own} */ (whole.document);
         changed.add("inputs");
         known(whole);
         if (joined) await save();

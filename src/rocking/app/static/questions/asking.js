@@ -75,7 +75,7 @@ export const createQuestions = (app, ...commands) => {
     }),
     /** Send a file; resolves to its hash, and the plain name that tables call it. @param {File} file */
     send: async (file) => {
-      const kept = await app.call("files", { method: "POST", body: await file.arrayBuffer(), query: { name: file.name } });
+      const kept = await app.project.within(file.arrayBuffer().then((body) => app.call("files", { method: "POST", body, query: { name: file.name } })));
       atHand.set(kept.record, file);
       return { name: apart(kept.file_name, kept.record), sha: kept.record };
     },

@@ -18,9 +18,9 @@ export const BodyFile = ({ app }) => {
     mine.placed = "";
     wrong.value = "";
     try {
-      mine.content ??= await contentOf(mine.file);
+      mine.content ??= await app.project.within(contentOf(mine.file));
       const query = { name: mine.file.name, units: units.value || undefined };
-      const answer = await app.call("body/file", { body: mine.content, query });
+      const answer = await app.project.within(app.call("body/file", { body: mine.content, query }));
       if (mine !== held.current) return;
       app.inputs.lend({ ...app.inputs.get(), body: answer.body }, `the body of ${mine.file.name}`);
       mine.placed = JSON.stringify(app.inputs.get().body);

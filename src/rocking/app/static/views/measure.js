@@ -33,7 +33,7 @@ const Measure = ({ app, questions }) => {
     if (recording.value) {
       const file = await recording.value.end();
       recording.value = null;
-      files.value = [await questions.send(file)];
+      await questions.send(file).then((sent) => (files.value = [sent]), (error) => app.say(error.message, "error"));
       return;
     }
     try {

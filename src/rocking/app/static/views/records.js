@@ -226,8 +226,8 @@ const Corrected = ({ answer, question, questions }) => {
 const use = async ({ app }, question) => {
   try {
     const name = `${question.name.split(",")[0].replace(/\.\w+$/, "")}-corrected.csv`;
-    const body = await (await fetchFile(`questions/${question.id}/record.csv`)).arrayBuffer();
-    const kept = await app.call("records", { method: "POST", body, query: { name } });
+    const sent = async () => app.call("records", { method: "POST", body: await fetchFile(`questions/${question.id}/record.csv`), query: { name } });
+    const kept = await app.project.within(sent());
     app.inputs.set("motion", { record: kept.record, file_name: kept.file_name });
     app.say(`${kept.file_name} is the motion of this project.`);
   } catch (error) {
