@@ -277,6 +277,27 @@ FOCUS = """async () => {
 }"""
 
 
+def test_a_finished_study_takes_no_focus(studies: Any) -> None:
+    """Who types while it is computed types on when it comes; who presses to see it is led to it."""
+    counted(studies, 4)
+    name = studies.locator("#study-name")
+    name.fill("typed on")
+    studies.get_by_test_id("study-launch").click()
+    name.focus()
+    title = studies.locator(".study-result-title")
+    expect(title).to_have_text("typed on", timeout=60_000)
+    canvas = studies.get_by_test_id("map-canvas")
+    canvas.wait_for()
+    expect(name).to_be_focused()
+    studies.get_by_role("button", name="Show result: typed on").click()
+    expect(title).to_be_focused()
+    name.fill("looked at")
+    canvas.focus()
+    studies.get_by_test_id("study-launch").evaluate("node => node.click()")
+    expect(title).to_have_text("looked at", timeout=60_000)
+    expect(title).to_be_focused()  # what was looked at has gone
+
+
 def test_the_focus_stays_with_a_study(studies: Any) -> None:
     """Neither progress nor a newer study takes the focus; where a button vanishes, the one in its place has it."""
     assert studies.evaluate(FOCUS) == [

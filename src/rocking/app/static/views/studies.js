@@ -23,11 +23,12 @@ export const mount = (section, app) => {
   /** @type {string | null} */
   let expected = null;
 
-  /** @param {Server.StudyFacts} study */
-  const show = async (study) => {
+  // `from`: what was pressed to see it; of what comes by itself nothing was.
+  /** @param {Server.StudyFacts} study @param {Element | null} [from] */
+  const show = async (study, from) => {
     /** @param {object} more */
-    const told = (more) => open.value?.shown === study && (open.value = { shown: study, ...more });
-    open.value = { shown: study };
+    const told = (more) => open.value?.shown === study && (open.value = { shown: study, from, ...more });
+    open.value = { shown: study, from };
     await app.call(`studies/${study.id}/result`).then(
       (found) => told({ found: unpacked(found), chosen: { restitution: 0 } }), (error) => told({ refused: error.message }),
     );
@@ -73,15 +74,18 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
           taken=${() => new Set(studies.value.map((/** @type {Server.StudyFacts} */ { name }) => name))} /></section>
       <section class="card" aria-labelledby="studies-there"><h2 id="studies-there">Studies</h2>
         <${Switch} label="Studies of all projects" value=${every} />
-        <${StudyList} studies=${studies.value} onShow=${show} acts=${acts} /></section>
+        <${StudyList} studies=${studies.value} onShow=${(/** @type {any} */ study) => show(study, document.activeElement)} acts=${acts} /></section>
     </div>
     ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}
   </div>`;
 
-/** @param {{ app: App, shown: Server.StudyFacts, found: any, refused?: string, chosen: { restitution: number } }} props */
-const Outcome = ({ app, shown, found, refused, chosen }) => {
+/** @param {{ app: App, shown: Server.StudyFacts, from?: Element | null, found: any, refused?: string, chosen: { restitution: number } }} props */
+const Outcome = ({ app, shown, from, found, refused, chosen }) => {
   const heading = useRef(null);
-  useLayoutEffect(() => void (found && heading.current.focus()), [found]);
+  const focused = document.activeElement;
+  useLayoutEffect(() => { // from what was pressed, or is gone; what is typed meanwhile goes on
+    if (focused && ((found && focused === from) || !focused.isConnected)) heading.current.focus();
+  }, [shown, found]);
   const Found = SHOW[shown.kind] ?? Counts;
   return html`
     <section class="card study-outcome">
