@@ -346,3 +346,47 @@ def test_what_the_server_refuses_is_marked_at_its_field(open_page: Callable[...,
     box.fill("2")
     page.get_by_test_id("measures-table").wait_for()
     expect(page.locator("[data-testid=pulse-parameters] [aria-invalid=true]")).to_have_count(0)
+
+
+def counts(folder: Path) -> tuple[Path, Path]:
+    """Write a miniSEED file of counts and the StationXML file that says what they are."""
+    obspy = pytest.importorskip("obspy")
+    inventory = pytest.importorskip("obspy.core.inventory")
+    trace = obspy.Trace(np.rint(4000.0 * shaking().acceleration).astype(np.int32))
+    trace.stats.update({"network": "XX", "station": "ABC", "channel": "HNE", "delta": STEP})
+    trace.write(str(folder / "counts.mseed"), format="MSEED")
+    place = {"latitude": 1.0, "longitude": 2.0, "elevation": 3.0}
+    response = inventory.Response.from_paz([], [-300.0], 4000.0, input_units="M/S**2", output_units="COUNTS")
+    channel = inventory.Channel("HNE", "", depth=0.0, sample_rate=1.0 / STEP, response=response, **place)
+    station = inventory.Station("ABC", channels=[channel], **place)
+    inventory.Inventory([inventory.Network("XX", [station])]).write(str(folder / "abc.xml"), format="STATIONXML")
+    return folder / "counts.mseed", folder / "abc.xml"
+
+
+def test_counts_and_their_stations_belong_together(view: Any, tmp_path: Path) -> None:
+    """Dropped at once, both lie in Records with the step that needs both; what comes of it becomes the motion."""
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(counts(tmp_path))
+    records = view.locator("#view-records")
+    expect(records.get_by_role("list", name="Files")).to_contain_text("counts.mseed")
+    expect(records.get_by_role("list", name="Files")).to_contain_text("abc.xml")
+    step = records.get_by_role("listitem", name="Step 1, response")
+    expect(step.get_by_label("stations")).to_have_value("abc.xml")
+    step.get_by_label("high").fill("20")
+    records.get_by_role("button", name="Ask", exact=True).click()
+    use = records.get_by_role("button", name="Use it as the motion")
+    use.click(timeout=90_000)
+    expect(view.locator("#status")).to_contain_text("is the motion of this project")
+    view.locator("#tab-motion").click()
+    expect(view.get_by_test_id("record-held")).to_contain_text("counts-corrected.csv")
+
+
+def test_several_records_are_no_motion(view: Any, tmp_path: Path) -> None:
+    """Two files without a StationXML are refused together, and the motion stays."""
+    before = inputs(view)["motion"]
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text("0 0.1\n0.01 0.2\n")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files([tmp_path / "a.txt", tmp_path / "b.txt"])
+    expect(view.get_by_test_id("record-answer")).to_contain_text("drop several in the step Records")
+    assert inputs(view)["motion"] == before

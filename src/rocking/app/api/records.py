@@ -29,7 +29,7 @@ _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
 _WAY = (
-    "give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and choose the StationXML; "
+    "drop both together, or give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and choose the StationXML; "
     "the record that is taken away can be dropped here"
 )
 Need = Literal["format", "units", "time_step", "component"]

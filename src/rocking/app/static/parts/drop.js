@@ -5,8 +5,8 @@ import { freshId } from "/app/dom.js";
 import { Button } from "/parts/fields.js";
 
 /** A place for files; `error` is what is wrong with it; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
- * @param {{ label: string, name?: string, accept?: string, many?: boolean, error?: string, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
-export const Drop = ({ label, name = label, accept, many = false, error = "", on, testid, children, ...more }) => {
+ * @param {{ label: string, name?: string, accept?: string, many?: boolean, folders?: boolean, error?: string, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
+export const Drop = ({ label, name = label, accept, many = false, folders = many, error = "", on, testid, children, ...more }) => {
   const [one, folder] = [useRef(null), useRef(null)];
   const about = useRef(freshId("drop")).current;
   /** @param {boolean} over */
@@ -20,7 +20,7 @@ export const Drop = ({ label, name = label, accept, many = false, error = "", on
   const drop = (event) => {
     mark(false)(event);
     const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-    if (many && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
+    if (folders && entries.some((entry) => entry.isDirectory)) return inFolders(entries).then(take);
     return take(event.dataTransfer.files);
   };
   /** @param {any} event */
@@ -34,7 +34,7 @@ export const Drop = ({ label, name = label, accept, many = false, error = "", on
       <p>${label}</p>
       <div class="toolbar">
         <${Button} aria-describedby=${about} onClick=${() => one.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
-        ${many && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
+        ${folders && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
           <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory onChange=${chosen} />`}
       </div>
       <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} data-testid=${testid}

@@ -73,15 +73,19 @@ export const createQuestions = (app, ...commands) => {
       if (shown.value?.id === id) shown.value = null;
       await look();
     }),
-    /** Send a file; resolves to its hash, and the plain name that tables call it. @param {File} file */
-    send: async (file) => {
-      const kept = await app.project.within(file.arrayBuffer().then((body) => app.call("files", { method: "POST", body, query: { name: file.name } })));
-      atHand.set(kept.record, file);
-      return { name: apart(kept.file_name, kept.record), sha: kept.record };
-    },
+    /** @param {File} file */
+    send: (file) => sendFile(app, file),
     /** @param {string} name */
     take: (name) => app.download(`questions/${shown.value?.id}/${name}`, undefined, name),
   };
+};
+
+/** Send a file for questions; resolves to its hash, and the plain name that tables call it.
+ * @param {App} app @param {File} file @returns {Promise<SentFile>} */
+export const sendFile = async (app, file) => {
+  const kept = await app.project.within(file.arrayBuffer().then((body) => app.call("files", { method: "POST", body, query: { name: file.name } })));
+  atHand.set(kept.record, file);
+  return { name: apart(kept.file_name, kept.record), sha: kept.record };
 };
 
 const atHand = new Map();

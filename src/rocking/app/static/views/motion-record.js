@@ -1,8 +1,10 @@
 /** A record file: dropped or chosen, with what it does not say asked for. */
 import { batch, html, signal, useEffect, useLayoutEffect, useRef } from "/parts/preact.js";
 import { contentOf } from "/app/file-content.js";
+import { freshId } from "/app/dom.js";
 import { Drop } from "/parts/drop.js";
 import { Note } from "/parts/fields.js";
+import { sendFile } from "/questions/asking.js";
 import { Components } from "/views/motion-components.js";
 import { Needs, blamedOf, nameOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
@@ -14,7 +16,10 @@ const TOLD = ["format", "units", "time_step"];
 /** @param {any} from @param {string[]} keys @returns {any} */
 const picked = (from, keys) => Object.fromEntries(keys.filter((key) => from[key] !== undefined).map((key) => [key, from[key]]));
 
-/** What stands of the file that was given last: `take(file)` sends it, `onChange(motion)` hears when it is read.
+/** @param {string} name */
+const isStations = (name) => /\.xml$/i.test(name);
+
+/** What stands of the files that were given last: `take(files)` sends them, `onChange(motion)` hears when it is read.
  * @param {App} app @param {(motion: Server.MotionInput) => unknown} onChange */
 export const createRecord = (app, onChange) => {
   const [said, asked, blamed, waiting, answer] = [null, null, null, false, null].map(signal);
@@ -70,9 +75,34 @@ export const createRecord = (app, onChange) => {
     blamed.value = blamedOf(asked.value.answer.needs, message);
     said.value = blamed.value ? null : why(message);
   };
-  /** @param {File} file */
-  const take = (file) => {
+  // Counts are no accelerations without their StationXML: both go to the step that reads them together.
+  /** @param {File[]} files */
+  const together = async (files) => {
+    try {
+      const sent = await Promise.all(files.map((file) => sendFile(app, file)));
+      const [stations, records] = [true, false].map((are) => sent.filter(({ name }) => isStations(name) === are));
+      const form = app.forms.of("records", { files: [], steps: [] });
+      const { files: before, steps } = form.value;
+      form.at("files").value = [...before.filter((/** @type {SentFile} */ { sha }) => sent.every((one) => one.sha !== sha)), ...sent];
+      form.at("steps").value = [{ name: "response", id: freshId("step"), keys: { stations: stations[0].name } },
+        ...steps.filter((/** @type {RecordStep} */ { name }) => name !== "response")];
+      form.at("shown").value = records[0].name;
+      app.go("records");
+      app.say(`${records[0].name} is read with its StationXML here: press Ask, then use it as the motion.`);
+    } catch (error) {
+      app.say(error.message, "error");
+    }
+  };
+  /** @param {File[]} files */
+  const take = (files) => {
+    const [file] = files;
+    const described = files.filter(({ name }) => isStations(name)).length;
+    if (described && described < files.length) {
+      forget();
+      return together(files);
+    }
     held = { file, content: null, given: {} };
+    if (files.length > 1) return end({ words: "One record is a motion: drop several in the step Records.", kind: "error" }, "unread");
     [asked.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
     if (!most || file.size <= most) return send();
@@ -112,8 +142,8 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   }, [motion?.record]);
   return html`
     <div ref=${place} class="record-editor">
-      <${Drop} label="Drop a record here, or" name="Record file" on=${([file]) => record.take(file)} testid="record-file" data-testid="record-drop">
-        <p class="field-help">${`Formats: ${formats}. miniSEED must hold accelerations: counts and their StationXML are read in the step Records.`}</p><//>
+      <${Drop} label="Drop a record here, or" name="Record file" many folders=${false} on=${record.take} testid="record-file" data-testid="record-drop">
+        <p class="field-help">${`Formats: ${formats}. Of counts (miniSEED) drop their StationXML with them.`}</p><//>
       <div aria-live="polite" data-testid="record-answer">
         ${said.value?.words && html`<${Note} ...${said.value} />`}
         ${lost && html`<${Note} kind="warning" words="The server no longer has this file: drop it once more." />`}</div>
