@@ -158,6 +158,9 @@ def sentences_of_the_server() -> list[str]:
         "Stays still up to 0.14 g; at PGA 0.3 g it rocks, and fell over in 16 of 20 simulated earthquakes.",
         "No coefficient of restitution: impacts take no energy: r is 1.01 (0.99 to 1.02).",
         "Difference to Housner",
+        "a.txt: the file does not state its time step; the file does not state its unit.",
+        "Its base is round: it is tipped in four directions.",
+        "Sound.csv: column 'b' states no unit: say it under \u201cUnit\u201d.",
     ]
 
 
@@ -202,7 +205,7 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     steps = [*info["steps"].values(), *info["targets"].values()]
     made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
     made += [one.reason for one in parse_inventory(LIST).not_assessed]
-    made += ["Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
+    made += ["Choose files", "Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
     made = [text for text in dict.fromkeys(made) if len(re.findall(r"\b[a-z]{2,}\b", text)) >= 2]
     assert len(made) > 110
     said = open_page(link(), locale=code).evaluate(SAID, made)

@@ -276,6 +276,24 @@ def test_what_was_not_saved_before_a_reload_is_joined(open_page: Callable[..., A
     assert document["forms"]["decide"]["author"] == "A. Person"
 
 
+def test_an_empty_table_is_no_change(open_page: Callable[..., Any], served: Any) -> None:
+    """A motion that is chosen makes no table of the start: who changed the start has changed another part."""
+    page = open_page(view="motion")
+    saved(page)
+    (project,) = served.api("projects", method="GET")["projects"]
+    where = f"projects/{project['id']}"
+    document = served.api(where, method="GET")["document"]
+    document["inputs"]["response"] = {"assumed_friction": 0.3}
+    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    typed(page, "Peak acceleration, exactly", "5")
+    expect(page.get_by_test_id("clash")).not_to_be_visible()
+    inputs = served.api(where, method="GET")["document"]["inputs"]
+    assert inputs["response"] == {"assumed_friction": 0.3}
+    assert "amplitude=5" in inputs["motion"]["pulse"]
+    empty = "async table => (await import('/app/shape.js')).inputsOf({ body: { units: 'm' }, ...table })"
+    assert page.evaluate(empty, {"response": {}, "settings": {}}) == {"body": {"units": "m"}}
+
+
 def test_a_project_that_is_worked_on_is_not_gone(open_page: Callable[..., Any], served: Any) -> None:
     """Deleted in another browser while somebody types in it: it is back with what was typed, and both are told."""
     page = open_page()

@@ -97,6 +97,35 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     expect(section.locator("[aria-invalid=true]")).to_have_count(1)
     friction.fill("0.5")
     expect(friction).not_to_have_attribute("aria-invalid", "true")
+    for question in ("assess", "predict"):  # its field is made anew, and what was refused is past
+        section.get_by_label("Question").select_option(question)
+    expect(friction).to_have_value("0.5")
+    expect(section.locator("[aria-invalid=true]")).to_have_count(0)
+    section.get_by_role("button", name=re.compile("^Show ")).first.click()
+    expect(section.get_by_role("alert")).to_contain_text("got -2")  # what was asked before is told of itself alone
+    expect(section.locator("[aria-invalid=true]")).to_have_count(0)
+
+
+FORMS = """async () => {
+  const [{ html, render }, { createForms }] = await Promise.all(
+    ["/parts/preact.js", "/app/forms.js"].map((each) => import(each)));
+  const [forms, drawn] = [createForms(), []];
+  const places = ["one", "other"].map((view) => {
+    const form = forms.of(view, { text: "" });
+    const place = document.createElement("div");
+    render(html`<${() => drawn.push(view) && html`<p>${form.value.text}</p>`} />`, place);
+    return place;
+  });
+  forms.of("one", { text: "" }).at("text").value = "typed";
+  await new Promise(requestAnimationFrame);
+  await new Promise(requestAnimationFrame);
+  return [drawn, places.map((place) => place.textContent), forms.get().one.text];
+}"""
+
+
+def test_what_is_typed_in_one_view_draws_no_other(open_page: Callable[..., Any]) -> None:
+    """A letter in one form draws its own view once more, and no other."""
+    assert open_page().evaluate(FORMS) == [["one", "other", "one"], ["typed", ""], "typed"]
 
 
 def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:

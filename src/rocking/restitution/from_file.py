@@ -17,7 +17,7 @@ from rocking.bodies import Block
 from rocking.conventions import FEET, opposite
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution._model import RestitutionModel
-from rocking.restitution.registry import built, model, number, parameters_in, register, withdraw
+from rocking.restitution.registry import built, model, number, parameters_in, put, withdraw
 
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
 _VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which are known by name
@@ -72,22 +72,29 @@ def register_own() -> None:
     if not path:
         return
     path = os.environ[_VARIABLE] = str(Path(path).absolute())  # processes of studies start in other folders
-    before, old = _REGISTERED.pop(path, (None, ()))
+    before, old = _REGISTERED.get(path, (None, ()))
     try:
-        source = Path(path).read_text(encoding="utf-8-sig")
+        source = _own_source(path)
         if source == before:
-            _REGISTERED[path] = before, old
             return
+        _REGISTERED[path] = source, _registered(source, path, old)
+    except RockingError:
+        _REGISTERED.pop(path, None)
+        raise
+    finally:  # a name that is known before and after is known meanwhile
+        for each in old if _REGISTERED.get(path) != (before, old) else ():
+            withdraw(each)
+
+
+def _own_source(path: str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         raise UnknownModelError(f"{_VARIABLE}={path} cannot be read: {error}") from error
-    finally:
-        for each in old if path not in _REGISTERED else ():
-            withdraw(each)
-    _REGISTERED[path] = source, _registered(source, path)
 
 
-def _registered(source: str, path: str) -> tuple[type[RestitutionModel], ...]:
-    """Register all models of a file, or none of them."""
+def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...]) -> tuple[type[RestitutionModel], ...]:
+    """Register all models of a file in the place of those that it had, or none of them."""
     with blamed(path):
         kinds = [each for each in _kinds(source, path).values() if not inspect.isabstract(each)]
         if not kinds:
@@ -97,7 +104,7 @@ def _registered(source: str, path: str) -> tuple[type[RestitutionModel], ...]:
             try:
                 for parameters in kind.trials:
                     _keeps_its_word(built(kind, name, parameters_in(parameters, name, {})))
-                register(kind)
+                put(kind, old)
             except Exception as error:
                 for each in kinds[:position]:
                     withdraw(each)

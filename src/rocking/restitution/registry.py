@@ -65,13 +65,18 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     InvalidValueError
         If it is no such class, has no name, or another model has that name.
     """
+    return put(kind)
+
+
+def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = ()) -> type[RestitutionModel]:
+    """Register a model class, in the place of one of those that it may be put over."""
     candidate: object = kind
     if not (inspect.isclass(candidate) and issubclass(candidate, RestitutionModel)):
         raise InvalidValueError(f"a restitution model is a subclass of RestitutionModel, got {kind!r}")
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
         raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
-    if name in _MODELS and _kind(name) is not kind:
+    if name in _MODELS and _kind(name) not in {kind, *over}:
         raise InvalidValueError(f"a restitution model named {name!r} exists already: {_kind(name).__name__}")
     _MODELS[name] = kind
     return kind

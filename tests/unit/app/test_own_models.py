@@ -61,3 +61,23 @@ def test_an_edited_file_is_asked_as_it_is(client, own):
     assert "mine" in {each["name"] for each in client.get("/api/info").json()["models"]}
     own(0.5, "other")
     assert {"mine", "other"} & {each["name"] for each in client.get("/api/info").json()["models"]} == {"other"}
+
+
+def test_while_an_edited_file_is_read_its_names_are_known(client, own, tmp_path):
+    """A file that looks finds its model still there, with the number that it had before."""
+    assert client.post("/api/impact", json={"body": BODY}).status_code == 200
+    own(0.4)
+    seen = """
+import rocking as rk
+
+SEEN = rk.coefficient_of_restitution(rk.Block(width=1.0, height=2.0), "mine")
+"""
+    (tmp_path / "mine.py").write_text(
+        seen + (tmp_path / "mine.py").read_text().replace("return 0.4", "return SEEN / 2")
+    )
+    (row,) = (
+        each
+        for each in client.post("/api/impact", json={"body": BODY}).json()["coefficients"]["right"]
+        if each["model"] == "mine"
+    )
+    assert row["coefficient_of_restitution"] == 0.25

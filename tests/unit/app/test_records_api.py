@@ -46,7 +46,8 @@ def test_what_a_file_does_not_say_is_asked_for(client):
     asked = sent(client, BARE).json()
     assert asked["needs"] == ["units", "time_step"]
     assert "gal" in asked["choices"]["units"]
-    assert asked["message"] == "a.txt: the file does not state its time step"  # without arguments of the library
+    missing = "a.txt: the file does not state its time step; the file does not state its unit"
+    assert asked["message"] == missing  # both, without arguments of the library
     assert asked["components"][0]["peak_m_s2"] is None
     told = sent(client, BARE, units="g", time_step=0.01).json()
     assert told["needs"] == []

@@ -29,8 +29,8 @@ _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
 _WAY = (
-    "drop both together, or give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and choose the StationXML; "
-    "the record that is taken away can be dropped here"
+    "drop both together, or give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and "
+    "choose the StationXML; the record that is taken away can be dropped here"
 )
 Need = Literal["format", "units", "time_step", "component"]
 Word = Annotated[str | None, Query(min_length=1, max_length=200)]
@@ -149,12 +149,13 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
         "units": list(ACCELERATION_UNITS),
         "component": [each.name for each in components],
     }
+    others = [words.removeprefix(f"{safe_name(name, 'record')}: ") for words in list(reasons.values())[1:]]
     return {
         "format": None if record is None else record.format,
         "components": [_component(each, reasons) for each in components],
         "needs": sorted(reasons, key=_ORDER.index),
         "choices": {name: choices[name] for name in reasons if name in choices},
-        "message": next(iter(reasons.values()), ""),
+        "message": "; ".join([*list(reasons.values())[:1], *others]),
         "doubts": "" if record is None else record.metadata.get("doubts", ""),
     }
 

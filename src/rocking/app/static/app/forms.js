@@ -1,6 +1,6 @@
 /** What is typed in the views of questions: it belongs to the project, as the inputs do. */
 
-import { signal } from "/parts/preact.js";
+import { batch, signal } from "/parts/preact.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
 import { formsOf } from "/app/shape.js";
 
@@ -8,17 +8,19 @@ const KEPT = "rocking.forms";
 
 /** The store of the forms, by view: get, take, subscribe, and one of them. */
 export const createForms = () => {
-  /** @type {Signal<Forms>} */
-  const all = signal(formsOf(stored(KEPT)));
+  let all = formsOf(stored(KEPT));
+  /** @type {Map<string, Signal<Forms[string] | undefined>>} */
+  const byView = new Map(); // what is typed in one view draws no other anew
   /** @type {Set<(view: string) => unknown>} */
   const watchers = new Set();
   /** @param {Forms} next */
   const become = (next) => {
-    all.value = next;
+    all = next;
     keep(KEPT, next);
+    batch(() => byView.forEach((typed, view) => (typed.value = next[view])));
   };
   return {
-    get: () => all.peek(),
+    get: () => all,
     /** Show what a project holds. @param {unknown} forms */
     take: (forms) => become(formsOf(forms)),
     /** @param {(view: string) => unknown} watcher */
@@ -26,8 +28,10 @@ export const createForms = () => {
     /** The form of a view; `first` is what it holds before anything was typed, `at(...path)` is a signal of one field.
      * @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
     of: (view, first) => {
+      const here = byView.get(view) ?? signal(all[view]);
+      byView.set(view, here);
       const form = () => {
-        const typed = Object.entries(all.value[view] ?? {}).filter(([name, value]) => alike(value, first[name]));
+        const typed = Object.entries(here.value ?? {}).filter(([name, value]) => alike(value, first[name]));
         return { ...first, ...Object.fromEntries(typed) };
       };
       return {
@@ -36,8 +40,8 @@ export const createForms = () => {
         at: (...path) => ({
           get value() { return path.reduce((tree, name) => tree?.[name], form()) ?? ""; },
           set value(next) {
-            const changed = changedAt(all.peek(), [view, ...path], next);
-            if (JSON.stringify(changed) === JSON.stringify(all.peek())) return;
+            const changed = changedAt(all, [view, ...path], next);
+            if (JSON.stringify(changed) === JSON.stringify(all)) return;
             become(changed);
             watchers.forEach((watcher) => watcher(view));
           },

@@ -124,10 +124,11 @@ export const keep = (key, value) => {
   }
 };
 
-/** A tree with one value changed, at a path of keys; undefined takes it away.
+/** A tree with one value changed, at a path of keys; undefined takes it away, and makes no table where there is none.
  * @param {any} tree @param {string[]} path @param {unknown} value @returns {any} */
 export const changedAt = (tree, [key, ...rest], value) => {
   const next = { ...(tree ?? {}) };
+  if (value === undefined && !(key in next)) return next;
   if (rest.length) next[key] = changedAt(next[key], rest, value);
   else if (value === undefined) delete next[key];
   else next[key] = value;

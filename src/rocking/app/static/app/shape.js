@@ -7,7 +7,8 @@ const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
 export const inputsOf = (document) => {
   if (!isTable(document)) return null;
   const { motion, ...rest } = document;
-  const inputs = withoutNulls({ ...rest, body: isTable(rest.body) ? withoutNulls(rest.body) : null });
+  const [response, settings] = [rest.response, rest.settings].map((table) => (isTable(table) && !Object.keys(table).length ? null : table));
+  const inputs = withoutNulls({ ...rest, body: isTable(rest.body) ? withoutNulls(rest.body) : null, response, settings });
   const good = Object.keys(inputs).every((key) => CHECKS[key]?.(inputs[key])) && isBody(inputs.body);
   if (!good || !(motion === undefined || motion === null || isMotion(motion))) return null;
   return /** @type {any} */ (motion ? { ...inputs, motion: withoutNulls(motion) } : inputs);

@@ -27,14 +27,14 @@ const useTyped = (now, written, says) => {
   return [held, type];
 };
 
-/** What was refused of a form: the `key` of the field that it is about, and `words`. */
+/** What was refused of a form: the `key` of the field that it is about, and `words`; it is `past` once that was changed. */
 export const Refused = createContext({});
 
 /** What was refused of a field, until it is changed. @param {string} [name] @returns {[string, () => void]} */
 export const useRefused = (name) => {
   const refused = useContext(Refused);
-  const past = useRef(null);
-  return [name && refused.key === name && past.current !== refused ? refused.words : "", () => (past.current = refused)];
+  const stands = name && refused.key === name;
+  return [stands && !refused.past ? refused.words : "", () => stands && (refused.past = true)];
 };
 
 /** A box of one's own with the label and the words of a field.

@@ -14,10 +14,12 @@ export const createQuestions = (app, ...commands) => {
   const all = signal([]);
   let timer = 0;
   let ticket = 0;
+  let mine = ""; // the question that was asked last, while it is the one that is shown
   const here = () => app.project.here.value.id;
   computed(here).subscribe(() => { // what was found stays in its project
     ticket += 1;
     clearTimeout(timer);
+    mine = "";
     [shown.value, all.value] = [null, []];
   });
   const busy = computed(() => shown.value && !ENDED.has(shown.value.state));
@@ -45,6 +47,8 @@ export const createQuestions = (app, ...commands) => {
 
   return {
     app, shown, all, busy,
+    /** Whether a question is of the form as it stands: not one that was asked before. @param {string} id */
+    isOfForm: (id) => id === mine,
     look: safely(look),
     /** Look, and show the last one again after a reload. */
     reopen: safely(async () => {
@@ -56,11 +60,12 @@ export const createQuestions = (app, ...commands) => {
       await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
+      mine = question.id;
       shown.value = { ...question, answer: null, toml: "" };
       await follow(question.id);
     }),
     open: safely(async (/** @type {string} */ id) => {
-      shown.value = null;
+      [shown.value, mine] = [null, ""];
       await follow(id);
     }),
     stop: safely(async () => {

@@ -176,7 +176,7 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
   const { value: question } = questions.shown;
   const refused = useMemo(/** @returns {{ key?: string, words?: string }} */ () => {
     if (wrong) return typeof wrong === "string" ? { words: wrong } : wrong;
-    return question?.state === "refused" ? refusedOf(question.message) : {};
+    return question?.state === "refused" && questions.isOfForm(question.id) ? refusedOf(question.message) : {};
   }, [asked.value, wrong, question?.id, question?.state]);
   useEffect(() => {
     if (refused.key && asked.value && (wrong || !isTyping())) toWrong(form.current);
