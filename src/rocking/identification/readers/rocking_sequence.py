@@ -11,13 +11,16 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
+_MODERATE = 0.6
+"""Value of y of the longest interval where p is not known."""
+
 _FIRST_FALLS = (0.2, 0.45, 0.65, 0.8, 0.9, 0.96)
 """Values of y of the first interval that are tried: .2 is the limit of small rotations."""
 
 _FALL, _FALL_SPREAD = -0.22, 0.12
 """Mean and standard deviation of ln(r_left r_right) before anything is known: r from .8 to .99."""
 
-_SCATTER = 0.035
+SCATTER = 0.035
 """Standard deviation of ln(y_(n+2) / y_n) about its mean: each impact takes its own share, 1 to 3 %."""
 
 _LAW_SCATTER = 0.015
@@ -141,7 +144,7 @@ class _Beams:
         if not going.any():
             return False
         expected = self.falls[:, 0] + self.mean
-        variance = self.variance + _SCATTER**2 * (1.0 + 3.0 * self.missed)
+        variance = self.variance + SCATTER**2 * (1.0 + 3.0 * self.missed)
         interval = self.times[None, :] - self.last[:, None]
         later = interval > 0.3 * half_cycle(expected, self.half_p)[:, None]
         safe = np.where(later, interval, 1.0)
@@ -199,6 +202,23 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
         if scatter < best.scatter:
             best = Regularity(float(np.exp(terms[1])), scatter, float(abs(terms[2])))
     return best
+
+
+def next_interval(times: FloatArray, orders: IntArray, order: int) -> float | None:
+    """Return the interval before an impact, from those before it, by the law at a moderate p; None if it is not known.
+
+    y falls by what the last falls of both sides were, their median.
+    """
+    whole = orders[1:][np.diff(orders) == 1]
+    intervals = dict(zip(whole.tolist(), np.diff(times)[np.diff(orders) == 1].tolist(), strict=True))
+    if order - 2 not in intervals or orders[-1] != order - 1:
+        return None
+    half_p = np.arctanh(_MODERATE) / max(intervals.values())
+    fall = {n: float(half_cycle_fall(np.array(span), half_p)) for n, span in intervals.items()}
+    falls = [fall[n] - fall[n - 2] for n in fall if n - 2 in fall]
+    if not falls:
+        return None
+    return float(half_cycle(np.array(fall[order - 2] + np.median(falls[-4:])), half_p))
 
 
 def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> FloatArray:

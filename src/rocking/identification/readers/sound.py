@@ -17,7 +17,7 @@ from rocking.errors import MeasurementError
 from rocking.identification.measurement import ImpactTimes
 from rocking.identification.readers.clicks import causal, find_clicks, spectra
 from rocking.identification.readers.recording import Recording
-from rocking.identification.readers.rocking_sequence import find_sequence, law_misfit, why_no_rocking
+from rocking.identification.readers.rocking_sequence import SCATTER, find_sequence, law_misfit, next_interval, why_no_rocking
 
 _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
@@ -41,9 +41,13 @@ _INDEPENDENT, _FAILS, _LOOSE = (
 _AGREED, _MOST = 30.0, 30.0
 """Weight of modes that agree, with which the right tie of 207 rooms at 8 dB is likeliest; most that the law says."""
 
-_LEAST, _SEARCHED, _ALIKE_REACH, _AROUND = 5, 0.15, 0.012, 0.040
-_LIKE = 1.1
-"""Of 140 rooms at 8 dB 149 of 151 last impacts had more, and 146 of 148 places behind the last one less."""
+_ECHOES, _TURNS = 0.4, 4
+"""How long what an impact sets off is heard [s]; how often that of both feet is told apart."""
+
+_LEAST, _SEARCHED, _AROUND = 5, 0.15, 0.040
+_FADED, _FADES, _TAIL = 0.75, 0.25, 8.0
+"""How loud an impact is over the last one on its foot, the standard deviation of that over it; degrees of freedom of
+what is left of noise and echoes."""
 _BAND = (150.0, 9_000.0)
 
 
@@ -60,24 +64,25 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
 
 def onsets(
     sharp: FloatArray, white: FloatArray, rate: float, times: FloatArray, orders: IntArray
-) -> tuple[FloatArray, float, float]:
-    """Return when impacts at about some times began [s], how alike those on the same of two feet are, how sure the tie.
+) -> tuple[FloatArray, IntArray, float, float]:
+    """Return when impacts at about some times began [s], which are unsure, how alike clicks are, how sure the tie.
 
-    That is the median correlation of a click with the sum of the others, 1 at most, and the standard deviation of the
-    time between the two feet [s]. A time is nan where another of the same click is as likely.
+    Sounds have a row for each of two feet. Alike is the median correlation of a click with the sum of the others on its
+    foot, 1 at most; the tie is the standard deviation of the time between the two feet [s]. A time is unsure where
+    another of the same click is as likely.
     """
     feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
     found, alike, begun, means = times.copy(), np.ones(times.size), [], []
     all_places, unsure = _chosen(sharp, rate, times, orders, feet)
     for here in feet:
-        places = all_places[here]
-        alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
-        after, share = _begun(white, rate, places)
+        places, own = all_places[here], sharp[orders[here[0]] % 2]
+        alike[here] = _likeness(_cuts(own, rate, places, _BEFORE, _AFTER))
+        after, share = _begun(white[orders[here[0]] % 2], rate, places)
         begun.append(share)
-        found[here] = (places + _parts(sharp, rate, places)) / rate + after @ share
-        means.append(_mean(sharp, rate, places, _QUIET, _RINGING))
+        found[here] = (places + _parts(own, rate, places)) / rate + after @ share
+        means.append(_mean(own, rate, places, _QUIET, _RINGING))
     if len(feet) < 2:
-        return found, float(np.median(alike)), 0.0
+        return found, unsure, float(np.median(alike)), 0.0
     off = np.arange(-_FARTHEST, _FARTHEST, _STEP)
     one, two = begun
     step = after[1] - after[0]
@@ -92,8 +97,52 @@ def onsets(
     later = float(share @ off)  # the mean has the least square error where several ties are likely
     found[feet[0]] -= 0.5 * later
     found[feet[1]] += 0.5 * later
-    found[unsure] = np.nan
-    return found, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
+    return found, unsure, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
+
+
+def told_apart(sound: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> FloatArray:
+    """Return a sound of each of two feet, rows, in which the clicks of the other and all echoes are fainter.
+
+    What an impact sets off, modes and echoes, follows every impact on that foot, so it is their mean, as loud as each.
+    """
+    begin, count = int(_REACH * rate), int((_REACH + _ECHOES) * rate)
+    places = np.rint(times * rate).astype(np.int64)
+    parts = times * rate - places
+    size = next_fast_len(count + 2, real=True)
+    turn = np.exp(2j * np.pi * np.outer(parts, np.arange(size // 2 + 1)) / size)
+    rest, at = np.pad(sound, (begin, count)), places[:, None] + np.arange(count)
+    feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size > 1]
+    loud, means = np.ones(times.size), np.zeros((2, count))
+    made = np.zeros((times.size, count))
+    near = int((_REACH + _LONG) * rate)
+    for _ in range(_TURNS):
+        for here in feet:
+            rows = irfft(rfft(rest[at[here]] + made[here], size) * turn[here], size)[:, :count]
+            if not means[orders[here[0]] % 2].any():
+                loud[here] = np.sqrt((rows[:, :near] ** 2).mean(axis=1))
+            else:
+                mean = means[orders[here[0]] % 2][:near]
+                loud[here] = np.maximum(rows[:, :near] @ mean / (mean @ mean + np.finfo(float).tiny), 0.0)
+            power = loud[here] @ loud[here] + np.finfo(float).tiny
+            mean = loud[here] @ rows / power
+            scatter = _means_of((rows - np.outer(loud[here], mean)) ** 2, rate).sum(axis=0) / (here.size - 1) / power
+            mean *= np.clip(1.0 - scatter / (_means_of(mean[None] ** 2, rate)[0] + np.finfo(float).tiny), 0.0, 1.0)
+            means[orders[here[0]] % 2] = mean
+            again = np.outer(loud[here], mean)
+            again = irfft(rfft(again, size) * np.conj(turn[here]), size)[:, :count]
+            for row, which in enumerate(here):
+                rest[at[which]] += made[which] - again[row]
+            made[here] = again
+    apart = np.repeat(rest[None], 2, axis=0)
+    kept = np.arange(count) < (_REACH + _RINGING) * rate
+    for which in range(times.size):
+        apart[orders[which] % 2, at[which]] += made[which] * kept
+    return apart[:, begin : begin + sound.size]
+
+
+def _means_of(rows: FloatArray, rate: float) -> FloatArray:
+    width = max(1, round(_REACH * rate))
+    return np.array([np.convolve(row, np.full(width, 1.0 / width), "same") for row in rows])
 
 
 def revised(
@@ -103,20 +152,13 @@ def revised(
 
     An impact is like those before it on the same foot, nearly as loud, and when the last intervals say.
     """
-    while times.size > _LEAST:
-        if _resembling(sharp, rate, times, orders, (orders[-1], times[-1], _ALIKE_REACH))[1] >= _LIKE:
-            break
+    while times.size > _LEAST and _impact(sharp, rate, times[:-1], orders[:-1], int(orders[-1]))[1] <= 0.0:
         times, orders, members = times[:-1], orders[:-1], members[:-1]
     order = _LEAST
     while order <= orders[-1] + 1:
-        known = dict(zip(orders.tolist(), times.tolist(), strict=True))
-        spans = {n: known[n] - known[n - 1] for n in known if n - 1 in known and n < order}
-        falls = [spans[n] / spans[n - 2] for n in spans if n - 2 in spans]
-        if order not in known and order - 1 in known and order - 2 in spans and falls:
-            span = spans[order - 2] * float(np.median(falls[-4:]))
-            asked = (order, known[order - 1] + span, _SEARCHED * span)
-            at, like = _resembling(sharp, rate, times, orders, asked)
-            if like >= _LIKE:
+        if order not in orders:
+            at, sure = _impact(sharp, rate, times, orders, order)
+            if sure > 0.0:
                 place = int(np.searchsorted(orders, order))
                 times, orders = np.insert(times, place, at), np.insert(orders, place, order)
                 members = np.insert(members, place, -1)
@@ -124,30 +166,33 @@ def revised(
     return times, orders, members
 
 
-def _resembling(
-    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, asked: tuple[int, float, float]
-) -> tuple[float, float]:
-    """Return what is most like the impacts before on the same foot: when, and how sure.
-
-    An order is asked for, about when, and how far from it. Sure is by how many deviations of what is around, noise and
-    the echoes of the other foot, it is like them, times how nearly as loud it is as the last of them.
-    """
-    order, about, reach = asked
+def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
+    """Return when an impact of some order came, from those before it, and how much likelier one is than none."""
+    span = next_interval(times[orders < order], orders[orders < order], order)
+    if span is None:
+        return np.nan, -np.inf
+    about, reach = float(times[orders < order][-1]) + span, _SEARCHED * span
     earlier = np.flatnonzero((orders < order) & (orders % 2 == order % 2))
+    own = sharp[order % 2]
     begin, end, around = int(_BEFORE * rate), int(_AFTER * rate), max(_AROUND, reach)
-    first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), sharp.size - end)
+    first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), own.size - end)
     if earlier.size < 2 or last <= first or about - reach >= last / rate:
-        return about, 0.0
-    places = _arrangements(sharp, rate, times[earlier])[0]
-    cuts = _cuts(sharp, rate, places, _BEFORE, _AFTER)
+        return about, -np.inf
+    places = _arrangements(own, rate, times[earlier])[0]
+    cuts = _cuts(own, rate, places, _BEFORE, _AFTER)
     mean = cuts.mean(axis=0)
-    match = np.correlate(sharp[first - begin : last + end], mean, "valid")
-    off = (np.arange(first, first + match.size) / rate - about) / reach
-    likely = np.where(np.abs(off) <= 1.0, np.exp(-2.0 * off**2), 0.0)  # far from where it is asked for it is less so
-    peak = int((match * likely).argmax())
-    sure = match[peak] * likely[peak] / (1.4826 * np.median(np.abs(match)) + np.finfo(float).tiny)
-    loud = match[peak] / max(float(cuts[-1] @ mean), np.finfo(float).tiny)
-    return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), float(sure * np.clip(loud, 0.0, 1.0))
+    match = np.correlate(own[first - begin : last + end], mean, "valid")
+    noise = 1.4826 * float(np.median(np.abs(match))) + np.finfo(float).tiny
+    loud, expected = match / noise, _FADED * float(cuts[-1] @ mean) / noise
+    off = (np.arange(first, first + match.size) / rate - about) / span
+    spread = 1.0 + (_FADES * expected) ** 2
+    likely = 0.5 * (_TAIL + 1.0) * np.log1p(loud**2 / _TAIL) - 0.5 * (loud - expected) ** 2 / spread  # Eq. 323
+    likely -= 0.5 * np.log(spread) + 0.5 * (off / SCATTER) ** 2 + np.log(np.sqrt(2.0 * np.pi) * SCATTER * span * rate)
+    likely[np.abs(off) > _SEARCHED] = -np.inf
+    peak = int(likely.argmax())
+    # of so many impacts each was followed by one: Laplace's rule of succession
+    sure = float(np.logaddexp.reduce(likely) + np.log(orders[orders < order].size + 1.0))
+    return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), sure
 
 
 def _likeness(cuts: FloatArray) -> FloatArray:
@@ -196,17 +241,22 @@ def _chosen(
         return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 317
 
     tried, alike = [], []
-    for rows in product(*(_arrangements(sharp, rate, times[here]) for here in feet)):
+    for rows in product(*(_arrangements(sharp[orders[here[0]] % 2], rate, times[here]) for here in feet)):
         tried.append(np.empty(times.size, dtype=np.int64))
         for here, row in zip(feet, rows, strict=True):
             tried[-1][here] = row
-        alike.append(sum(float(_clicked(_matches(sharp, rate, row, 0)[1]).sum()) for row in rows))
+        alike.append(
+            sum(
+                float(_clicked(_matches(sharp[orders[here[0]] % 2], rate, row, 0)[1]).sum())
+                for here, row in zip(feet, rows, strict=True)
+            )
+        )
     places = tried[int(np.argmax(np.array(alike) + law(np.array(tried))))]
     reach = int(_REACH * rate)
     for _ in range(_ROUNDS):
         moves: list[tuple[int, int, float]] = [(0, 0, 0.0)]
         for here in feet:
-            correlations = _matches(sharp, rate, places[here], reach)[1]
+            correlations = _matches(sharp[orders[here[0]] % 2], rate, places[here], reach)[1]
             for which, row in zip(here, correlations, strict=True):
                 peaks = np.flatnonzero((row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:])) + 1
                 peaks = peaks[np.abs(peaks - reach) > _APART * rate]
@@ -363,17 +413,17 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
         )
     rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
     sharp, white = sharpened(clicks.sound, rate, rough)
-    times, alike, tied = onsets(sharp, white, rate, rough, orders)
+    both = np.array([sharp, sharp]), np.array([white, white])
+    times, _, alike, tied = onsets(*both, rate, rough, orders)
     why = why_no_rocking(times if np.all(np.diff(times) > 0.0) else rough, found, clicks.contrasts, clicks.strengths)
     if not why and alike < _ALIKE:
         why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
     if why:
         raise recording.error(f"this is no sound of a rocking body: {why}")
-    heard = rough
-    rough, orders, members = revised(sharp, rate, rough, orders, members)
-    if not np.array_equal(rough, heard):
-        times, _, tied = onsets(sharp, white, rate, rough, orders)
-    known = np.isfinite(times)
+    sharps = told_apart(sharp, rate, times, orders)
+    rough, orders, members = revised(sharps, rate, times, orders, members)
+    times, unsure, _, tied = onsets(sharps, both[1], rate, rough, orders)
+    known = np.isin(np.arange(times.size), unsure, invert=True)
     if known.sum() < _FEWEST:
         raise recording.error(f"{known.sum()} of its {known.size} clicks can be told in time only; nearer to the body?")
     times, rough, orders, members = times[known], rough[known], orders[known] - orders[known][0], members[known]
