@@ -32,7 +32,7 @@ type Call = <const Path extends string, const Options extends CallOptions = {}>(
 interface App {
   info: Server.Info;
   language: string;
-  inputs: ReturnType<typeof import("/app/inputs.js").createInputs> & { link?: () => string };
+  inputs: ReturnType<typeof import("/app/inputs.js").createInputs>;
   forms: ReturnType<typeof import("/app/forms.js").createForms>;
   body: ReturnType<typeof import("/app/facts.js").createBodyFacts>;
   project: ReturnType<typeof import("/project/saving.js").createProjects>;

@@ -70,10 +70,11 @@ def project_file(state: "AppState", project: Project) -> bytes:
     data, most = stream.getvalue(), state.settings.limits.project_bytes
     if len(data) > most or len(contents) >= MOST_FILES:
         largest = max(contents, key=lambda sha: len(contents[sha]))
+        named = record_file_name({**files, **records}[largest])
         raise TooLarge(
             f"the project has {len(contents)} files, packed {len(data) / 2**20:.0f} MiB, more than the "
             f"{MOST_FILES - 1} of {most >> 20} MiB that can be read again: leave out files where they were dropped (the"
-            f" largest is {record_file_name({**files, **records}[largest])}, {len(contents[largest]) / 2**20:.0f} MiB), "
+            f" largest is {named}, {len(contents[largest]) / 2**20:.0f} MiB), "
             "delete studies that need many, or copy the whole data folder"
         )
     return data

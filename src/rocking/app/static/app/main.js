@@ -55,7 +55,6 @@ const createApp = (inputs, info) => {
     const parts = new URLSearchParams({ in: encode(app.inputs.get()), view: app.view() });
     return `${location.origin}/#${parts}`;
   };
-  app.inputs.link = app.link;
   // A file of inputs that are not those on the screen would mislead whoever gets it.
   app.download = async (path, json, name) => {
     const wrong = json === undefined ? "" : faults.sentence({ inputs: true });

@@ -186,7 +186,6 @@ export const createHistory = (most = 200) => {
     undo: (nowLike) => travel(past, future, nowLike),
     /** @param {(found: any) => any} nowLike */
     redo: (nowLike) => travel(future, past, nowLike),
-    clear: () => [past, future] = [[], []],
     canUndo: () => past.length > 0,
     canRedo: () => future.length > 0,
   };
