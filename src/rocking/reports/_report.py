@@ -1,9 +1,11 @@
 """One call for the report of every answer; what stands in it is the matter of the module of its kind."""
 
 from importlib import import_module
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
+from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.reports.document import write_report
 from rocking.tables import target_of
@@ -45,9 +47,20 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str = "", **op
     Raises
     ------
     InvalidValueError
-        If there is no report of such an answer, it has no result, or the ending of the path is another.
+        If there is no report of such an answer, it takes no such option, it has no result, or the ending of the path
+        is another.
     MissingExtraError
         If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rocking as rk
+    >>> response = rk.free_rocking(rk.Block(width=0.5, height=2.0), rotation=0.1, restitution="ked")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     page = report(response, f"{folder}/response.html", name="Column 4", friction=0.5)
+    ...     page.name, "Column 4" in page.read_text(encoding="utf-8")
+    ('response.html', True)
     """
     homes = [_CONTENTS[each.__name__] for each in type(found).__mro__ if each.__name__ in _CONTENTS]
     if not homes:
@@ -55,6 +68,13 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str = "", **op
     target = target_of(path)
     module, _, content = homes[0].partition(":")
     made = getattr(import_module(f"{__package__}.{module}"), content)
+    known = [each for each in signature(made).parameters.values() if each.kind is Parameter.KEYWORD_ONLY]
+    names = [each.name for each in known]
+    if odd := next((each for each in options if each not in names), None):
+        of = type(found).__name__
+        raise InvalidValueError(
+            f"a report of {of} takes no {odd}; it takes {', '.join(names)}{checks.nearest(odd, names)}"
+        )
     document, pictures = made(found, name=name, date=date, **options)
     write_report(document, pictures, target)
     return target

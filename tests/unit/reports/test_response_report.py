@@ -82,3 +82,11 @@ def test_what_needs_a_package_says_so_before_it_computes(monkeypatch):
 def test_what_has_no_report_is_refused(tmp_path):
     with pytest.raises(RockingError, match=r"found must be one of Response, .*got 3"):
         rk.reports.report(3, tmp_path / "x.html")
+
+
+def test_an_option_that_there_is_not_is_named(tmp_path):
+    """A slip is refused with what the report takes, and nothing is written."""
+    words = r"a report of \w+ takes no frictoin; it takes name, date, friction; did you mean 'friction'"
+    with pytest.raises(RockingError, match=words):
+        rk.reports.report(ASKED["rocking"](), tmp_path / "x.html", frictoin=0.4)
+    assert not list(tmp_path.iterdir())
