@@ -387,6 +387,26 @@ def test_a_step_chosen_while_the_page_still_starts_is_taken(open_page: Callable[
     expect(page.locator("#view-impact")).to_be_visible()
 
 
+def test_a_step_on_its_way_holds_up_no_other(
+    page: Any, until: Callable[..., None], calm: Callable[[Any], None]
+) -> None:
+    """Another step opens while one is still loading; that one is not told that it is shown when it comes too late."""
+    held: list[Any] = []
+    lines: list[Any] = []
+    page.on("websocket", lambda line: lines.extend([line]))
+    page.route("**/views/studies.js", lambda route: held.extend([route]))
+    page.locator("#tab-studies").click()
+    until(page, lambda: held)
+    page.locator("#tab-space").click()
+    page.wait_for_selector("#view-space[data-ready=true]:not([hidden])")
+    held[0].continue_()
+    page.wait_for_selector("#view-studies[data-ready=true]", state="attached")
+    calm(page)
+    assert not lines  # of the studies as they go on, which nobody looks at
+    page.locator("#tab-studies").click()
+    until(page, lambda: lines)
+
+
 @pytest.mark.parametrize(
     ("answer", "words"),
     [

@@ -12,13 +12,15 @@ export const createViews = (app) => {
     if (!mounted.has(name)) mounted.set(name, load(name, app, () => mounted.delete(name)));
     return mounted.get(name);
   };
+  let current = "";
   return {
-    mount,
+    // One that is still on its way holds up no other; it is told that it is shown only if it still is when it comes.
     /** @param {string} name @param {string | null} [before] */
     show: async (name, before) => {
-      if (before) (await mounted.get(before))?.hidden?.();
+      current = name;
+      if (before) mounted.get(before)?.then((/** @type {any} */ view) => current !== before && view.hidden?.());
       const view = await mount(name);
-      view?.shown?.();
+      if (current === name) view?.shown?.();
     },
   };
 };
