@@ -7,8 +7,7 @@ import numpy as np
 
 from rocking import conventions, errors
 from rocking.bodies import Body
-from rocking.dynamics.plane.histories import response_of_rocking
-from rocking.dynamics.response import Response
+from rocking.dynamics.response import Response, response_of_rocking
 from rocking.dynamics.settings import Settings, in_space
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.components import Components, with_vertical
@@ -308,7 +307,7 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
         )
     if friction is not None:
         from rocking.dynamics.contact.base import Start
-        from rocking.dynamics.contact.histories import response_with_contact
+        from rocking.dynamics.contact.response import response_with_contact
 
         refuse("a body with friction", engine=engine, stream=stream)
         return response_with_contact(

@@ -155,7 +155,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         return _rocking_alone(
             body_list, motion_list, scales, restitutions, Settings(**given), twin, threads, engine, progress
         )
-    from rocking.dynamics.contact.histories import many_with_contact
+    from rocking.dynamics.contact.batch import many_with_contact
 
     refuse("bodies with friction", twin=twin)
     settings, mus = Settings(**given, mechanics="contact"), _row("friction", friction)

@@ -1,16 +1,42 @@
-"""Engines of rows with friction: what rows tell of a body is all that its sliding, hopping and flying takes."""
+"""Many histories with friction: rows of a study, which tell all that it takes of a body, and every combination."""
 
-from collections.abc import Sequence
+import math
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
 
+from rocking import checks, plausibility
+from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray
+from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
+from rocking.dynamics.contact.impact_resolution import GroundContact
+from rocking.dynamics.contact.response import (
+    AFTER,
+    FINE,
+    ContactResponse,
+    imposed_on,
+    length_of,
+    response_with_contact,
+)
 from rocking.dynamics.parameters import UNIMPOSED
-from rocking.dynamics.settings import BOUNCE_LAWS, CompiledEngine, Settings
-from rocking.errors import InvalidValueError
+from rocking.dynamics.settings import (
+    BOUNCE_LAWS,
+    CompiledEngine,
+    Settings,
+    check_progress,
+    check_threads,
+    processors,
+)
+from rocking.errors import InvalidValueError, PlausibilityWarning
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, of_results, overturned
 
 NUMBERS = (
     "inertia", "height", "left", "right", "friction", "bounce", "imposed_left", "imposed_right", "scale", "end",
@@ -67,10 +93,6 @@ def run_compiled(
         settings.most_events, threads,
     )  # fmt: skip
     return _COMPILED.named(results, counts)
-
-
-FINE, AFTER = 0.1, 15.0
-"""sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion."""
 
 
 class RowsWithContact:
@@ -165,3 +187,133 @@ def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) ->
             "u": -arm[1] * velocity, "w": arm[0] * velocity, "spin": velocity,
         }  # fmt: skip
     return np.where(rotation == 0.0, 3, np.where(foot > 0.0, 2, 1))
+
+
+PIECE = 1 << 14
+"""Histories that are handed to the fast engine at a time."""
+
+
+def many_with_contact(  # noqa: PLR0913 - what the front door hands on
+    bodies: Sequence[Body],
+    motions: Sequence[GroundMotion | Pulse],
+    scales: FloatArray,
+    restitutions: Sequence[Any],
+    friction: FloatArray,
+    settings: Settings,
+    *,
+    bounce: float = 0.0,
+    bounce_law: str = "newton",
+    start: Start | None = None,
+    duration: float | None = None,
+    engine: str = "auto",
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> tuple[dict[str, np.ndarray], str]:
+    """Return the results of every combination, the last axis (friction) running fastest, and which engine ran."""
+    if start is not None and not isinstance(start, Start):
+        raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
+    check_progress(progress)
+    check_threads(threads)
+    for mu in friction:
+        plausibility.warn(plausibility.of_friction(checks.within("friction", float(mu), 0.0, 1e6)))
+    if chosen(engine) == "fast":
+        imposed = [[imposed_on(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
+        law = GroundContact(0.0, checks.number("bounce", bounce), None, bounce_law)
+        bases = [PlaneBase.of_body(body) for body in bodies]
+        table = _Table(bases, motions, scales, np.array(imposed), friction, law, start or Start(), duration, settings)
+        return table.run(threads or processors(), progress), FAST
+    rows = []
+    for body, motion, scale, restitution, mu in product(bodies, motions, scales, restitutions, friction):
+        with warnings.catch_warnings():  # said once, before
+            warnings.simplefilter("ignore", PlausibilityWarning)
+            response = response_with_contact(
+                body, motion, float(mu), restitution, settings, bounce=bounce, bounce_law=bounce_law,
+                start=start or Start(), scale=float(scale), duration=duration,
+            )  # fmt: skip
+        rows.append(_row_of(response))
+        if progress is not None:
+            progress(1)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}, REFERENCE
+
+
+@dataclass(frozen=True)
+class _Table:
+    """Every combination of bodies, motions, scales, restitutions and coefficients of friction, for the fast engine."""
+
+    bases: Sequence[PlaneBase]
+    motions: Sequence[GroundMotion | Pulse]
+    scales: FloatArray
+    imposed: FloatArray  # of each body and restitution, landing left and right [-]
+    friction: FloatArray
+    law: GroundContact
+    start: Start
+    duration: float | None
+    settings: Settings
+
+    def run(self, threads: int, progress: Callable[[int], None] | None) -> dict[str, np.ndarray]:
+        """Return the columns of `_row_of`, computed piece by piece."""
+        segments = [motion.segments() for motion in self.motions]
+        library = library_of(segments)
+        numbers = [(base.inertia, base.height, base.left, base.right) for base in self.bases]
+        starts = [state_at_start(self.start, base) for base in self.bases]
+        ends = np.array([
+            [ends_of(length_of(motion, slow, self.duration), each.step, isinstance(motion, Pulse), slow)
+             for motion, each in zip(self.motions, segments, strict=True)]
+            for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
+        ])  # fmt: skip
+        shape = (len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size)
+        touching = np.array([sum(1 if foot < 0 else 2 for foot in each.touching) for each in starts])
+        count, pieces = int(np.prod(shape)), []
+        for first in range(0, count, PIECE):
+            last = min(first + PIECE, count)
+            body, motion, scale, choice, mu = np.unravel_index(np.arange(first, last), shape)
+            values: dict[str, Any] = dict(zip(NUMBERS[:4], np.array(numbers)[body].T, strict=True))
+            values |= {"friction": self.friction[mu], "bounce": self.law.bounce, "scale": self.scales[scale]}
+            values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
+            values |= {"end": ends[body, motion]}
+            values |= dict(zip(NUMBERS[10:], np.array([each[:6] for each in starts])[body].T, strict=True))
+            law, how = self.law.bounce_law, self.settings
+            pieces.append(run_compiled(library, values, motion, law, touching[body], settings=how, threads=threads))
+            if progress is not None:
+                progress(last - first)
+        return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
+
+
+_COUNTED = ("impacts", "still_rocking", "impacts_replaced", "shocks")
+_MEASURED = ("peak_rotation", "sliding_distance", "residual_displacement", "friction_usage")
+
+
+def _columns(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    outcome = found["outcome"]
+    return {
+        **{name: found[name] for name in ("outcome", "status", "side")},
+        "overturned": overturned(outcome),
+        "overturning_time": found["overturning_time"],
+        **{name: found[name] for name in _MEASURED},
+        **{name: of_results(outcome, found[name]) for name in _COUNTED},
+    }
+
+
+def _row_of(response: ContactResponse) -> dict[str, float]:
+    """Results of one history; NaN where it has none."""
+    good = response.outcome is not Outcome.FAILED
+    rotation = response.rotation
+    side = np.sign(rotation[np.argmax(np.abs(rotation))]) if rotation.size else 0.0
+    measured = {
+        "peak_rotation": side * response.peak_rotation,
+        "sliding_distance": response.sliding_distance,
+        "residual_displacement": response.trajectory.last_x,
+        "friction_usage": response.friction_usage,
+        "impacts": len(response.impacts),
+        "still_rocking": float(response.still_rocking),
+        "impacts_replaced": response.trajectory.replaced,
+        "shocks": response.trajectory.shocks,
+    }
+    return {
+        "outcome": response.outcome.code,
+        "status": response.status.code,
+        "side": int(side) if response.outcome is Outcome.OVERTURNED else 0,
+        "overturned": float(overturned(np.array(response.outcome.code))),
+        "overturning_time": response.overturning_time,
+        **{name: float(value) if good else np.nan for name, value in measured.items()},
+    }

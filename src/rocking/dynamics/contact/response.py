@@ -1,18 +1,24 @@
 """The response with contact: positions, regimes, impacts, sliding, forces, energy, outcome."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.base import PlaneBase
+from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
+from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.impact_resolution import GroundContact
-from rocking.dynamics.response_base import ResponseBase, motion_provenance
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.parameters import RockingParameters, is_none
+from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, motion_provenance
 from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -272,3 +278,71 @@ _IMPACTS = (
     "time", "velocity_before", "velocity_after", "normal_left", "normal_right", "tangential_left", "tangential_right",
     "lost", "feet",
 )  # fmt: skip
+
+
+FINE, AFTER = 0.1, 15.0
+"""sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion."""
+
+_FREE = 60.0  # the same on ground at rest
+
+
+def response_with_contact(  # noqa: PLR0913 - what the front door hands on
+    body: Body,
+    motion: GroundMotion | Pulse | None,
+    friction: float,
+    restitution: Any,
+    settings: Settings,
+    *,
+    bounce: float = 0.0,
+    bounce_law: str = "newton",
+    start: Start,
+    scale: float = 1.0,
+    duration: float | None = None,
+) -> ContactResponse:
+    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion."""
+    # restitution: None for impacts by complementarity alone; duration: how long to follow the body [s]; if not given,
+    # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest
+    base = PlaneBase.of_body(body)
+    law = GroundContact(
+        friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
+        checks.number("bounce", bounce),
+        imposed_on(body, restitution, settings),
+        bounce_law,
+    )
+    scale = checks.within("scale", scale, -1e6, 1e6)
+    segments = _segments(motion, base, settings.gravity, duration)
+    plausibility.warn(plausibility.of_scaled([motion], scale))
+    history = ContactEngine(base, segments, law, settings, scale).run(state_at_start(start, base))
+    return ContactResponse(body, motion, base, law, settings, segments, scale, history)
+
+
+def imposed_on(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
+    """Return the coefficients that a restitution imposes, landing left and right; None where it imposes none."""
+    if is_none(restitution):
+        return None
+    if isinstance(restitution, ImpactLaw):
+        raise InvalidValueError(
+            f"restitution must be a model, a name or a number here, got {type(restitution).__name__}: "
+            "laws that change from impact to impact are for simulate()"
+        )
+    parameters = RockingParameters.of_body(body, restitution, settings.gravity)
+    return parameters.left.coefficient, parameters.right.coefficient
+
+
+def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None) -> float:
+    """Return how long to follow a body [s]; slow: sqrt(R / g)."""
+    if duration is not None:
+        return checks.positive("duration", duration, "s")
+    return motion.duration + AFTER * slow
+
+
+def _segments(motion: object, base: PlaneBase, gravity: float, duration: float | None) -> Segments:
+    slow = math.sqrt(base.size / gravity)
+    if motion is None:
+        length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
+        return ground_at_rest(length / max(1, math.ceil(length / (FINE * slow) - 1e-9)), length)
+    if not isinstance(motion, (GroundMotion, Pulse)):
+        raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {motion!r:.60}")
+    length = length_of(motion, slow, duration)
+    segments = motion.segments()
+    return followed(segments, length, math.ceil(segments.step / (FINE * slow)), motion)
