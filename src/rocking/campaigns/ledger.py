@@ -153,11 +153,10 @@ class Ledger:
         seconds, retries = self._database.execute(query).fetchone()
         return float(seconds), int(retries)
 
-    def costs(self, count: int, since: str = "") -> Costs:
+    def costs(self, count: int) -> Costs:
         """Return what the histories have taken that are finished."""
         costs = Costs(count)
-        query = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
-        rows = self._database.execute(query, (since,)).fetchall()
+        rows = self._database.execute(f"SELECT first, last, seconds FROM {_ALL}").fetchall()
         if rows:
             costs.add(*(np.array(column) for column in zip(*rows, strict=True)))
         return costs

@@ -197,8 +197,3 @@ def tables_in(path: Path) -> dict[str, Any] | None:
         return tomllib.loads(read_text(path))
     except (InvalidValueError, ValueError, RecursionError):
         return None
-
-
-def is_response(path: Path) -> bool:
-    """Return whether a file describes a response rather than a body: it has a table [response]. Never raises."""
-    return "response" in (tables_in(path) or {})

@@ -28,7 +28,6 @@ from rocking.restitution.bed import (
 from rocking.restitution.bed.setup import Setup
 from rocking.restitution.bed_table import HARDNESS, POINTS, STEP, BedTable, nodes
 from rocking.restitution.contact_bed import ContactBedModel, ScaledImpact, resolved_coefficients
-from rocking.tables import Column, Table
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -243,29 +242,10 @@ def _labelled(
     return labelled
 
 
-def exported(found: "xr.Dataset") -> Table:
-    """Return a study as the table that files hold: what was varied first, then every result; and the provenance."""
-    columns = {
-        str(name): Column(each.values, each.attrs["units"], each.attrs.get("long_name", ""))
-        for name, each in {**found.coords, **found.data_vars}.items()
-    }
-    return Table("value", columns, dict(found.attrs), no_unit="-")
-
-
-def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> "xr.Dataset":
-    """Return what the bed says about blocks of one shape that grow [m], on a flat and on a hollow base, beside KED."""
+def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
+    """Return r of blocks of one shape that grow [m], on a flat and on a hollow base, beside KED."""
     # on a flat base of one layer neither r nor KED depends on the size (`study` of the width); what can change with
     # size is a length that does not grow: here a hollow of fixed height [m] under the base
-    extra("xarray", "the impact laboratory")
-    results = large_bodies(widths, hollow=hollow, laboratory=laboratory)
-    results["hollow_minus_ked"] = results["hollow"] - results["ked"]
-    row = np.atleast_1d(np.asarray(widths, dtype=np.float64))
-    by_name = {name: ("1", values) for name, values in results.items()}
-    return _labelled("width", row, by_name, (laboratory or Laboratory()).layered)
-
-
-def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
-    """Return flat, hollow and ked over widths [m]: `large_bodies_study` without labelled arrays."""
     start = (laboratory or Laboratory()).layered
     row = np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}

@@ -185,13 +185,6 @@ def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
     return Table.of_rows("pelicun", head, [tuple(row)])
 
 
-def with_added_dispersion(dispersion: float, *others: float) -> float:
-    """Return the dispersion with others [-], of modelling or construction, added: the root of the sum of squares."""
-    parts = [checks.positive("dispersion", dispersion)]
-    parts += [checks.within("dispersion", other, 0.0, 10.0) for other in others]
-    return math.hypot(*parts)
-
-
 def to_csv(
     model: FragilityModel,
     path: Destination,
