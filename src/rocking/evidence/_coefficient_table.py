@@ -116,8 +116,6 @@ def coefficient_table(
     which: Sequence[RestitutionModel] | None = None,
     *,
     onto: Foot = "right",
-    eta: float = 1.0,
-    calibrated: bool = True,
 ) -> tuple[CoefficientRow, ...]:
     """Return the coefficient of a body under every model, with intervals and implications.
 
@@ -129,15 +127,11 @@ def coefficient_table(
         Models to show; by default every registered one.
     onto : {"left", "right"}
         The foot on which it lands.
-    eta : float
-        Interface factor applied to every model but the calibrated default, which has its own [-].
-    calibrated : bool
-        Whether the calibrated default comes first.
 
     Returns
     -------
     tuple of CoefficientRow
-        One row a model.
+        One row a model, the calibrated default first.
 
     Examples
     --------
@@ -147,8 +141,7 @@ def coefficient_table(
     ('calibrated', [0.911765])
     """
     chosen = [each for each in which or default_models() if not isinstance(each, Calibrated)]
-    fitted = [Calibrated()] if calibrated else []
-    return tuple(_row(body, onto, each) for each in (*fitted, *(model(each, eta=eta) for each in chosen)))
+    return tuple(_row(body, onto, each) for each in (Calibrated(), *map(model, chosen)))
 
 
 def _row(body: Body, onto: Foot, known: RestitutionModel) -> CoefficientRow:

@@ -236,10 +236,3 @@ def recomputed(name: str) -> tuple[TableRow, ...]:
         )
         for i in range(len(data))
     )
-
-
-def mean_rows(data: DataSet) -> dict[float, float]:
-    """Return the mean r at each slenderness, as the paper forms Table 2 from Table 1 [-]."""
-    return {
-        float(ratio): float(data.coefficient[data.slenderness == ratio].mean()) for ratio in np.unique(data.slenderness)
-    }

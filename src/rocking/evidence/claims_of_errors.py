@@ -161,8 +161,7 @@ def _advantage_by_group() -> tuple[str, str]:
     not_significant = gains["S"].sign == gains["M"].sign == 0
     return pronounced if not_significant else IN_PART if pronounced == HOLDS else FAILS, (
         "; ".join(
-            f"{name}: closer in {wins[name]} of 9, RMSE lower by {each.first - each.second:.4f} "
-            f"({each.low:+.4f} to {each.high:+.4f})"
+            f"{name}: closer in {wins[name]} of 9, RMSE lower by {each.value:.4f} ({each.low:+.4f} to {each.high:+.4f})"
             for name, each in gains.items()
         )
         + "".join(f"; in L more than in {name} by {each}" for name, each in more.items())

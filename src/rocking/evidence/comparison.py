@@ -49,25 +49,17 @@ class Difference:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
-    """Error of one model minus that of another."""
+class Comparison(Difference):
+    """Error of one model minus that of another, the interval of a paired bootstrap: infinite from few specimens."""
 
     first: float  # first, second: root mean square errors [-]
     second: float
-    # low, high: 95 % paired bootstrap interval of their difference; infinite from fewer than five specimens [-]
-    low: float
-    high: float
     by_group: "dict[str, Comparison]"  # the same within each data set
-
-    @property
-    def sign(self) -> int:
-        """-1 where the first is closer, 1 where the second is, 0 where the interval includes zero."""
-        return int(self.low > 0.0) - int(self.high < 0.0)
 
     def sentence(self, one: str, other: str) -> str:
         numbers = (
             f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
-            f"{self.first - self.second:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
+            f"{self.value:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
         )
         outcome = {-1: f"{one} is closer", 0: "not resolved", 1: f"{other} is closer"}
         groups = "; ".join(
@@ -96,7 +88,7 @@ def _compared(
     if len({column.tobytes() for column in weight.T}) < FEWEST:
         low, high = -np.inf, np.inf
     by_group = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
-    return Comparison(first, second, low, high, by_group)
+    return Comparison(first - second, low, high, first, second, by_group)
 
 
 def errors_of_groups(

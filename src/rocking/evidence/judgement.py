@@ -71,11 +71,10 @@ def judge(models: Sequence[RestitutionModel], ratios: tuple[float, ...], data: D
 
 
 def _record(rows: DataSet, r: FloatArray, closest: FloatArray, rounding: float, first: bool) -> TrackRecord:
-    found = compare(rows, r, closest)
-    behind = Difference(found.first - found.second, found.low, found.high)
+    behind = compare(rows, r, closest)
     aside = behind.sign > 0 and behind.value > rounding
     standing = Standing.CLOSEST if first else Standing.SET_ASIDE if aside else Standing.UNRESOLVED
-    return TrackRecord(standing, bias(r, rows.coefficient), found.first, loss_rmse(r, rows.coefficient), behind)
+    return TrackRecord(standing, bias(r, rows.coefficient), behind.first, loss_rmse(r, rows.coefficient), behind)
 
 
 def _like(ratios: tuple[float, ...], data: DataSet) -> tuple[IntArray, str]:

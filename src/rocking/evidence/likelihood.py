@@ -36,12 +36,6 @@ def normal_cdf(z: FloatArray) -> FloatArray:
     return 0.5 * np.asarray(_erfc(-math.sqrt(0.5) * z), dtype=np.float64)
 
 
-def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
-    """Return BIC of least squares, n ln(RSS/n) + (parameters + 1) ln n, the variance not counted; lower is better."""
-    n = residuals.size
-    return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)  # Eq. 138
-
-
 def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
     """Fit the parameters of `scatter` around predictions; return them and the logarithm of the largest likelihood."""
     from scipy.optimize import minimize

@@ -65,12 +65,6 @@ class Posterior:
         part = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
         return float(self.model.deviation[which] * np.sqrt(self.weights @ part))
 
-    def of_impact(self, number: int) -> "Mixture":
-        """Return the distribution of the draw of an impact, as part of ln r."""
-        slopes = np.zeros_like(self.u)
-        slopes[:, len(SHARED) + number] = self.scatter
-        return self.normal(slopes)
-
     def average(self, values: FloatArray) -> FloatArray:
         """Return the mean over the grid."""
         return np.asarray(np.tensordot(self.weights, values, axes=1))
