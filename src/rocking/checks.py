@@ -4,13 +4,14 @@ import difflib
 import math
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from rocking.conventions import FEET, LENGTH_UNITS, Assumed, FloatArray, Foot
 from rocking.errors import InvalidValueError
 
+Word = TypeVar("Word", bound=str)
 SMALLEST, LARGEST = 1e-9, 1e9
 """No body is smaller or larger than this [m]: squares and fourth powers stay far from overflow."""
 
@@ -39,7 +40,8 @@ def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str)
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
     """Return `value` as a whole number between `low` and `high`."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
-        raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
+        allowed = f">= {low}" if high >= 2**63 - 1 else f"in [{low}, {high}]"
+        raise InvalidValueError(f"{name} must be a whole number {allowed}, got {value!r:.60}")
     return int(value)
 
 
@@ -142,7 +144,7 @@ def length_unit(value: Any) -> float:
     return LENGTH_UNITS[one_of("length unit", value, LENGTH_UNITS)]
 
 
-def one_of(name: str, value: Any, known: Iterable[str]) -> str:
+def one_of(name: str, value: Any, known: Iterable[Word]) -> Word:
     """Return the one of some words that was meant, upper or lower case alike, as it is spelt there.
 
     >>> one_of("engine", "Fast", ["auto", "fast"])

@@ -158,18 +158,8 @@ class Block(Body):
         return 0.5 * self.height
 
     @property
-    def origin_x(self) -> float:
-        """The local frame is the user's: the block stands on 0 <= x <= width."""
-        return 0.0
-
-    @property
-    def ground(self) -> float:
-        """Height of the ground [m]: zero."""
-        return 0.0
-
-    @property
     def local_feet(self) -> Interval:
-        """The two lower corners [m]."""
+        """The two lower corners, x = 0 and x = width [m]."""
         return 0.0, self.width
 
     @property

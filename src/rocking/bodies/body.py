@@ -88,14 +88,14 @@ class Body(ABC):
     """
 
     @property
-    @abstractmethod
     def origin_x(self) -> float:
-        """Horizontal position of the local frame in the user's coordinates [m]."""
+        """Horizontal position of the local frame in the user's coordinates: zero, if they are the same [m]."""
+        return 0.0
 
     @property
-    @abstractmethod
     def ground(self) -> float:
-        """Height of the ground in the user's coordinates [m]."""
+        """Height of the ground in the user's coordinates: zero, if nothing else is said [m]."""
+        return 0.0
 
     @property
     @abstractmethod

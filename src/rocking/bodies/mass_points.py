@@ -65,16 +65,6 @@ class MassPoints(Body):
         self._check_support()
 
     @property
-    def origin_x(self) -> float:
-        """The local frame is the user's."""
-        return 0.0
-
-    @property
-    def ground(self) -> float:
-        """Height of the ground [m]: zero."""
-        return 0.0
-
-    @property
     def local_feet(self) -> Interval:
         return self._feet
 

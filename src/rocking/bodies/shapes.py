@@ -6,7 +6,6 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.errors import InvalidValueError
 
 
 def rectangle(width: float, height: float) -> FloatArray:
@@ -82,8 +81,7 @@ def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
     0.0
     """
     w, h = checks.positive("width", width, "m"), checks.positive("height", height, "m")
-    if type(sides) is not int or sides < 3:
-        raise InvalidValueError(f"sides must be a whole number >= 3, got {sides!r}")
+    sides = checks.whole("sides", sides, 3)
     angle = -0.5 * math.pi + 2.0 * math.pi / sides * (np.arange(sides) + 0.5)
     x, y = 0.5 * w * np.cos(angle), 0.5 * h * np.sin(angle)
     y = y - y.min()

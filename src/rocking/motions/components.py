@@ -199,11 +199,7 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
 
 
 def _check(which: str, motion: object) -> None:
-    if not isinstance(motion, GroundMotion):
-        raise InvalidValueError(
-            f"{which} must be a GroundMotion, got {type(motion).__name__}; a pulse is sampled first"
-        )
-    if motion.vertical is not None:
+    if checked_motion(motion, which).vertical is not None:
         raise InvalidValueError(f"{which} must have no vertical part yet, got {motion!r:.200}; which one is meant?")
 
 

@@ -67,14 +67,11 @@ def detrended(
     True
     """
     motion = checked_motion(motion)
-    if isinstance(order, bool) or order not in {1, 2, 3}:
-        raise InvalidValueError(f"order must be 1, 2 or 3, got {order!r}")
-    if fit not in {"velocity", "acceleration"}:
-        raise InvalidValueError(f'fit must be "velocity" or "acceleration", got {fit!r}')
+    order, kind = checks.whole("order", order, 1, 3), checks.one_of("fit", fit, ("velocity", "acceleration"))
     if len(motion) < order + 2:
         raise InvalidValueError(f"a trend of order {order} needs at least {order + 2} samples, got {len(motion)}")
-    what = f"polynomial of order {order} fitted to the {fit} removed"
-    return _each(motion, lambda a: a - _trend(a, motion.time_step, int(order), fit), what)
+    what = f"polynomial of order {order} fitted to the {kind} removed"
+    return _each(motion, lambda a: a - _trend(a, motion.time_step, order, kind), what)
 
 
 def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
@@ -138,10 +135,9 @@ def bandpassed(
     high = checks.within(
         "high", high, low, nyquist, unit="Hz", open_low=True, open_high=True, hint="low < high < Nyquist"
     )
-    if isinstance(order, bool) or order not in range(1, 11):
-        raise InvalidValueError(f"order must be a whole number from 1 to 10, got {order!r}")
+    order = checks.whole("order", order, 1, 10)
     keep = checks.one_of("pads", pads, ("cut", "keep")) == "keep"
-    sections: Any = butter(int(order), [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
+    sections: Any = butter(order, [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
     pad = math.ceil(1.5 * order / low / motion.time_step)  # Eq. 155
 
     def filtered(samples: FloatArray) -> FloatArray:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -206,11 +206,9 @@ class Equilibria:
         InvalidValueError
             If `path` is another word.
         """
-        if path not in ("straight", "lowest"):
-            raise InvalidValueError(f'path must be "straight" or "lowest", got {path!r}')
-        angles = azimuths(azimuth)
+        way, angles = checks.one_of("path", path, get_args(Path)), azimuths(azimuth)
         self._check(pose)
-        rises = [self._over(pose, angle, path) for angle in angles.ravel().tolist()]
+        rises = [self._over(pose, angle, way) for angle in angles.ravel().tolist()]
         return np.array(rises).reshape(angles.shape)
 
     def toppled(self, pose: StablePose, azimuth: float) -> StablePose | None:
@@ -240,7 +238,7 @@ class Equilibria:
                 return
         raise InvalidValueError(f"pose must be one of the stable poses of these equilibria, got {pose!r:.60}")
 
-    def _over(self, pose: StablePose, azimuth: float, path: Path) -> float:
+    def _over(self, pose: StablePose, azimuth: float, path: str) -> float:
         rise, end = self._straight(pose, azimuth)
         return rise if path == "straight" or end == pose.number else self._lowest(pose, end).rise
 

@@ -2,17 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies.moments import SolidMoments
 from rocking.conventions import FloatArray, percent
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.errors import GeometryError
 
 Repair = Literal["none", "safe", "all"]
 
-REPAIRS: tuple[Repair, ...] = ("none", "safe", "all")
 """Merging equal vertices alone; what stays within the bounds below; whatever it takes."""
 
 MOST_VOLUME = 0.01  # what safe repairs together may change of the volume [-]
@@ -39,8 +39,7 @@ class Changes:
     mended: list[FloatArray] = field(default_factory=list)  # faces that closed holes, (m, 3, 3) each [m]
 
     def __post_init__(self) -> None:
-        if self.allowed not in REPAIRS:
-            raise InvalidValueError(f'repair must be "none", "safe" or "all", got {self.allowed!r:.60}')
+        self.allowed = checks.one_of("repair", self.allowed, get_args(Repair))
 
     def say(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
         """Note a repair; volume: what it can have changed [m3], about a place [m], or anywhere."""

@@ -7,6 +7,7 @@ harm; nothing is integrated before the surface is closed, and shells are told ap
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
@@ -211,6 +212,7 @@ def repaired(
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
+    surface = checks.one_of("surface", surface, get_args(Surface))
     vertices, faces = _triangles(vertices, faces, surface != "faces")
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle

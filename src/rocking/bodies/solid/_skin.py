@@ -8,11 +8,10 @@ from rocking.bodies.solid._changes import Changes
 from rocking.bodies.solid._shells import connected
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray, percent
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.errors import GeometryError
 
 Surface = Literal["faces", "wrap", "hull"]
 
-SURFACES: tuple[Surface, ...] = ("faces", "wrap", "hull")
 """The faces of a mesh; a skin over its points; the convex hull of its points."""
 
 MOST_POINTS = 30_000  # denser clouds are thinned, their convex hull apart [-]
@@ -24,8 +23,6 @@ _OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
 def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatArray, IntArray]:
     """Return a closed, oriented surface over points."""
-    if surface not in SURFACES:
-        raise InvalidValueError(f'surface must be "faces", "wrap" or "hull", got {surface!r:.60}')
     points = points if surface == "hull" else _with_bottom(points, changes)
     hull = _hull(points)
     if surface == "hull":

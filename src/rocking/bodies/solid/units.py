@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.solid import Solid
 from rocking.bodies.solid.surfaces import placed_points
@@ -109,12 +110,7 @@ def _assembled(solid: Solid, pieces: list[_Pieces]) -> Units:
 
 
 def _whole(divisions: int) -> int:
-    given: object = divisions
-    if isinstance(given, bool) or not isinstance(given, (int, np.integer)) or divisions < 1:
-        raise InvalidValueError(f"divisions must be a whole number of at least 1, got {divisions!r}")
-    if int(divisions) ** 3 > MOST_UNITS:
-        raise InvalidValueError(f"divisions must be at most {round(MOST_UNITS ** (1 / 3))}, got {divisions}")
-    return int(divisions)
+    return checks.whole("divisions", divisions, 1, round(MOST_UNITS ** (1 / 3)))
 
 
 def _voxels_of(part: Part, step: float) -> _Pieces:

@@ -23,7 +23,8 @@ from rocking.motions.formats.column_text import (
     states_sampling,
     unit_named,
 )
-from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
+from rocking.motions.formats.header_values import columns_of
+from rocking.motions.formats.headers import step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
@@ -130,10 +131,7 @@ class Columns(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a file with a column of times and one to three of accelerations, to all digits and with the unit."""
-        rows = in_unit(record, self.name, None, _MOST_COLUMNS - 1)
-        step = record.components[0].time_step
-        if len({row.size for row in rows}) > 1 or any(part.time_step != step for part in record.components):
-            raise RecordError("columns holds components of the same length and step; write each to a file of its own")
+        samples, step = columns_of(record, self.name, None, _MOST_COLUMNS - 1)
         named = [re.sub(r"[\[\](),;=]", " ", one_line(part.name, 40)).strip() for part in record.components]
         unit = record.components[0].unit
         heading = ", ".join(["time [s]", *(f"{name} [{unit}]" for name in named)])
@@ -141,7 +139,7 @@ class Columns(RecordFormat):
         if len({name.casefold() for name in named}) < len(named) or len(names_on(heading) or ()) != len(named) + 1:
             heading = ", ".join(["time [s]", *(f"column {place + 2} [{unit}]" for place in range(len(named)))])
         lines = [f"# {heading}"]
-        for place, sample in enumerate(np.column_stack(rows)):
+        for place, sample in enumerate(samples):
             lines.append(" ".join([f"{place * step:.9f}", *(repr(float(value)) for value in sample)]))
         return ("\n".join(lines) + "\n").encode("latin-1")
 

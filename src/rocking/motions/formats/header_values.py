@@ -83,7 +83,7 @@ def side_by_side(
     return Record(record.format, tuple(parts), "\n".join(source.lines[:first]), record.metadata)
 
 
-def columns_of(record: Record, name: str, unit: str, most: int) -> tuple[np.ndarray, float]:
+def columns_of(record: Record, name: str, unit: str | None, most: int) -> tuple[np.ndarray, float]:
     """Return the samples of a record as columns, and their step [s], for writers."""
     samples = headers.in_unit(record, name, unit, most)
     if len({row.size for row in samples}) > 1 or len({part.time_step for part in record.components}) > 1:

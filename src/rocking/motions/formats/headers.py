@@ -179,9 +179,7 @@ def check_count(source: Source, stated: int, found: int) -> None:
 
 def check_peak(source: Source, stated: float, values: FloatArray, rounding: float, what: str = "peak") -> None:
     """Refuse a file whose largest value is not the one that its header states."""
-    found = float(np.abs(values).max())
-    if not abs(abs(stated) - found) <= rounding:
-        raise source.error(None, f"the header states a {what} of {abs(stated):g}, the data have {found:g}")
+    check_stated(source, abs(stated), float(np.abs(values).max()), rounding, what)
 
 
 def check_end(source: Source, first: int) -> None:

@@ -1,7 +1,6 @@
 """What all generators share: the seed, the grid of times and the description of the parameters."""
 
 import math
-import operator
 from dataclasses import fields
 from typing import Any
 
@@ -23,13 +22,7 @@ def normals(seed: object, *shape: int) -> FloatArray:
 
     The last bit of one in 4000 of NumPy's is that of the C library's logarithm; rounding to 2e-10 takes it away.
     """
-    try:
-        whole = -1 if isinstance(seed, bool) else operator.index(seed)  # type: ignore[arg-type]
-    except TypeError:
-        whole = -1
-    if whole < 0:
-        raise InvalidValueError(f"seed must be a whole number of at least 0, got {seed!r}")
-    numbers = np.random.default_rng(whole).standard_normal(shape)
+    numbers = np.random.default_rng(checks.whole("seed", seed, high=2**128)).standard_normal(shape)
     numbers *= _GRID
     np.rint(numbers, out=numbers)
     numbers *= 1.0 / _GRID

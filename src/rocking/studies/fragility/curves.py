@@ -358,4 +358,4 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
 
 def check_crossing(crossing: Any) -> str:
     """Return the way to treat curves that cross, or refuse what is none."""
-    return checks.one_of("crossing", crossing, get_args(Crossing))
+    return str(checks.one_of("crossing", crossing, get_args(Crossing)))

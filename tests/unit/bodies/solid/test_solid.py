@@ -176,7 +176,7 @@ LEG = box(0.2, 0.2, 1.0)
         (lambda: Solid(LEG, base=[(0, 0, 0)]), "base points"),
         (lambda: Solid(LEG).base.edge(4), "edge must be a whole number"),
         (lambda: divided(Solid(LEG), 0), "divisions must be a whole number"),
-        (lambda: divided(Solid(LEG), 10_000), "divisions must be at most"),
+        (lambda: divided(Solid(LEG), 10_000), r"divisions must be a whole number in \[1, 271\]"),
     ],
 )
 def test_refusals(make, words):
