@@ -4,10 +4,11 @@ The shapes describe; nothing is checked against them when a request is answered,
 itself where the series are long. The tests check every one of them.
 """
 
+import inspect
 import json
 import math
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, get_args, get_type_hints
 
 from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field, create_model
@@ -134,6 +135,13 @@ def shape(name: str, meaning: str, base: type[Answer] = Answer, /, **fields: Any
     """
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
+
+
+def shape_of(kind: type, name: str, *, without: tuple[str, ...] = ()) -> Any:
+    """Return a dataclass as a table of an answer; its annotations hold the words: `Annotated[str, "of what"]`."""
+    hints = {key: hint for key, hint in get_type_hints(kind, include_extras=True).items() if key not in without}
+    told = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
+    return shape(name, inspect.getdoc(kind) or "", **told)
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:

@@ -7,6 +7,7 @@ import threading
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import TypeAdapter
 
@@ -26,12 +27,12 @@ MOST_RECORDS = 5_000  # files that are kept at once
 
 @dataclass(frozen=True, slots=True)
 class StoredRecord:
-    """An uploaded file."""
+    """A file that is kept."""
 
-    record: str  # SHA-256 of its bytes, 64 hexadecimal digits
-    file_name: str  # the name it was given, made harmless
-    bytes: int  # its length [bytes]
-    uploaded: str  # when, in UTC
+    record: Annotated[str, "SHA-256 of its bytes, by which inputs name it"]
+    file_name: Annotated[str, "the name it was given, made harmless"]
+    bytes: Annotated[int, "its length [bytes]"]
+    uploaded: Annotated[str, "when, in UTC"]
 
 
 _NOTE = TypeAdapter(StoredRecord)

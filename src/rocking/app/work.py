@@ -1,10 +1,15 @@
-"""Long computations: a few threads, a short queue before them, and the same question computed once."""
+"""Long computations: a few threads with a short queue, processes that are ended whole, what is computed once."""
 
 import asyncio
+import os
+import signal
+import subprocess
+import sys
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
@@ -72,6 +77,15 @@ async def sized(
     if vertices <= _SMALL:
         return await run_in_threadpool(function, *args, **kwargs)
     return await heavy(request, function, *args, **kwargs)
+
+
+def kill(process: "subprocess.Popen[bytes]") -> None:
+    """End a process, which leads a group, and all that it has started."""
+    with suppress(OSError):
+        if sys.platform == "win32":
+            process.kill()
+        elif process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
 
 
 class Remembered(Generic[T]):

@@ -9,11 +9,11 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from fastapi import Path as InPath
 
-from rocking.app.answers import FILE_SENT, Deleted, JsonAnswer, answered, shape
+from rocking.app.answers import FILE_SENT, Deleted, JsonAnswer, answered, shape, shape_of
 from rocking.app.errors import room_on_disk
 from rocking.app.inputs import check_record, check_samples
 from rocking.app.plain_text import safe_name
-from rocking.app.records import RecordStore
+from rocking.app.records import RecordStore, StoredRecord
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import ACCELERATION_UNITS
@@ -37,14 +37,7 @@ Word = Annotated[str | None, Query(min_length=1, max_length=200)]
 Step = Annotated[float | None, Query(gt=0.0, allow_inf_nan=False, description="s")]
 Sha = Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")]
 
-RecordKept: Any = shape(
-    "RecordKept",
-    "A file that is kept.",
-    record=(str, "SHA-256 of its bytes, by which inputs name it"),
-    file_name=(str, "the name it was given, made harmless"),
-    bytes=(int, "its length [bytes]"),
-    uploaded=(str, "when, in UTC"),
-)
+RecordKept: Any = shape_of(StoredRecord, "RecordKept")
 ComponentFacts: Any = shape(
     "ComponentFacts",
     "One component of a record; null is what the file does not say.",

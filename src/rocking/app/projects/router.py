@@ -9,9 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from rocking.app.answers import FILE_SENT, JsonAnswer, answered, answered_with_file, attachment, shape
+from rocking.app.answers import FILE_SENT, JsonAnswer, answered, answered_with_file, attachment, shape, shape_of
 from rocking.app.projects.one_file import project_file, project_from_file
-from rocking.app.projects.store import KEPT_DAYS, Project, ProjectStore
+from rocking.app.projects.store import Project, ProjectState, ProjectStore
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 
@@ -20,31 +20,12 @@ Name = Annotated[str, Field(min_length=1, max_length=200, description="what peop
 Version = Annotated[int, Field(ge=1, description="the one that this change follows; refused if there is a later one")]
 _DOCUMENT = "body, motion, restitution and whatever else belongs to it, half finished perhaps"
 
-ProjectFacts: Any = shape(
-    "ProjectFacts",
-    "A project.",
-    id=(str, "its name in addresses"),
-    name=(str, "what people call it"),
-    created=(str, "when, in UTC"),
-    changed=(str, "when last, in UTC"),
-    version=(int, "one more with every change"),
-    state=(int, "number of the state that it is in"),
-    can_undo=bool,
-    can_redo=bool,
-    deleted=(str | None, f"when, in UTC; it can be brought back for {KEPT_DAYS} days"),
-)
+ProjectFacts: Any = shape_of(Project, "ProjectFacts")
 Projects: Any = shape(
     "Projects", "All projects, the last changed first.", projects=list[ProjectFacts], deleted=list[ProjectFacts]
 )
 WholeProject: Any = shape("WholeProject", "A project and what it holds.", ProjectFacts, document=dict[str, Any])
-StateFacts: Any = shape(
-    "StateFacts",
-    "A state that a project was saved in.",
-    number=int,
-    words=(str, "what was changed"),
-    time=(str, "when, in UTC"),
-    here=(bool, "whether the project is in it"),
-)
+StateFacts: Any = shape_of(ProjectState, "StateFacts")
 History: Any = shape("History", "Every state that is kept, the last first.", states=list[StateFacts])
 
 

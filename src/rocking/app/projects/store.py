@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
 from rocking.app.plain_text import shown
@@ -35,17 +35,17 @@ CREATE TABLE states (
 
 @dataclass(frozen=True)
 class Project:
-    """A project as it stands."""
+    """A project."""
 
-    id: str  # its name in addresses
-    name: str  # as people call it
-    created: str  # created, changed: when, in UTC
-    changed: str
-    version: int  # one more with every change of whatever kind: what a change must know that it follows
-    state: int  # number of the state that it is in
+    id: Annotated[str, "its name in addresses"]
+    name: Annotated[str, "what people call it"]
+    created: Annotated[str, "when, in UTC"]
+    changed: Annotated[str, "when last, in UTC"]
+    version: Annotated[int, "one more with every change"]  # of whatever kind: what a change must know that it follows
+    state: Annotated[int, "number of the state that it is in"]
     can_undo: bool
     can_redo: bool
-    deleted: str | None = None  # when, in UTC; such a project can be brought back for a while
+    deleted: Annotated[str | None, f"when, in UTC; it can be brought back for {KEPT_DAYS} days"]
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,9 @@ class ProjectState:
     """A state that a project was saved in."""
 
     number: int
-    words: str  # what was changed
-    time: str  # when, in UTC
-    here: bool  # whether the project is in it
+    words: Annotated[str, "what was changed"]
+    time: Annotated[str, "when, in UTC"]
+    here: Annotated[bool, "whether the project is in it"]
 
 
 def _alone(method: Callable[..., Project]) -> Callable[..., Project]:

@@ -5,7 +5,6 @@ import logging
 import os
 import secrets
 import shutil
-import signal
 import subprocess
 import sys
 import threading
@@ -14,7 +13,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import TypeAdapter
 
@@ -23,10 +22,15 @@ from rocking.app.inputs import levels
 from rocking.app.plain_text import safe_name, shown, toml_of
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.app.work import kill
 from rocking.campaigns.disk import write_new
 from rocking.motions.formats import formats
 from rocking.restitution.from_file import file_of
 
+Command = Literal[
+    "assess", "predict", "identify", "inventory", "convert", "motions", "minimum", "equilibria", "cor", "simulate",
+    "paper",
+]  # fmt: skip
 OUTPUTS: dict[str, tuple[str, ...]] = {
     "assess": ("picture.svg", "report.pdf", "report.html"),
     "predict": ("picture.svg", "report.pdf", "table.csv"),
@@ -56,19 +60,19 @@ State = Literal["waiting", "running", "done", "refused", "stopped"]
 
 @dataclass(frozen=True)
 class HostedQuestion:
-    """What was asked, and how far it is."""
+    """A question, and how far it is."""
 
-    id: str  # its name in addresses
-    command: str  # of the command line
-    name: str  # what people call it
-    project: str  # to which it belongs; empty if to none
-    asked: str  # when, in UTC
+    id: Annotated[str, "its name in addresses"]
+    command: Command
+    name: Annotated[str, "what people call it"]
+    project: Annotated[str, "to which it belongs; empty if to none"]
+    asked: Annotated[str, "when, in UTC"]
     state: State = "waiting"
-    message: str = ""  # why there is no answer; empty while nothing is wrong
-    seconds: float = 0.0  # that it took [s]
-    files: list[str] = field(default_factory=list)  # that can be taken away
+    message: Annotated[str, "why there is no answer; empty while nothing is wrong"] = ""
+    seconds: Annotated[float, "that it took [s]"] = 0.0
+    files: Annotated[list[str], "that can be taken away"] = field(default_factory=list)
     starts: int = 0  # how often it was begun
-    format: str = ""  # in which convert writes the record beside columns; empty for no other
+    format: Annotated[str, "in which convert writes the record beside columns; empty for no other"] = ""
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
@@ -93,7 +97,7 @@ class QuestionDesk:
 
     def ask(
         self,
-        command: str,
+        command: Command,
         tables: dict[str, Any],
         files: Mapping[str, str],
         name: str = "",
@@ -171,7 +175,7 @@ class QuestionDesk:
                 self._line.remove(known.id)
             self._become(replace(known, state="stopped", message="stopped"))
             if self._process is not None and self._process[0] == known.id:
-                _kill(self._process[1])
+                kill(self._process[1])
         return self.get(question)
 
     def delete(self, question: str) -> None:
@@ -186,7 +190,7 @@ class QuestionDesk:
         with self._changed:
             self._closed = True
             if self._process is not None:
-                _kill(self._process[1])
+                kill(self._process[1])
             self._let_go()
             self._changed.notify_all()
         self._thread.join(10.0)
@@ -294,7 +298,7 @@ class QuestionDesk:
             process = self._start() if ahead is None else ahead[0]
             self._process = (question.id, process)
             if self._closed or self._state(question.id) == "stopped":
-                _kill(process)
+                kill(process)
         try:
             with suppress(OSError):  # it has ended: its code says so
                 process.stdin.write(json.dumps(told).encode() + b"\n")  # type: ignore[union-attr]
@@ -379,18 +383,9 @@ def _link(source: Path, target: Path) -> None:
         shutil.copyfile(source, target)
 
 
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End a process and all that it has started."""
-    with suppress(OSError):
-        if sys.platform == "win32":
-            process.kill()
-        elif process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-
-
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End a process, and close what it was told through."""
-    _kill(process)
+    kill(process)
     process.wait()
     with suppress(OSError):
         process.stdin.close()  # type: ignore[union-attr]

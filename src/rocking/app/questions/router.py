@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import asdict
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
@@ -18,9 +18,10 @@ from rocking.app.answers import (
     answered_with_file,
     attachment_headers,
     shape,
+    shape_of,
 )
 from rocking.app.api.records import RecordKept
-from rocking.app.questions.desk import OUTPUTS, HostedQuestion, QuestionDesk
+from rocking.app.questions.desk import OUTPUTS, Command, HostedQuestion, QuestionDesk
 from rocking.app.settings import state_of
 
 router = APIRouter(prefix="/api", tags=["questions"])
@@ -28,25 +29,7 @@ _TABLES = """\
 The tables of a file that the command of the same name takes, as JSON; those of `equilibria` and `cor` have a table
 `response` beside `body`, and `simulate` is of a body in space with friction; `paper` has none. Files in them are named
 as in `files`, and were sent to `/api/files` or `/api/records`."""
-Command = Literal[
-    "assess", "predict", "identify", "inventory", "convert", "motions", "minimum", "equilibria", "cor", "simulate",
-    "paper",
-]  # fmt: skip
-
-QuestionFacts: Any = shape(
-    "QuestionFacts",
-    "A question, and how far it is.",
-    id=(str, "its name in addresses"),
-    command=Command,
-    name=(str, "what people call it"),
-    project=(str, "to which it belongs; empty if to none"),
-    asked=(str, "when, in UTC"),
-    state=Literal["waiting", "running", "done", "refused", "stopped"],
-    message=(str, "why there is no answer; empty while nothing is wrong"),
-    seconds=(float, "that it took [s]"),
-    files=(list[str], "that can be taken away"),
-    format=(str, "in which convert writes the record beside columns; empty for no other"),
-)
+QuestionFacts: Any = shape_of(HostedQuestion, "QuestionFacts", without=("starts",))
 Questions: Any = shape("Questions", "All questions, the last one first.", questions=list[QuestionFacts])
 WholeQuestion: Any = shape(
     "WholeQuestion",

@@ -14,6 +14,7 @@ from typing import Any
 
 from rocking.app.studies import GRACE
 from rocking.app.studies.study_folder import CANCELLED, DONE, FAILED, INTERRUPTED, LOG, RUNNING, Meta, StudyFolder
+from rocking.app.work import kill
 from rocking.campaigns import Estimate
 from rocking.campaigns.status import Speed
 from rocking.errors import RockingError
@@ -80,17 +81,9 @@ class StudyProcess:
             try:
                 self._process.wait(patience)
             except subprocess.TimeoutExpired:
-                self.kill()
-        self.kill()
+                kill(self._process)
+        kill(self._process)
         return self._process.wait()
-
-    def kill(self) -> None:
-        """End it and all its workers at once."""
-        with contextlib.suppress(OSError):
-            if sys.platform == "win32":
-                self._process.kill()
-            elif self._process.poll() is None:
-                os.killpg(self._process.pid, signal.SIGKILL)
 
     def close(self) -> None:
         """Let go of the pipe, once it has ended."""
