@@ -115,10 +115,11 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
 
 
 def _compared(page: Page, models: "Sequence[ModelComparison]") -> None:
+    from rocking.reports._identification import model_rows
+
     if models:
         page.line()
-        rows = [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
-        page.table(("model", "r", "less measured", "within the interval"), rows, ("model",))
+        page.table(("model", "r", "less measured", "within the interval"), model_rows(models), ("model",))
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,7 @@ class IdentifiedAnswer:
 
     def show(self, page: Page) -> None:
         from rocking.cli.arguments import as_options
+        from rocking.reports._identification import impact_rows
 
         found = self.found
         page.line(found.verdict, style="bold")
@@ -144,12 +146,7 @@ class IdentifiedAnswer:
         if found.forced:
             page.line(str(found.forced))
         page.line()
-        rows = [
-            (str(i.number), f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
-             f"{i.coefficient.low:.4f} to {i.coefficient.high:.4f}")
-            for i in found.impacts
-        ]  # fmt: skip
-        page.table(("impact", "time [s]", "onto", "speed [rad/s]", "r", "95 %"), rows, ("onto",))
+        page.table(("impact", "time [s]", "onto", "speed [rad/s]", "r", "95 %"), impact_rows(found), ("onto",))
         _compared(page, found.models)
         page.line()
         page.facts(_facts(found), width=20)
@@ -196,6 +193,7 @@ class TrialsAnswer:
 
     def show(self, page: Page) -> None:
         from rocking.cli.arguments import as_options
+        from rocking.reports._identification import trial_rows
 
         found = self.found
         page.line(found.verdict, style="bold")
@@ -205,12 +203,7 @@ class TrialsAnswer:
                 "size of the body, common to all, is in it."
             )
         page.line()
-        rows = [
-            (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
-             str(row["impacts"]))
-            for row in found.rows if not row["refused"]
-        ]  # fmt: skip
-        page.table(("trial", "r", "95 %", "scatter", "impacts"), rows, ("trial",))
+        page.table(("trial", "r", "95 %", "scatter", "impacts"), trial_rows(found), ("trial",))
         _compared(page, found.models)
         kept = len(found.rows) - found.computed
         if kept:

@@ -9,7 +9,6 @@ import numpy as np
 from rocking.assessment import BodyAssessment, ModelMargin
 from rocking.assessment._assess import DIRECTIONS, POINTS, REACH
 from rocking.assessment.answer import StandingSolid, just_above
-from rocking.bodies.body import assumed_rows
 from rocking.conventions import FEET, g
 from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
@@ -34,7 +33,7 @@ from rocking.reports.document import (
     ReportTable,
     table,
 )
-from rocking.reports.response_document import _sides
+from rocking.reports.response_document import body_table
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
 from rocking.studies.remedies import ASSUMED, CALIBRATED
@@ -226,24 +225,13 @@ def _codes(found: BodyAssessment) -> ReportTable:
 
 def _about(found: BodyAssessment) -> list[Block]:
     if found.standing is None:
-        return [Pair(Picture("body", "The body on its feet O and O'"), _body(found))]
+        return [Pair(Picture("body", "The body on its feet O and O'"), body_table("", found.body, found.gravity))]
+    title = f"The {_PLANE} of {math.degrees(found.standing.plane) % 360.0:.0f} deg"
     return [
         *map(Paragraph, found.standing.words),
         Picture("body", "How much the centre must rise to topple it, by direction; what it stands on, and its sides"),
-        _body(found, f"The {_PLANE} of {math.degrees(found.standing.plane) % 360.0:.0f} deg"),
+        body_table(title, found.body, found.gravity),
     ]
-
-
-def _body(found: BodyAssessment, title: str = "") -> ReportTable:
-    body = found.body
-    rows = [
-        ("mass", f"{body.mass:.5g} kg"), *assumed_rows(body),
-        ("centre of mass", f"x = {body.centre[0]:.4g} m, y = {body.centre[1]:.4g} m"),
-        ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
-        ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
-        *_sides(body, found.gravity),
-    ]  # fmt: skip
-    return table(title, ["quantity", "value"], rows)
 
 
 def _references(found: BodyAssessment) -> list[str]:

@@ -1,11 +1,12 @@
 """The reports of a measurement and of a folder of trials: verdict, picture, what impacts took, models, how it was."""
 
+from collections.abc import Iterable, Sequence
+
 from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
 from rocking.plots.identification import identification_picture, trials_picture
-from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, judged, table
 from rocking.spec.identification import IdentifiedTrials
-from rocking.version import SOFTWARE
 
 _HOW = (
     "Between two impacts the body rocks freely, which has a closed form. At every impact the coefficient is drawn "
@@ -31,29 +32,30 @@ def identification_content(found: Identification, *, name: str, date: str) -> Co
 
 def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
     """Return the report of a folder of trials."""
-    rows = [
-        (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
-         row["impacts"])
-        for row in found.rows if not row["refused"]
-    ]  # fmt: skip
     refused = [(row["trial"], row["refused"]) for row in found.rows if row["refused"]]
     sections = [
         ReportSection("The trials", [
             Picture("trials", "The coefficient of every trial with its interval, and that of the mean", 70),
-            table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], rows),
+            table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], trial_rows(found)),
             *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
         ]),
-        *([ReportSection("What there is to say against it", [*map(Paragraph, found.doubts)])] if found.doubts else []),
+        *_doubts(found.doubts),
         *_compared(found.models),
         ReportSection("How it was found", [Paragraph(_HOW), Paragraph(_TRIALS)]),
     ]  # fmt: skip
     mark = "bad" if found.mean is None else "fair" if refused or found.doubts else "good"
-    document = Document(
-        f"Coefficient of restitution: {name or found.name}", f"{len(found.rows)} trials{f'. {date}' if date else ''}",
-        sections,
-        verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,
-    )  # fmt: skip
+    title, count = f"Coefficient of restitution: {name or found.name}", f"{len(found.rows)} trials"
+    document = judged(title, (count, date), sections, found.verdict, mark)
     return document, {"trials": lambda: trials_picture(found)}
+
+
+def trial_rows(found: IdentifiedTrials) -> list[tuple[str, ...]]:
+    """Return what is shown of every trial that says something."""
+    return [
+        (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
+         str(row["impacts"]))
+        for row in found.rows if not row["refused"]
+    ]  # fmt: skip
 
 
 def _document_of(found: Identification, name: str, date: str) -> Document:
@@ -62,7 +64,7 @@ def _document_of(found: Identification, name: str, date: str) -> Document:
         "Above: what was measured, and the mean coefficient with the models beside it. Below: what the fit leaves "
         "over, and what each impact took",
     )
-    doubts = [ReportSection("What there is to say against it", [*map(Paragraph, found.doubts)])] if found.doubts else []
+    doubts = _doubts(found.doubts)
     forced = [Paragraph(str(found.forced))] if found.forced else []
     sections = [ReportSection("What was measured", [picture]), *doubts]
     if not found.refused:
@@ -74,12 +76,13 @@ def _document_of(found: Identification, name: str, date: str) -> Document:
             *([ReportSection("What experiment would tell more", [_designs(found)])] if found.designs else []),
         ]
     sections.append(ReportSection("How it was found", [Paragraph(_FORCED if found.forced else _HOW)]))
-    subtitle = ". ".join(each for each in (found.source, date) if each)
     mark = "bad" if found.refused else "fair" if found.doubts else "good"
-    return Document(
-        f"Coefficient of restitution{f': {name}' if name else ''}", subtitle, sections,
-        verdict=[Paragraph(found.verdict, "", mark)], footer=SOFTWARE,
-    )  # fmt: skip
+    title = f"Coefficient of restitution{f': {name}' if name else ''}"
+    return judged(title, (found.source, date), sections, found.verdict, mark)
+
+
+def _doubts(doubts: Sequence[str]) -> list[ReportSection]:
+    return [ReportSection("What there is to say against it", [*map(Paragraph, doubts)])] if doubts else []
 
 
 def _found(found: Identification) -> ReportTable:
@@ -98,19 +101,27 @@ def _found(found: Identification) -> ReportTable:
 def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
     if not models:
         return []
-    rows = [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
     head = ["model", "r [-]", "less measured [-]", "within the interval of the mean"]
-    return [ReportSection("Models of restitution beside it", [table("", head, rows)])]
+    return [ReportSection("Models of restitution beside it", [table("", head, model_rows(models))])]
 
 
-def _impacts(found: Identification) -> ReportTable:
-    rows = [
-        (i.number, f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
+def model_rows(models: Iterable[ModelComparison]) -> list[tuple[str, ...]]:
+    """Return what models of restitution say beside what was measured."""
+    return [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
+
+
+def impact_rows(found: Identification) -> list[tuple[str, ...]]:
+    """Return what is shown of every impact."""
+    return [
+        (str(i.number), f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
          f"{i.coefficient.low:.4f} to {i.coefficient.high:.4f}")
         for i in found.impacts
     ]  # fmt: skip
+
+
+def _impacts(found: Identification) -> ReportTable:
     note = "Of the first impact and of the last nothing is known."
-    return table("", ["impact", "time [s]", "onto", "speed before [rad/s]", "r [-]", "95 %"], rows, note)
+    return table("", ["impact", "time [s]", "onto", "speed before [rad/s]", "r [-]", "95 %"], impact_rows(found), note)
 
 
 def _designs(found: Identification) -> ReportTable:

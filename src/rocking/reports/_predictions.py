@@ -5,9 +5,8 @@ from functools import partial
 from rocking.conventions import percent
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
-from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, table
+from rocking.reports.document import Content, Paragraph, Picture, ReportSection, ReportTable, judged, table
 from rocking.spec.validation import FolderValidation
-from rocking.version import SOFTWARE
 
 _MARKS = ((0.05, "good"), (0.5, "fair"))
 _MARKS_OF_FINDINGS = {"better": "good", "not resolved": "fair", "mixed": "fair", "worse": "bad"}
@@ -44,7 +43,7 @@ def prediction_content(found: Prediction, *, name: str, date: str) -> Content:
         ),
     ]
     several = f"Under {len(found.motions)} motion{'' if len(found.motions) == 1 else 's'}"
-    document = _document(name or "A body in an earthquake", several, date, found.verdict, mark, sections)
+    document = judged(name or "A body in an earthquake", (several, date), sections, found.verdict, mark)
     return document, {"prediction": lambda: prediction_picture(found)}
 
 
@@ -61,13 +60,8 @@ def validation_content(found: FolderValidation, *, name: str, date: str) -> Cont
     first = next(iter(found.found.values()))
     mark = _MARKS_OF_FINDINGS["mixed" if first.finding == "better" and first.too_sure else first.finding]
     several = f"{first.count} outcomes under {first.clusters} motions"
-    document = _document(f"Predictions of {name or found.name}", several, date, first.verdict, mark, sections)
+    document = judged(f"Predictions of {name or found.name}", (several, date), sections, first.verdict, mark)
     return document, {event: partial(reliability_picture, each) for event, each in found.found.items()}
-
-
-def _document(title: str, several: str, date: str, verdict: str, mark: str, sections: list[ReportSection]) -> Document:
-    subtitle = several + (f". {date}" if date else "")
-    return Document(title, subtitle, sections, verdict=[Paragraph(verdict, "", mark)], footer=SOFTWARE)
 
 
 def _assumed(found: Prediction) -> ReportSection:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from rocking.errors import InvalidValueError, extra
+from rocking.version import SOFTWARE
 
 _NUMBER = frozenset("+-\N{MINUS SIGN}0123456789")
 
@@ -175,12 +176,17 @@ def table(
     return ReportTable(caption, header, cells, note, stem)
 
 
+def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:
+    """Return a report with its verdict on top; under: what stands below the title, as far as there is something."""
+    subtitle = ". ".join(filter(None, under))
+    return Document(title, subtitle, sections, verdict=[Paragraph(verdict, "", mark)], footer=SOFTWARE)
+
+
 def made_with() -> dict[str, str]:
     """Return what made a result: versions, and the fingerprints of the data."""
     import scipy
 
     from rocking.evidence.measurements import provenance
-    from rocking.version import SOFTWARE
 
     source, data = provenance(), files("rocking.evidence").joinpath("data")
     prints = [

@@ -1,6 +1,7 @@
-"""The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON."""
+"""The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON; small pictures of its photos."""
 
 import json
+import warnings
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -10,7 +11,6 @@ from typing import Any
 from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.reports.document import render_pdf, write_html
 from rocking.reports.inventory_document import inventory_document
-from rocking.reports.inventory_photos import thumbnails
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import (
@@ -33,7 +33,40 @@ STEM = "inventory"  # name of every file, before its suffix
 FILLS = {Light.GREEN: "C6E7D6", Light.AMBER: "FFE3A3", Light.RED: "F6C1BC", None: "E3E6EA"}
 """Background of a light; the words stand in the cell."""
 
+MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
+"""No photo is larger: it is left aside before it is decoded."""
+
+SIDE = 240  # of a thumbnail, at most [pixels]
+_FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "GIF", "BMP")
 _WIDTHS = {"name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
+
+
+def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
+    """Write small pictures; return their names by the place of the object, empty where none could be made."""
+    found = {}
+    for place, verdict in enumerate(assessment.verdicts):
+        if verdict.item.photo is not None:
+            name = f"photo-{place}.jpg"
+            found[place] = name if _thumbnail(verdict.item.photo, folder / name) else ""
+    return found
+
+
+def _thumbnail(photo: Path, path: Path) -> bool:
+    """Return whether a small picture could be made of a file, whatever that is."""
+    try:
+        image, ops = extra("PIL.Image", "thumbnails"), extra("PIL.ImageOps", "thumbnails")
+        if not photo.is_file() or photo.stat().st_size > MOST_BYTES:
+            return False
+        with warnings.catch_warnings(action="ignore"), image.open(photo, formats=_FORMATS) as opened:
+            if opened.width * opened.height > MOST_PIXELS:
+                return False
+            opened.draft("RGB", (2 * SIDE, 2 * SIDE))
+            small = ops.exif_transpose(opened).convert("RGB")
+            small.thumbnail((SIDE, SIDE))
+            small.save(path, "JPEG", quality=80)
+    except Exception:  # noqa: BLE001 - decoders of damaged pictures raise anything, and no photo may fail a report
+        return False
+    return True
 
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:

@@ -75,8 +75,10 @@ def response_document(subject: ReportSubject, results: ReportResults) -> Documen
     title = subject.name or _KINDS.get(type(results.impact.body).__name__, "A rocking body")
     first = next(iter(results.responses.values()))
     body = Picture("body", "The body on its feet O and O', with its centre of mass C")
+    gravity = results.impact.gravity
+    stated = ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}")
     sections = [
-        ReportSection("The body", [Pair(body, _body(results))]),
+        ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity, stated))]),
         ReportSection("What an impact costs", _impact(results)),
         ReportSection("The ground", _ground(results)),
         ReportSection("The response", _response(results)),
@@ -100,8 +102,8 @@ def _verdict(results: ReportResults) -> list[Paragraph]:
     return [own, Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain")]
 
 
-def _body(results: ReportResults) -> ReportTable:
-    body, gravity = results.impact.body, results.impact.gravity
+def body_table(title: str, body: Body, gravity: float, *more: tuple[str, str]) -> ReportTable:
+    """Return what a body is under a gravity [m/s2]."""
     x, y = body.centre
     rows = [
         ("mass", f"{body.mass:.5g} kg"),
@@ -110,9 +112,9 @@ def _body(results: ReportResults) -> ReportTable:
         ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
         ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
         *_sides(body, gravity),
-        ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}"),
+        *more,
     ]
-    return report_table("", ["quantity", "value"], rows)
+    return report_table(title, ["quantity", "value"], rows)
 
 
 def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:

@@ -1,23 +1,4 @@
-"""A response and its motion in plain values: SI units, None where something does not exist.
-
-What the keys mean:
-
-- ``body``: ``kind``, ``mass_kg``, ``sides`` by foot: ``slenderness_angle_rad``, ``frequency_parameter_rad_s``,
-  ``semi_diagonal_m``, ``coefficient`` (of restitution, when the body lands on this foot).
-- ``motion``: None for free rocking, else ``kind`` (record or pulse), ``name``, ``scale``, ``duration_s``,
-  ``peak_acceleration_m_s2`` (scaled).
-- ``initial_rotation_rad``, ``restitution`` (label), ``engine`` (which one ran), ``gravity_m_s2``, ``linear``.
-- ``outcome``: no_uplift, rocked or overturned; ``summary``: the same in a sentence; ``overturned_to``: foot or None;
-  ``overturning_time_s`` or None; ``peak_rotation_rad`` (a quarter turn if it overturned) and
-  ``peak_rotation_over_alpha``; ``still_rocking``: None where the body rests or has overturned at the end,
-  else ``time_s``, ``rotation_rad`` and ``angular_velocity_rad_s`` of that instant, and ``sentence``, the same in words.
-- ``uplifts_s``: times; ``impacts``: ``time_s``, ``velocity_before_rad_s``, ``velocity_after_rad_s``, ``coefficient``,
-  ``onto``.
-- ``energy_closure``: what does not add up over the largest energy; ``error_estimate_rad``: None if another step changes
-  the outcome.
-- ``friction``: ``given``, ``assumed`` (whether nobody gave it), ``of_motion`` (None if infinite), ``of_impacts``;
-  ``least_vertical_force_N``; ``warnings``.
-"""
+"""A response and its motion in plain values: SI units, None where there is nothing; the API describes every key."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -46,10 +27,11 @@ OUTCOME_WORDS = {
 _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 
-def response_facts(response: Response, friction: float, *, error_estimate: bool = True) -> dict[str, Any]:
+def response_facts(response: Response, friction: float) -> dict[str, Any]:
     """Return everything that is said of a response on a ground of a coefficient of friction [-]."""
     keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
-    facts = {
+    contact = response.contact
+    return {
         "body": rocker_facts(response),
         "motion": moved_facts(response.motion, response.scale),
         "initial_rotation_rad": float(response.rotation[0]),
@@ -61,16 +43,8 @@ def response_facts(response: Response, friction: float, *, error_estimate: bool 
         "uplifts_s": response.uplifts.tolist(),
         "impacts": [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()],
         "energy_closure": response.energy.closure,
-    }
-    if error_estimate:
-        facts["error_estimate_rad"] = finite(response.error_estimate)
-    return {**facts, **credibility_facts(response, friction)}
-
-
-def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
-    """Return what rocking without slip and flight takes, beside the coefficient of friction that there is [-]."""
-    contact = response.contact
-    return {
+        "error_estimate_rad": finite(response.error_estimate),
+        # what rocking without slip and flight takes, beside the coefficient of friction that there is [-]
         "friction": {
             "given": friction,
             "assumed": isinstance(friction, Assumed),

@@ -53,11 +53,7 @@ def test_an_overturning_response_has_no_infinite_number():
         response = rk.simulate(BLOCK, MOTION, scale=20.0)
     assert math.isinf(response.contact.friction_of_motion)
     assert response.outcome is rk.Outcome.OVERTURNED
-    whole = response_facts(response, 0.5)
-    json.dumps(whole, allow_nan=False)
-    # the error estimate can be left out: all other facts are the same
-    whole.pop("error_estimate_rad")
-    assert response_facts(response, 0.5, error_estimate=False) == whole
+    json.dumps(response_facts(response, 0.5), allow_nan=False)
     assert finite(math.inf) is finite(math.nan) is None
 
 

@@ -8,8 +8,7 @@ import pytest
 
 from rocking.language import catalogue, language
 from rocking.reports.inventory_document import inventory_document
-from rocking.reports.inventory_folder import write_inventory_file
-from rocking.reports.inventory_photos import thumbnails
+from rocking.reports.inventory_folder import thumbnails, write_inventory_file
 from rocking.studies.inventory import Inventory, InventoryObject, assess, parse_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.objects import NotAssessed
@@ -108,7 +107,7 @@ def test_photos_that_can_be_shown_are_and_others_fail_no_report(found, tmp_path,
     bare = write_inventory_file(found, tmp_path / "bare.pdf").stat().st_size
     assert write_inventory_file(mixed, tmp_path / "x.pdf").stat().st_size > bare + 300
     assert thumbnails(shown(text, tmp_path / "none.jpg", tmp_path), tmp_path) == {0: "", 1: "", 2: ""}
-    monkeypatch.setattr("rocking.reports.inventory_photos.MOST_PIXELS", 100_000)
+    monkeypatch.setattr("rocking.reports.inventory_folder.MOST_PIXELS", 100_000)
     assert thumbnails(shown(good, None, None), tmp_path) == {0: ""}
 
 
