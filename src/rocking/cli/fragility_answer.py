@@ -6,15 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
-from rocking.statistics.maximum_likelihood import Separation
-from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalDynamicAnalysis
+from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.statistics.lognormal import LognormalFit
     from rocking.tables import Table
-
-WIDE = 0.01  # survivals of less width over their level are named apart: in them the body balances on its corner [-]
 
 
 @dataclass(eq=False)
@@ -228,7 +225,7 @@ class FragilityAnswer:
 
     def _transitions(self, analysis: IncrementalDynamicAnalysis) -> list[str]:
         unit, factor = self.unit
-        first, whole = analysis.first_crossing_fit, int(analysis.complete.sum())
+        first = analysis.first_crossing_fit
         curve = (
             "too few motions overturn it for a curve"
             if first is None
@@ -236,8 +233,7 @@ class FragilityAnswer:
         )
         return [
             sentence(f"{analysis.definitions['first crossing']}: {curve}"),
-            f"{len(analysis.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
-            f"that overturns it, {len(analysis.resurrected(WIDE))} of them over more than 1 % of the level.",
+            analysis.resurrection,
         ]
 
 
@@ -286,14 +282,9 @@ def _too_few(fit: "LognormalFit") -> str:
 
 
 def _verdicts(result: Any) -> list[str]:
-    """Return what is to be known of curves that are not likeliest, the same words once; intervals are told apart."""
-    states: dict[str, list[str]] = {}
-    for name, fit in result.fits.items():
-        if fit.separation is not Separation.OVERLAP or not fit.exists:
-            text = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
-            states.setdefault(text, []).append(name)
+    """Return what is to be known of curves that are not likeliest, the same words once."""
     where = "" if (unit := result.subject.measure.unit) == "-" else f" (levels in {unit})"
-    return [f"{', '.join(names)}: {text}{where}" for text, names in states.items()]
+    return [f"{', '.join(names)}: {text}{where}" for text, names in result.verdicts.items()]
 
 
 def _regression(analysis: Any) -> str:

@@ -25,7 +25,7 @@ from rocking.plots.style import (
     patch,
     stroke,
 )
-from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalDynamicAnalysis
+from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -142,16 +142,24 @@ def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tup
     return mean[good], np.asarray(hits[good], np.float64), np.asarray(total[good], np.float64)
 
 
+def shares_of(analysis: Any, state: str, level: float = 0.95) -> dict[str, FloatArray]:
+    """Return how many motions reach a state at levels that are gathered for points, with intervals of the share [-]."""
+    from rocking.statistics.counts import share_interval
+
+    columns = (analysis.levels, analysis.counts[state], analysis.trials)
+    at, reached, trials = gathered(*(np.asarray(column, dtype=np.float64) for column in columns))
+    share = reached / trials
+    ends = [share_interval(s * n, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
+    low, high = np.array(ends).reshape(-1, 2).T
+    return {"x": at, "reached": reached, "trials": trials, "share": share, "low": low, "high": high}
+
+
 def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
     from matplotlib.transforms import ScaledTranslation
 
-    from rocking.statistics.counts import share_interval
-
-    counted = (np.asarray(part, dtype=np.float64) for part in (analysis.counts[name], analysis.trials))
-    at, reached, trials = gathered(np.asarray(analysis.levels), *counted)
-    share = reached / trials
-    ends = np.array([share_interval(s * n, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)])
-    reach = np.abs(ends.T - share) if share.size else np.empty((2, 0))
+    found = shares_of(analysis, name, level)
+    at, share = found["x"], found["share"]
+    reach = np.abs(np.array([found["low"], found["high"]]) - share)
     figure: Any = axes.figure
     aside = (place - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0
     axes.errorbar(
@@ -223,19 +231,12 @@ def symbol(state: str) -> str:
 
 def caption(analysis: Any) -> str:
     """Return what must be said below the picture: the verdicts of states whose outcomes fix no likeliest curve."""
-    odd = {name: fit for name, fit in analysis.fits.items() if fit.separation.name != "OVERLAP"}
-    states: dict[str, list[str]] = {}
-    for name, fit in odd.items():
-        # what the likelihood does not know is said where the intervals are
-        words = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
-        states.setdefault(words, []).append(symbol(name))
-    return " ".join(f"{', '.join(names)}: {verdict}" for verdict, names in states.items())
+    return " ".join(f"{', '.join(map(symbol, names))}: {words}" for words, names in analysis.verdicts.items())
 
 
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0070B2"
 _FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
 _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
-WIDE = 0.01  # survivals of less width over their level are not counted: in them the body balances on its corner [-]
 _OVER = 1.06  # larger rotations of bodies that stood all the same are drawn here
 _FIRST, _LAST = 1.12, 1.72  # where the lanes of the motions begin and end, on the axis of rotation
 

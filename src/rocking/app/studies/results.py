@@ -23,7 +23,6 @@ _LARGEST = 20_000
 _PACKED = 100_000  # values from which on a table of a map is told as bytes
 _WHOLE = ("uint8", "int8", "uint16", "int16", "int32")
 _FINE = 120
-_WIDE = 0.01
 
 
 def plain(value: Any) -> Any:
@@ -209,6 +208,8 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def _analysis(analysis: Any) -> dict[str, Any]:
+    from rocking.plots.fragility import shares_of
+
     levels = np.asarray(analysis.levels, dtype=np.float64)
     fits = {name: fit for name, fit in analysis.fits.items() if fit is not None}
     return {
@@ -216,7 +217,7 @@ def _analysis(analysis: Any) -> dict[str, Any]:
         "trials": np.asarray(analysis.trials),
         "failed": int(getattr(analysis, "stripes", analysis).failed),
         "states": list(analysis.counts),
-        "points": {name: _points(analysis, name) for name in analysis.counts},
+        "points": {name: shares_of(analysis, name) for name in analysis.counts},
         "fits": {name: _fit(fit) for name, fit in fits.items()},
         "curves": {name: _curve(fit, _fine(levels)) for name, fit in fits.items() if fit.exists},
         "sentences": [f"{name}: {fit.verdict}" for name, fit in fits.items()],
@@ -232,18 +233,6 @@ def _fine(levels: FloatArray) -> FloatArray:
     if high / low > 10.0:
         return np.geomspace(low / 1.15, 1.15 * high, _FINE)
     return np.linspace(max(low - 0.06 * (high - low), 1e-3 * low), high + 0.06 * (high - low), _FINE)
-
-
-def _points(analysis: Any, state: str) -> dict[str, Any]:
-    from rocking.plots.fragility import gathered
-    from rocking.statistics.counts import share_interval
-
-    columns = (analysis.levels, analysis.counts[state], analysis.trials)
-    at, reached, trials = gathered(*(np.asarray(column, dtype=np.float64) for column in columns))
-    share = reached / trials
-    ends = [share_interval(s * n, n) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
-    low, high = zip(*ends, strict=True)
-    return {"x": at, "reached": reached, "trials": trials, "share": share, "low": low, "high": high}
 
 
 def _fit(fit: Any) -> dict[str, Any]:
@@ -274,17 +263,13 @@ def _cloud(analysis: Any) -> dict[str, Any]:
 
 
 def _incremental(analysis: Any) -> dict[str, Any]:
-    fit, whole = analysis.first_crossing_fit, int(analysis.complete.sum())
-    again = len(analysis.resurrected()), len(analysis.resurrected(_WIDE))
+    fit = analysis.first_crossing_fit
     return {
         "definitions": analysis.definitions,
         "first_crossings": analysis.first_crossings,
         "first_crossing": None if fit is None else fit.summary(),
         "intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in analysis.intervals],
-        "resurrection": (
-            f"{again[0]} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one that overturns "
-            f"it, {again[1]} of them over more than 1 % of the level."
-        ),
+        "resurrection": analysis.resurrection,
     }
 
 

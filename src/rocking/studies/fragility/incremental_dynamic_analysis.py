@@ -24,6 +24,7 @@ Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
 """Takes numbers of motions and levels; returns sides overturned to (0 if none), and which could be computed."""
 
 PARTS = 16  # pieces that a bracket is cut into in the first round, and as long as there are few of them
+WIDE = 0.01  # long records have narrower survivals, in which the body balances on its corner: over their level [-]
 FEW = 1000  # brackets up to which more pieces cost less than more rounds; above, brackets are halved
 
 
@@ -260,10 +261,18 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
         """Return which motions leave the body standing at levels above one at which they overturn it."""
-        # long records have survivals as narrow as anyone cares to search for, in which the body balances on its corner;
-        # a width over the lowest of these levels such as 0.01 leaves these out [-]
+        # a width over the lowest of these levels such as WIDE leaves narrow survivals out [-]
         least = checks.within("wider_than", wider_than, 0.0, 1e6)
         return sorted({motion for motion, low, high in self.survivals if high - low > least * low})
+
+    @property
+    def resurrection(self) -> str:
+        """How many motions leave the body standing at levels above one at which they overturn it, in a sentence."""
+        whole = int(self.complete.sum())
+        return (
+            f"{len(self.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
+            f"that overturns it, {len(self.resurrected(WIDE))} of them over more than 1 % of the level."
+        )
 
     def share_resurrected(self, wider_than: float = 0.0) -> float:
         """Return the share of resurrected motions among those without a failed history, from 0 to 1 [-]."""
@@ -297,5 +306,5 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "restitution note": self.restitution_note,
             "motions with resurrection": len(self.resurrected()),
             "share with resurrection": self.share_resurrected(),
-            "share with resurrection wider than 1 %": self.share_resurrected(0.01),
+            "share with resurrection wider than 1 %": self.share_resurrected(WIDE),
         }

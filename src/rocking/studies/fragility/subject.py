@@ -27,6 +27,7 @@ from rocking.quantities import attributes
 from rocking.restitution.from_file import origin_of
 from rocking.statistics.counts import pooled
 from rocking.statistics.lognormal import LognormalFit, fit_counts
+from rocking.statistics.maximum_likelihood import Separation
 from rocking.studies.histories import HistoryTable, Product
 from rocking.studies.motion_sets import MotionList, MotionSet, digest
 from rocking.version import SOFTWARE
@@ -331,6 +332,16 @@ class FragilityAnalysis(ABC):
     def fits(self) -> dict[str, LognormalFit]:
         """Lognormal curve of each state from the outcomes; none for rocking where a level decides it."""
         return fits_of(self.subject, self.states, self.history_levels, self.responses)
+
+    @property
+    def verdicts(self) -> dict[str, list[str]]:
+        """What is to be known of curves that are not likeliest, with the states; intervals are told apart."""
+        states: dict[str, list[str]] = {}
+        for name, fit in self.fits.items():
+            if fit.separation is not Separation.OVERLAP or not fit.exists:
+                text = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
+                states.setdefault(text, []).append(name)
+        return states
 
     @cached_property
     def uplift(self) -> UpliftCheck:
