@@ -67,15 +67,15 @@ class BodyLimits:
     async def _fill(self, head: RequestHead, receive: Receive, body: bytearray, most: int) -> None:
         declared, pieces = head.headers.get("content-length", "0"), _pieces(receive)
         length = float(declared) if declared.isdecimal() else math.inf
-        too_large = TooLarge(f"the body is larger than {most / MEBIBYTE:g} MiB")
+        too_large = f"the body is larger than {most / MEBIBYTE:g} MiB"
         if length > most:
             if length <= _DRAINED:
                 await _drain(pieces)
-            raise too_large
+            raise TooLarge(too_large)
         async for piece in pieces:
             if len(body) + len(piece) > most:
                 await _drain(pieces)
-                raise too_large
+                raise TooLarge(too_large)
             if self._held + len(piece) > self._limits.bytes_in_flight:
                 raise Busy("too many files arrive at once; try again in a moment", seconds=2)
             self._held += len(piece)
