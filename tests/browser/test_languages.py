@@ -214,6 +214,14 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
         assert sorted(re.findall(r"\d+", text)) == sorted(re.findall(r"\d+", other)), other
 
 
+def test_what_a_chart_reads_out_speaks_it(answered: Callable[..., Any]) -> None:
+    """The line of values under a chart has its words one by one, whatever the numbers are."""
+    told = answered(locale="de").get_by_test_id("chart-energy").locator(".chart-readout")
+    told.get_by_text("Zeit").wait_for()
+    said = [re.split(r" \S+\s\S+$", part)[0] for part in told.inner_text().split(" · ")]
+    assert said == ["Zeit", "Bewegungsenergie", "Lageenergie", "bei Stößen verloren", "Arbeit des Bodens"]
+
+
 def test_a_saved_picture_speaks_it(open_page: Callable[..., Any]) -> None:
     """A chart that is drawn for a file, beside the page, has the words of the page; a name that is marked has not."""
     page = open_page(link(), locale="it")

@@ -329,6 +329,11 @@ def test_a_field_in_error_stops_downloads_and_dims_results(page: Any, text: str)
     page.locator("#tab-impact").click()
     expect(page.get_by_test_id("summary-faults")).to_contain_text("Width")
     expect(page.get_by_test_id("impact-results")).to_have_class(re.compile("stale"))
+    for step, dimmed in (("response", ".verdict-part"), ("compare", ".compare")):
+        page.locator(f"#tab-{step}").click()
+        view = page.locator(f"#view-{step}")
+        expect(view.locator(dimmed)).to_have_class(re.compile("stale"))
+        expect(view.get_by_text("belongs to the last valid inputs")).to_contain_text("Width")
     assert saved == []
     page.locator("#tab-body").click()
     page.locator("#view-body").get_by_label("Width").fill("0.6")

@@ -9,6 +9,7 @@ import { el, fill, freshId } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number, pretty, quantity } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
+import { words as inWords } from "/app/words.js";
 
 /** Draw curves over one abscissa; see the returned object for what it can do.
  * @param {HTMLElement} container @param {ChartOptions} options */
@@ -167,8 +168,8 @@ const legendKey = ({ colour: paint, dash, points, width }) =>
 
 /** @param {ChartOptions} options @param {(number | null)[]} values */
 const words = ({ x, y, series }, [at, ...values]) =>
-  [`${x.label} ${quantity(at, x.unit)}`]
-    .concat(values.map((value, index) => `${series[index].label} ${quantity(value, y.unit)}`))
+  [`${inWords(x.label)} ${quantity(at, x.unit)}`]
+    .concat(values.map((value, index) => `${inWords(series[index].label)} ${quantity(value, y.unit)}`))
     .join(" \u00b7 ");
 
 /** @param {ChartOptions} options @param {Columns} data */

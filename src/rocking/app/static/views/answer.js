@@ -2,6 +2,16 @@
 
 import { batch, signal } from "/parts/preact.js";
 
+export const OLDER = "What is shown below belongs to the last valid inputs.";
+
+/** What is wrong in the steps that a view asks about, in words. @param {App} app @param {...string} views */
+export const faultsOf = (app, ...views) => {
+  const wrong = signal("");
+  app.faults.subscribe(() => (wrong.value = views.map((view) => app.faults.sentence({ view })).filter(Boolean).join(" ")));
+  app.faults.refresh();
+  return wrong;
+};
+
 /** Ask `path` of the API: `question()` says what, null where nothing moves; only what `keys` name matters.
  * A part of the time is asked with `detail` beside it; an answer that `keeps` outlasts a refusal.
  * @param {App} app @param {string} name @param {string[]} keys @param {() => object | null} question

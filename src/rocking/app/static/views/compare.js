@@ -7,7 +7,7 @@ import { number } from "/app/format.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { createAnswer } from "/views/answer.js";
+import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { About } from "/views/compare-about.js";
 import { Studies } from "/views/compare-studies.js";
 import { Figures, marksWords } from "/views/response-figures.js";
@@ -35,9 +35,10 @@ export const mount = (section, app) => {
   const margins = createMargins(app);
   const time = createTime(undefined, asked.look);
   const studies = { look: () => {} };
-  render(html`<${Compare} app=${app} asked=${asked} margins=${margins} time=${time} studies=${studies} />`, section);
+  render(html`<${Compare} app=${app} asked=${asked} margins=${margins} time=${time} studies=${studies} faulty=${faultsOf(app, "body", "motion")} />`, section);
   return {
     shown: () => {
+      app.faults.refresh();
       asked.shown();
       studies.look();
     },
@@ -75,8 +76,8 @@ const createMargins = (app) => {
   };
 };
 
-/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, margins: Margins, time: Time, studies: { look: () => unknown } }} props */
-const Compare = ({ app, asked, margins, time, studies }) => {
+/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, margins: Margins, time: Time, studies: { look: () => unknown }, faulty: Signal<string> }} props */
+const Compare = ({ app, asked, margins, time, studies, faulty }) => {
   const hidden = useSignal(new Set());
   const opened = useSignal(null);
   const { answer: found, refused, part } = asked;
@@ -90,15 +91,18 @@ const Compare = ({ app, asked, margins, time, studies }) => {
     if (!next.delete(label)) next.add(label);
     hidden.value = next;
   };
+  const old = faulty.value ? "stale" : "";
   return html`
     <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
       <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
     ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
+    ${found.value && faulty.value && html`<${Note} kind="error" role="alert" words=${`${faulty.value} ${OLDER}`} />`}
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
-      <${Banner} kind=${verdictKind(there)} sentences=${found.value && sentencesOf(found.value, there)} testid="compare-verdict" />
-      <div class="compare">
+      <div class=${`verdict-part ${old}`}>
+        <${Banner} kind=${verdictKind(there)} sentences=${found.value && sentencesOf(found.value, there)} testid="compare-verdict" /></div>
+      <div class=${`compare ${old}`}>
         <div class="compare-models">
           <section class="card" aria-labelledby="compare-models-title"><h2 id="compare-models-title">Models</h2>
             <${Models} answers=${answers} hidden=${hidden.value} opened=${opened} toggle=${toggle} margins=${margins} />

@@ -1,6 +1,6 @@
 /** The Impact view: what an impact costs under every model, against what was measured. */
 
-import { html, render, signal, useMemo, useRef, useSignal } from "/parts/preact.js";
+import { html, render, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { chartFiles } from "/charts/save.js";
 import { stillOf } from "/charts/still.js";
 import { ledgerPicture } from "/drawing/ledger-picture.js";
@@ -8,7 +8,7 @@ import { PictureTools } from "/drawing/picture-tools.js";
 import { stagesPicture } from "/drawing/stages-picture.js";
 import { Card, Note, Segmented, sentence } from "/parts/fields.js";
 import { Drawn, Made } from "/parts/made.js";
-import { createAnswer } from "/views/answer.js";
+import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { Laboratory } from "/views/impact-bed.js";
 import { Evidence, slendernessOf } from "/views/impact-evidence.js";
 import { impulseRows } from "/views/impact-impulse.js";
@@ -21,20 +21,17 @@ export const mount = (section, app) => {
     return { body, settings };
   };
   const asked = createAnswer(app, "impact", ["body", "settings"], question, { path: "impact", keeps: true });
-  const faulty = signal("");
-  const look = () => (faulty.value = app.faults.sentence({ view: "body" }));
-  app.faults.subscribe(look);
+  const faulty = faultsOf(app, "body");
   render(html`<${Impact} app=${app} asked=${asked} faulty=${faulty} />`, section);
   return {
     shown: () => {
-      look();
+      app.faults.refresh();
       asked.shown();
     },
     hidden: asked.hidden,
   };
 };
 
-const OLDER = "What is shown below belongs to the last valid inputs.";
 const FEET = [["left", "left foot"], ["right", "right foot"]];
 
 /** @param {{ app: App, asked: Asked<Server.ImpactAnswered>, faulty: Signal<string> }} props */

@@ -4,7 +4,7 @@ import { Button, Note } from "/parts/fields.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Player } from "/scene/player.js";
-import { createAnswer } from "/views/answer.js";
+import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { chosenOf } from "/views/response-chosen.js";
 import { Controls, lean } from "/views/response-controls.js";
 import { Figures, marksWords } from "/views/response-figures.js";
@@ -31,14 +31,18 @@ export const mount = (section, app) => {
   const player = new Player(time.show);
   const inputs = signal(app.inputs.get());
   const stale = signal(false);
+  const faulty = faultsOf(app, "body", "motion");
   app.inputs.subscribe((now) => (inputs.value = now));
-  render(html`<${Response} app=${app} asked=${asked} inputs=${inputs} player=${player} time=${time} stale=${stale} />`, section);
+  render(html`<${Response} app=${app} asked=${asked} inputs=${inputs} player=${player} time=${time} stale=${stale} faulty=${faulty} />`, section);
   // what is drawn belongs to the last good numbers while a field is in error
   const look = () => (stale.value = section.querySelector(".response-controls [aria-invalid=true]") !== null);
   for (const kind of ["input", "change"]) section.addEventListener(kind, look);
   section.addEventListener("keydown", (event) => onKey(event, player));
   return {
-    shown: asked.shown,
+    shown: () => {
+      app.faults.refresh();
+      asked.shown();
+    },
     hidden: () => {
       asked.hidden();
       player.pause();
@@ -61,8 +65,8 @@ const falls = ({ outcome }) => outcome === "overturned";
 const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; "
   + "there it stays, since a landing on a side is not computed.";
 
-/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean> }} props */
-const Response = ({ app, asked, inputs, player, time, stale }) => {
+/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean>, faulty: Signal<string> }} props */
+const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }) => {
   const { answer: found, refused, part } = asked;
   const results = useRef(null);
   const answers = found.value?.answers ?? NONE;
@@ -72,7 +76,8 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
   const ticked = useMemo(() => (followed ? [followed] : NONE), [followed]);
   const { motion, restitution, response } = inputs.value;
   const friction = response?.assumed_friction ?? 0.5;
-  const old = stale.value ? "stale" : "";
+  const stale = wrongHere.value || faulty.value !== "";
+  const old = stale ? "stale" : "";
   useLayoutEffect(() => {
     if (found.value) results.current.dataset.drawn = String(Number(results.current.dataset.drawn || 0) + 1);
   }, [found.value]);
@@ -81,6 +86,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
       <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
     <div aria-live="polite" data-testid="response-refusal">
       ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
+      ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${OLDER}`} />`}
       ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
       <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
@@ -88,7 +94,7 @@ const Response = ({ app, asked, inputs, player, time, stale }) => {
     <div class="response">
       <div class="response-stage">
         <section class="card stage-scene" aria-label="The body on the ground"><h2>The body on the ground</h2>
-          <${Scene} player=${player} body=${found.value?.body} answers=${there} lead=${lead} stale=${stale.value} /></section>
+          <${Scene} player=${player} body=${found.value?.body} answers=${there} lead=${lead} stale=${stale} /></section>
         ${followed && html`<section class=${`card stage-figures ${old}`} aria-label="Over time"><h2>Over time</h2>
           <div data-window=${part.value?.window.join(" ") ?? ""}>
             <div class="figures" data-testid="response-charts">
