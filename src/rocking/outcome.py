@@ -1,7 +1,6 @@
 """How a history ends, whether it could be computed, and on what the body stands: in the plane and in space.
 
-The values are the sentences that a user reads; the codes stand in arrays, in files and in the C++ engines, so that
-what comes new comes last.
+The values are the sentences that a user reads.
 """
 
 from enum import Enum
@@ -12,7 +11,16 @@ import numpy as np
 from rocking.conventions import FloatArray, percent
 
 
-class Outcome(Enum):
+class Coded(Enum):
+    """Words for arrays, files and the C++ engines, in which their numbers stand, so that what comes new comes last."""
+
+    @property
+    def code(self) -> int:
+        """Number in arrays."""
+        return list(type(self)).index(self)
+
+
+class Outcome(Coded):
     """How a history ends; of several that apply, overturned, then flew, then rocked and slid."""
 
     NO_UPLIFT = "stayed at rest: the ground never lifted it"
@@ -23,13 +31,8 @@ class Outcome(Enum):
     ROCKED_AND_SLID = "rocked and slid and stayed standing"
     FLEW = "left the ground with both feet and stayed standing"
 
-    @property
-    def code(self) -> int:
-        """Number of the outcome in arrays."""
-        return list(Outcome).index(self)
 
-
-class Status(Enum):
+class Status(Coded):
     """Whether a history could be computed."""
 
     GOOD = "computed"
@@ -43,13 +46,8 @@ class Status(Enum):
     AMBIGUOUS = "stopped: several contact forces obey Coulomb's law with a rigid body here (Painleve's paradox)"
     ENERGY_GAIN = "stopped: Newton's normal restitution with friction would create energy in this impact"
 
-    @property
-    def code(self) -> int:
-        """Number of the status in arrays."""
-        return list(Status).index(self)
 
-
-class Regime(Enum):
+class Regime(Coded):
     """What a body in the plane does that may slide and hop, in words."""
 
     REST = "at rest"
@@ -58,24 +56,14 @@ class Regime(Enum):
     SLIDE_ROCK = "rocking about one foot that slides"
     FLIGHT = "in flight"
 
-    @property
-    def code(self) -> int:
-        """Number of the regime in arrays."""
-        return list(Regime).index(self)
 
-
-class ContactMode(Enum):
+class ContactMode(Coded):
     """On what a body in space stands."""
 
     REST = "at rest on its whole base"
     EDGE = "turning about an edge"
     VERTEX = "turning about a vertex"
     ROLLING = "rolling on its rim"
-
-    @property
-    def code(self) -> int:
-        """Number of the regime in arrays."""
-        return list(ContactMode).index(self)
 
 
 UNCOUNTED = 1_000_000
