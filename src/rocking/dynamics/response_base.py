@@ -203,7 +203,7 @@ _MOST_SAMPLES = 2_000_000
 
 def ground_at_rest(step: float, length: float) -> Segments:
     """Return ground at rest in steps, for a length [s]."""
-    _check_samples(length / step)
+    check_samples(length / step)
     return Segments.still(step, max(1, math.ceil(length / step - 1e-9)))
 
 
@@ -211,13 +211,14 @@ def followed(segments: Segments, length: float, parts: int, motion: Motion) -> S
     """Return a motion cut or followed by rest to a length [s]; the stretches of a pulse in so many parts."""
     if isinstance(motion, Pulse):
         segments = segments.refined(parts)
-    _check_samples(length / segments.step)
+    check_samples(length / segments.step)
     keep = max(1, math.ceil(length / segments.step - 1e-9))
     vertical = None if segments.vertical is None else segments.vertical[:keep]
     return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
 
 
-def _check_samples(count: float) -> None:
+def check_samples(count: float) -> None:
+    """Refuse more samples than memory should hold."""
     if not count <= _MOST_SAMPLES:
         raise InvalidValueError(
             f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"

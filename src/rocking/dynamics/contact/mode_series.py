@@ -1,7 +1,7 @@
 """One mode over a short time as power series: motion, contact forces, and everything that may end it."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from operator import mul
 from typing import NamedTuple
@@ -14,8 +14,21 @@ from rocking.portable import convolved
 
 _SMALLEST = 1e-22
 
-Ground = tuple[Sequence[float], Sequence[float], float]
-"""Coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s]."""
+
+class GroundSeries(NamedTuple):
+    """The ground over a unit of time."""
+
+    push: list[float]  # push, lift: coefficients of a_x and of g + a_z [m/s2]
+    lift: list[float]
+    unit: float  # the unit of time [s]
+
+    def shortened(self, part: float) -> "GroundSeries":
+        """Return the beginning of the same motion."""
+        if part == 1.0:
+            return self
+        push, lift = ([c * part**k for k, c in enumerate(series)] for series in (self.push, self.lift))
+        return GroundSeries(push, lift, self.unit * part)
+
 
 Acceleration = Callable[[int], float]
 """The coefficient k of theta'', asked for in order while the series of spin and arm grow."""
@@ -34,21 +47,20 @@ def pivot_motion(
     inertia: float,
     arm: tuple[float, float],
     motion: tuple[float, float],
-    ground: Ground,
+    ground: GroundSeries,
     pull: float | None,
     order: int,
 ) -> PivotSeries:
     """Return the series of a body that turns about one foot.
 
     inertia: j = I_C / m [m2]; arm: r_x and r_z at the start [m]; motion: theta [rad] and theta' [rad/s] at the start;
-    ground: coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s]; pull: ``sigma mu`` where
-    the foot slides; None where it sticks [-].
+    pull: ``sigma mu`` where the foot slides; None where it sticks [-].
 
-    >>> found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), ([2.0], [10.0], 1.0), None, 2)
+    >>> found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), GroundSeries([2.0], [10.0], 1.0), None, 2)
     >>> found.rotation  # theta'' = -a_x h / (j + h^2)
     [0.0, 0.0, -0.5]
     """
-    unit = ground[2]
+    unit = ground.unit
     rotation, spin = [motion[0], motion[1] * unit], [motion[1] * unit]
     x, z = [arm[0]], [arm[1]]
     if pull is None:
@@ -56,7 +68,7 @@ def pivot_motion(
     else:
         stiff = (x[0] * (x[0] + pull * z[0]) + inertia) / (inertia + x[0] ** 2)
         acceleration = _sliding(inertia, x, z, spin, ground, pull)
-    floor, small, least = 1e-300, 0, len(ground[0]) + len(ground[1])
+    floor, small, least = 1e-300, 0, len(ground.push) + len(ground.lift)
     for k in range(order - 1):
         spin.append(acceleration(k) / (k + 1))
         rotation.append(spin[-1] / (k + 2))
@@ -71,7 +83,7 @@ def pivot_motion(
     return PivotSeries(rotation, x, z, stiff)
 
 
-def _sticking(inertia: float, x: list[float], z: list[float], ground: Ground) -> Acceleration:
+def _sticking(inertia: float, x: list[float], z: list[float], ground: GroundSeries) -> Acceleration:
     """Moments about a foot that does not move."""
     push, lift, unit = ground
     compliance = unit * unit / (inertia + x[0] ** 2 + z[0] ** 2)
@@ -84,7 +96,7 @@ def _sticking(inertia: float, x: list[float], z: list[float], ground: Ground) ->
 
 
 def _sliding(
-    inertia: float, x: list[float], z: list[float], spin: list[float], ground: Ground, pull: float
+    inertia: float, x: list[float], z: list[float], spin: list[float], ground: GroundSeries, pull: float
 ) -> Acceleration:
     """Moments about the centre, with the friction of a foot that slides: a division of series."""
     _, lift, unit = ground
@@ -141,21 +153,6 @@ def twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> F
     k = np.arange(2, acceleration.size)
     made[2:] = acceleration[:-2] * unit**2 / (k * (k - 1))
     return made
-
-
-class GroundSeries(NamedTuple):
-    """The ground over a unit of time."""
-
-    push: list[float]  # push, lift: coefficients of a_x and of g + a_z [m/s2]
-    lift: list[float]
-    unit: float  # the unit of time [s]
-
-    def shortened(self, part: float) -> "GroundSeries":
-        """Return the beginning of the same motion."""
-        if part == 1.0:
-            return self
-        push, lift = ([c * part**k for k, c in enumerate(series)] for series in (self.push, self.lift))
-        return GroundSeries(push, lift, self.unit * part)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks, conventions, plausibility
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
-from rocking.dynamics.response_base import ResponseBase
+from rocking.dynamics.response_base import ResponseBase, check_samples
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
@@ -326,7 +326,6 @@ class SpatialResponse(ResponseBase):
 
 
 _FINE, _AFTER, _LONG = 0.05, 15.0, 300.0
-_MOST_SAMPLES = 2_000_000
 
 
 def response_in_space(
@@ -379,6 +378,5 @@ def started(start: SpatialStart, pace: float) -> SpatialStart:
 def samples(step: float, end: float) -> FloatArray:
     """Return the times of samples up to an end [s]."""
     count = end / step
-    if not count <= _MOST_SAMPLES:
-        raise InvalidValueError(f"the response would have {count:.3g} samples; a shorter duration, please")
+    check_samples(count)
     return np.asarray(np.arange(math.floor(count + 1e-9) + 1) * step, dtype=np.float64).clip(max=end)

@@ -311,5 +311,6 @@ def test_forces_are_measured_by_the_motion_of_the_moment():
 
 def test_a_push_that_sets_in_late_turns_a_body():
     """theta'' = -a_x h / (j + h^2) without weight: under a_x = t^5 theta is -t^7 / 84, all terms before it zero."""
-    found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0], 1.0), None, 9)
+    ground = GroundSeries([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0], 1.0)
+    found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), ground, None, 9)
     assert found.rotation == pytest.approx([0.0] * 7 + [-1.0 / 84.0, 0.0, 0.0], abs=1e-16)
