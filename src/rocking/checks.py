@@ -40,7 +40,8 @@ def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str)
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
     """Return `value` as a whole number between `low` and `high`."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
-        allowed = f">= {low}" if high >= 2**63 - 1 else f"in [{low}, {high}]"
+        top = f"{high}]" if high < 2**53 else f"2^{high.bit_length()})"
+        allowed = f">= {low}" if high == 2**63 - 1 else f"in [{low}, {top}"
         raise InvalidValueError(f"{name} must be a whole number {allowed}, got {value!r:.60}")
     return int(value)
 
@@ -107,6 +108,24 @@ def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     if given.dtype.kind not in "iuf":
         raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}")
     return np.asarray(given, dtype=np.float64)
+
+
+def finite(
+    name: str, values: Any, unit: str = "-", shape: tuple[int | None, ...] = (None,), least: int = 1
+) -> FloatArray:
+    """Return `values` as a frozen copy of finite numbers of a shape; None is any size of at least `least`."""
+    result = real_array(name, values, unit).copy()
+    wanted = [max(count, least) if size is None else size for count, size in zip(result.shape, shape, strict=False)]
+    if result.ndim != len(shape) or list(result.shape) != wanted:
+        words = " x ".join(f"at least {least}" if size is None else f"{size}" for size in shape)
+        row = "a row of " if len(shape) == 1 else ""
+        raise InvalidValueError(f"{name} must be {row}{words} finite numbers [{unit}], got shape {result.shape}")
+    bad = np.argwhere(~np.isfinite(result)).tolist()
+    if bad:
+        where = bad[0] if len(shape) > 1 else bad[0][0]
+        raise InvalidValueError(f"{name} must be finite [{unit}], got {result[tuple(bad[0])]} at index {where}")
+    result.setflags(write=False)
+    return result
 
 
 def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArray | None = None) -> None:

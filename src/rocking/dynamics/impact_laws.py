@@ -163,10 +163,10 @@ class SpeedRestitution(ImpactLaw):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        speeds = _row("at", self.at, "rad/s")
+        speeds = checks.finite("at", self.at, "rad/s", least=2)
         if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
             raise InvalidValueError(f"at must be speeds >= 0 that increase [rad/s], got {speeds[:4].tolist()}")
-        factors = _row("factors", self.factors, "-")
+        factors = checks.finite("factors", self.factors, least=2)
         if factors.size != speeds.size:
             raise InvalidValueError(f"factors must be as many as the speeds, {speeds.size}, got {factors.size}")
         object.__setattr__(self, "at", speeds)
@@ -198,11 +198,9 @@ class DrawnRestitution(ImpactLaw):
         quantiles = _by_side(self.factors)
         if np.any(np.diff(quantiles) < 0.0):
             raise InvalidValueError("factors must be quantiles, which never decrease")
-        seed: object = self.seed
-        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= _MASK:
-            raise InvalidValueError(f"seed must be a whole number in [0, 2^64), got {self.seed!r}")
-        cut = _row("cut", self.cut, "-")
-        if cut.size != 2 or not np.all((cut >= 0.0) & (cut < 1.0)):
+        object.__setattr__(self, "seed", checks.whole("seed", self.seed, 0, _MASK))
+        cut = checks.finite("cut", self.cut, shape=(2,))
+        if not np.all((cut >= 0.0) & (cut < 1.0)):
             raise InvalidValueError(f"cut must be two probabilities in [0, 1), left and right, got {self.cut!r:.60}")
         object.__setattr__(self, "cut", (float(cut[0]), float(cut[1])))
         object.__setattr__(self, "factors", quantiles)
@@ -354,16 +352,8 @@ def _mixed(z: int) -> int:
     return z ^ z >> 31
 
 
-def _row(name: str, values: Any, unit: str) -> FloatArray:
-    row = np.array(checks.real_array(name, values, unit), dtype=np.float64)
-    if row.ndim != 1 or row.size < 2 or not np.isfinite(row).all():
-        raise InvalidValueError(f"{name} must be a row of at least 2 finite numbers [{unit}]")
-    row.setflags(write=False)
-    return row
-
-
 def _factors(values: Any, most: float = 1.0) -> FloatArray:
-    row = _row("factors", values, "-")
+    row = checks.finite("factors", values, least=2)
     if row.min() < 0.0 or row.max() > most:
         raise InvalidValueError(f"factors must be in [0, {most:g}], got {row.min():g} to {row.max():g}")
     return row
@@ -388,4 +378,4 @@ def _by_side(values: Any) -> FloatArray:
 
 
 def _quantiles_of(values: Any) -> FloatArray:
-    return np.quantile(_row("values", values, "-"), np.linspace(0.0, 1.0, 1025))
+    return np.quantile(checks.finite("values", values, least=2), np.linspace(0.0, 1.0, 1025))

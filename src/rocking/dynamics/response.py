@@ -435,18 +435,13 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     else:
         segments = motion.segments()
         segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
-    _check_stream(stream)
+    stream = checks.whole("stream", stream)
     found = run(
         parameters, segments, settings, engine=engine, scale=scale, stream=stream, rotation=rotation, velocity=velocity
     )
     if motion is None and duration is None:
         found, segments = _until_rest(found, segments)
     return Response(body, motion, parameters, settings, segments, scale, stream, found)
-
-
-def _check_stream(stream: object) -> None:
-    if isinstance(stream, bool) or not isinstance(stream, int) or not 0 <= stream < 2**63:
-        raise InvalidValueError(f"stream must be a whole number in [0, 2^63), got {stream!r}")
 
 
 def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:

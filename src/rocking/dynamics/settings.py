@@ -1,6 +1,5 @@
 """How to integrate: settings, and which engine runs on how many threads with which instructions."""
 
-import math
 import os
 from dataclasses import dataclass, fields
 from importlib import import_module
@@ -121,8 +120,8 @@ class Settings:
         own = _OWN[self.mechanics]
         made: dict[str, float] = {
             "gravity": checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True),
-            "most_events": _whole(
-                "most_events", self.most_events, 1, 10_000_000 if "space" in self.mechanics else math.inf
+            "most_events": checks.whole(
+                "most_events", self.most_events, 1, 10_000_000 if "space" in self.mechanics else 2**63 - 1
             ),
         }
         for name in ("rest_speed", "longest_step", "order", "tolerance"):
@@ -132,12 +131,7 @@ class Settings:
                     raise InvalidValueError(f"{name} is no setting of {self.mechanics}; {self._has(own)}")
                 continue
             usual, least, most = own[name]
-            value = usual if value is None else value
-            hint = _HINTS.get((self.mechanics, name), "")
-            if name == "order":
-                made[name] = _whole(name, value, int(least), int(most), ORDERS if self.mechanics == "rocking" else ())
-            else:
-                made[name] = checks.within(name, value, least, most, hint=hint)
+            made[name] = self._checked(name, usual if value is None else value, least, most)
         linear: object = self.linear
         if not isinstance(linear, bool):
             raise InvalidValueError(f"linear must be True or False, got {self.linear!r}")
@@ -146,6 +140,15 @@ class Settings:
         for name, number in made.items():  # numbers of one kind: 9 and 9.0 are the same settings
             object.__setattr__(self, name, number)
         plausibility.warn(plausibility.of_gravity(self.gravity))
+
+    def _checked(self, name: str, value: Any, least: float, most: float) -> float:
+        if name != "order":
+            return checks.within(name, value, least, most, hint=_HINTS.get((self.mechanics, name), ""))
+        if self.mechanics != "rocking":
+            return checks.whole(name, value, int(least), int(most))
+        if not isinstance(value, (int, np.integer)) or value not in ORDERS:
+            raise InvalidValueError(f"order must be one of {ORDERS}, got {value!r:.60}")
+        return int(value)
 
     def _check_ground(self) -> None:
         own = _OWN[self.mechanics]
@@ -194,16 +197,6 @@ def settings_of(gravity: float, options: dict[str, Any], body: Any = None) -> Se
         return Settings(gravity=gravity, **options)
     options = {**options, "friction": NEVER_SLIDES if options.get("friction") is None else options["friction"]}
     return Settings(gravity=gravity, **options, mechanics="space with friction")
-
-
-def _whole(name: str, value: object, least: int = 1, most: float = math.inf, among: tuple[int, ...] = ()) -> int:
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not whole or not least <= value <= most or (among and value not in among):  # type: ignore[operator]
-        limits = (
-            f"one of {among}" if among else "a whole number " + (f"in [{least}, {most}]" if most < math.inf else ">= 1")
-        )
-        raise InvalidValueError(f"{name} must be {limits}, got {value!r:.60}")
-    return int(value)  # type: ignore[call-overload,no-any-return]
 
 
 ENGINES = ("auto", "fast", "reference")
@@ -270,12 +263,9 @@ class CompiledEngine:
 MOST_THREADS = 4096
 
 
-def check_threads(threads: object) -> None:
-    """Refuse what is no number of threads, or None."""
-    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
-        raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
-    if isinstance(threads, int) and threads > MOST_THREADS:
-        raise InvalidValueError(f"threads must be in [1, {MOST_THREADS}], got {threads}")
+def thread_count(threads: object) -> int:
+    """Return how many threads to run on: every processor if None."""
+    return processors() if threads is None else checks.whole("threads", threads, 1, MOST_THREADS)
 
 
 def check_progress(progress: object) -> None:

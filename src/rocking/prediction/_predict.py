@@ -8,7 +8,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
-from rocking.dynamics.settings import check_progress, check_threads
+from rocking.dynamics.settings import check_progress, thread_count
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
@@ -117,7 +117,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     [0.0, 0.7, 0.8]
     """
     check_progress(progress)
-    check_threads(threads)
+    thread_count(threads)
     given = {
         "restitution": restitution, "friction": friction, "base": base, "centre": centre, "polarity": polarity,
         "azimuth": azimuth,

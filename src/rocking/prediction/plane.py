@@ -11,7 +11,7 @@ from rocking.bodies import Body
 from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
 from rocking.dynamics.contact.batch import RowsWithContact
 from rocking.dynamics.parameters import coefficients_of
-from rocking.dynamics.settings import Settings, processors
+from rocking.dynamics.settings import Settings, thread_count
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate_hierarchy, restitution_distribution
 from rocking.motions.components import rotated, with_vertical
@@ -130,7 +130,7 @@ class PlaneMechanics(Mechanics):
             rows[f"p_{foot}"] = np.sqrt(self._settings.gravity * np.sqrt(square) / inertia)  # Eq. 26
             rows[f"q_{foot}"] = square / inertia  # Eq. 27
             rows[f"r_{foot}"] = coefficients[:, k]
-        found = RowsWithContact(segments, self._settings, "auto").run(rows, number, threads or processors())
+        found = RowsWithContact(segments, self._settings, "auto").run(rows, number, thread_count(threads))
         failed = np.asarray(found["outcome"]) == Outcome.FAILED.code
         rose = np.isfinite(found["first_uplift"]) | (found["peak_rotation"] != 0.0)
         return Endings(

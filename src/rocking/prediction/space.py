@@ -11,11 +11,11 @@ from rocking.bodies import MassPoints, Solid
 from rocking.conventions import FloatArray, percent
 from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.histories import HullRows
+from rocking.dynamics.hull.histories import HullRows, numbers_of_rows
 from rocking.dynamics.hull.history import HullSettings
 from rocking.dynamics.hull.motion import standing
 from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.settings import processors
+from rocking.dynamics.settings import thread_count
 from rocking.dynamics.space.attitude import product, turn
 from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
@@ -155,14 +155,11 @@ class SpaceMechanics(Mechanics):
         ground = ground_of(*parts(self._motions[motion]))
         turned = zip(shapes, drawn["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
-        numbers = np.zeros((place.size, 29))
-        numbers[:, 0], numbers[:, 1], numbers[:, 3] = drawn["restitution"], factor, drawn["friction"]
-        numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
-        numbers[:, 15:28], numbers[:, 28] = state, self._gravity
+        numbers = numbers_of_rows(drawn["restitution"], factor, drawn["friction"], state, self._gravity)
         choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law)])
         ked = self._law == histories.KED
         rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, histories.chosen("auto"), ked=ked)
-        found = rows.run(numbers, choices, threads or processors())
+        found = rows.run(numbers, choices, thread_count(threads))
         known = found["status"] == Status.GOOD.code
         pairs = zip(shapes, found["pose"].tolist(), strict=True)
         elsewhere = np.array([shape.left(pose) for shape, pose in pairs], dtype=np.float64)

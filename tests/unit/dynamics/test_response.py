@@ -189,7 +189,7 @@ def test_error_estimate(name: str) -> None:
 def test_error_estimate_of_another_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """If the finer run overturns where this one stood, the estimate is infinite."""
     response, other = let_go(duration=2.0), sine(4.0)
-    monkeypatch.setattr("rocking.dynamics.plane.fast_engine.run", lambda *_, **__: other.trajectory)
+    monkeypatch.setattr("rocking.dynamics.response.run", lambda *_, **__: other.trajectory)
     assert response.error_estimate == math.inf
 
 

@@ -29,8 +29,7 @@ from rocking.dynamics.settings import (
     CompiledEngine,
     Settings,
     check_progress,
-    check_threads,
-    processors,
+    thread_count,
 )
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
@@ -213,7 +212,7 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
     if start is not None and not isinstance(start, Start):
         raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
     check_progress(progress)
-    check_threads(threads)
+    taken = thread_count(threads)
     for mu in friction:
         plausibility.warn(plausibility.of_friction(checks.within("friction", float(mu), 0.0, 1e6)))
     if chosen(engine) == "fast":
@@ -221,7 +220,7 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
         law = GroundContact(0.0, checks.number("bounce", bounce), None, bounce_law)
         bases = [PlaneBase.of_body(body) for body in bodies]
         table = _Table(bases, motions, scales, np.array(imposed), friction, law, start or Start(), duration, settings)
-        return table.run(threads or processors(), progress), FAST
+        return table.run(taken, progress), FAST
     rows = []
     for body, motion, scale, restitution, mu in product(bodies, motions, scales, restitutions, friction):
         with warnings.catch_warnings():  # said once, before

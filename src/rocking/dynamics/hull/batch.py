@@ -112,14 +112,11 @@ class RowsOnHull:
         friction = np.where(np.isnan(values["friction"]), self.friction, values["friction"])
         r = values["r_right"]
         modelled = r == UNIMPOSED
-        code = {"housner-3d": histories.HOUSNER, "ked-3d": histories.KED}.get(str(law.model), 0)
-        numbers = np.zeros((count, 29))
-        numbers[:, 0], numbers[:, 1], numbers[:, 3] = np.where(modelled, 0.0, r), scale, friction
-        turned = np.nan_to_num(values["azimuth"])
-        numbers[:, 4:13], numbers[:, 13:15] = np.eye(3).ravel(), math.inf
-        numbers[:, 4], numbers[:, 8] = np.cos(turned), np.cos(turned)
-        numbers[:, 5], numbers[:, 7] = -np.sin(turned), np.sin(turned)
-        numbers[:, 15:28], numbers[:, 28] = numbers_of(law.on_hull, SpatialStart()), pull
+        code = histories.CODES.get(str(law.model), 0)
+        turned, plane = np.nan_to_num(values["azimuth"]), np.tile(histories.LEVEL, (count, 1))
+        plane[:, [0, 4]], plane[:, 1], plane[:, 3] = np.cos(turned)[:, None], -np.sin(turned), np.sin(turned)
+        state = np.tile(numbers_of(law.on_hull, SpatialStart()), (count, 1))
+        numbers = histories.numbers_of_rows(np.where(modelled, 0.0, r), scale, friction, state, pull, plane)
         codes = np.where(modelled, code, histories.COEFFICIENT)
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)
         found = self.rows.run(numbers, choices, threads)

@@ -11,7 +11,7 @@ from rocking.bodies.equilibria.polytope import Polytope, polytope
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.dynamics.hull.ground import Frame, Vector, dot, length
-from rocking.dynamics.space.body import SpatialBody, checked_inertia, finite
+from rocking.dynamics.space.body import SpatialBody, checked_inertia
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import inverse
 
@@ -34,10 +34,9 @@ class HullBody:
     hull: Polytope = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        points = checks.real_array("vertices", self.vertices, "m")
-        object.__setattr__(self, "vertices", finite("vertices", points, (len(points), 3), "m"))
+        object.__setattr__(self, "vertices", checks.finite("vertices", self.vertices, "m", (None, 3)))
         object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
-        object.__setattr__(self, "centre", finite("centre", self.centre, (3,), "m"))
+        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "m", (3,)))
         object.__setattr__(self, "inertia", checked_inertia(self.inertia))
         object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
         if not self.hull.heights.min() > 0.0:

@@ -16,8 +16,8 @@ from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
 from rocking.dynamics.hull.motion import State
-from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.settings import CompiledEngine, check_progress, check_threads, processors
+from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, spread_of
+from rocking.dynamics.settings import CompiledEngine, check_progress, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch
 from rocking.dynamics.space.ground import SpatialGround
@@ -26,6 +26,7 @@ from rocking.outcome import Outcome, Status
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 HOUSNER, POSITION, COEFFICIENT, KED = range(4)
+CODES = {"housner-3d": HOUSNER, "ked-3d": KED}
 MOST_POWERS = 8
 ENGINES = {
     "fast": "fast (Dormand-Prince with complementarity, compiled)",
@@ -60,6 +61,28 @@ def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGroun
     return made
 
 
+LEVEL = np.array([*np.eye(3).ravel(), math.inf, math.inf])
+"""Axes of level ground, which has no end."""
+
+
+def numbers_of_rows(  # noqa: PLR0917 - the columns, in order
+    value: Any,
+    scale: Any,
+    friction: Any,
+    state: FloatArray,
+    gravity: Any,
+    plane: FloatArray = LEVEL,
+    horizon: Any = 0.0,
+) -> FloatArray:
+    """Return histories as rows of numbers, one for each state at the start; the others are repeated where they are one.
+
+    value: coefficient or position of the law; plane: level axes to axes of the plane, and half sizes of the shelf.
+    """
+    count = len(state)
+    first = (np.broadcast_to(each, count) for each in (value, scale, horizon, friction))
+    return np.column_stack([*first, np.broadcast_to(plane, (count, 11)), state, np.broadcast_to(gravity, count)])
+
+
 def traced(
     body: HullBody,
     ground: HullGround,
@@ -72,9 +95,10 @@ def traced(
 ) -> HullHistory:
     """Return one history of the compiled engine as the reference engine keeps it; of its events the impacts alone."""
     code, value = _code(law)
-    _check_mass([(code, value)], [body])
-    plane = [*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))]
-    numbers = np.array([[value, 1.0, horizon, friction, *plane, *numbers_of(body, start), ground.gravity]])
+    if code == KED:
+        spread_of(body)
+    state, plane = numbers_of(body, start)[None], _plane(ground)
+    numbers = numbers_of_rows(value, 1.0, friction, state, ground.gravity, plane, horizon)
     library = library_of([body], [ground.motion], ked=code == KED)
     results, counts = _COMPILED.room(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
@@ -152,7 +176,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     # bodies: None for one that cannot be, whose rows are refused by themselves; restitution: as `HullEngine` takes it;
     # friction: infinite for vertices that never slide; start: in the axes of the vertices, the lowest at rest on the
     # ground; horizon: how long to follow them at least [s]; the reference engine takes hundreds of times as long
-    check_threads(threads)
+    taken = thread_count(threads)
     check_progress(progress)
     settings = settings or HullSettings()
     several, under = _listed("bodies", bodies), _listed("grounds", grounds)
@@ -161,21 +185,20 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    _check_mass(codes, several)
+    if ked := any(code == KED for code, _ in codes):
+        for one in filter(None, several):
+            spread_of(one)
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
     states = np.array([[numbers_of(body, each) for each in starts] for body in several])
-    planes = np.array(
-        [np.concatenate([np.ravel(g.level), g.shelf or (math.inf, math.inf), [g.gravity]]) for g in under]
-    )
+    planes, pulls = np.array([_plane(each) for each in under]), np.array([each.gravity for each in under])
     body, ground, scale, law, mu, first = np.unravel_index(np.arange(int(np.prod(shape))), shape)
-    numbers = np.column_stack([
-        np.array([r for _, r in codes])[law], factors[scale], np.full(len(body), float(horizon)), frictions[mu],
-        planes[ground, :11], states[body, first], planes[ground, 11],
-    ])  # fmt: skip
+    values = np.array([r for _, r in codes])
+    numbers = numbers_of_rows(
+        values[law], factors[scale], frictions[mu], states[body, first], pulls[ground], planes[ground], float(horizon)
+    )
     choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
-    ked = any(code == KED for code, _ in codes)
     rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), ked=ked)
-    found = rows.run(numbers, choices, threads or processors(), progress)
+    found = rows.run(numbers, choices, taken, progress)
     return SpatialBatch(shape, found, rows.words, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
 
 
@@ -204,8 +227,7 @@ class HullRows:
     ) -> dict[str, np.ndarray]:
         """Return the results of rows by name, NaN where there is none.
 
-        numbers: coefficient, scale, horizon, friction; level axes to axes of the plane; half sizes of the shelf;
-        attitude, place, velocity, spin; gravity; choices: body, motion, law.
+        numbers: as of `numbers_of_rows`; choices: body, motion, law.
         """
         pieces = []
         size = PIECE if self.engine == "fast" else 1
@@ -229,7 +251,7 @@ class HullRows:
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
             refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.wholes) - 3)]
             return [math.nan] * len(_COMPILED.floats), refused
-        named = {HOUSNER: "housner-3d", KED: "ked-3d"}
+        named = {code: name for name, code in CODES.items()}
         law = FixedPosition(row[0]) if which[2] == POSITION else named.get(which[2], float(row[0]))
         moving = self.motions[which[1]]
         ground = HullGround.placed(
@@ -262,21 +284,15 @@ def _listed(name: str, values: Any) -> list[Any]:
     return several
 
 
-def _check_mass(codes: Sequence[tuple[int, float]], bodies: Sequence[HullBody | None]) -> None:
-    if any(code == KED and body is not None and body.solid is None for code, _ in codes for body in bodies):
-        raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
-
-
-def _code(law: Any) -> tuple[int, float]:
-    if law in ("housner", "housner-3d"):
-        return HOUSNER, 0.0
-    if law in ("ked", "ked-3d"):
-        return KED, 0.0
+def _code(restitution: Any) -> tuple[int, float]:
+    law = law_on_hull(restitution)
     if isinstance(law, FixedPosition):
         return POSITION, law.k
-    if isinstance(law, (int, float)):
-        return COEFFICIENT, checks.within("restitution", float(law), 0.0, 1.0)
-    raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {law!r:.60}")
+    return (COEFFICIENT, law) if isinstance(law, float) else (CODES[law], 0.0)
+
+
+def _plane(ground: HullGround) -> FloatArray:
+    return np.array([*np.ravel(ground.level), *(ground.shelf or (math.inf, math.inf))])
 
 
 def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:

@@ -14,7 +14,7 @@ from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, unit
 from rocking.dynamics.hull.histories import ENGINES, chosen, start_of, traced
 from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
-from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull
+from rocking.dynamics.hull.restitution import law_on_hull
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
@@ -53,7 +53,7 @@ def response_on_hull(
     """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go."""
     # duration: how long to follow the body at least [s]; if not given, until it rests after the motion
     made = HullBody.of(body)
-    law = restitution if isinstance(restitution, FixedPosition) else law_on_hull(restitution)
+    law = law_on_hull(restitution)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start = started(start, math.sqrt(settings.gravity / made.size))
     until = np.inf if duration is None else checks.positive("duration", duration, "s")

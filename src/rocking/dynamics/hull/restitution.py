@@ -10,6 +10,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.equilibria.polytope import FLAT
+from rocking.bodies.solid import Solid
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import Vector, added, applied, cross, dot, minus, scaled, unit
@@ -39,19 +40,24 @@ class FixedPosition:
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     """Return k of every step, from the name of a model, a k, or the coefficient of a landing of the whole base."""
     # the base is the facet to which the law belongs: steps elsewhere take k = 1
-    if restitution in ("housner", "housner-3d"):
+    law = law_on_hull(restitution)
+    if isinstance(law, FixedPosition):
+        return _on_base(body, base, lambda _step: law.k)
+    if isinstance(law, float):
+        return _on_base(body, base, _Coefficient(body, base, law).at)
+    if law == "housner-3d":
         return lambda _old, _new: 1.0
-    if restitution in ("ked", "ked-3d"):
-        if body.solid is None:
-            raise InvalidValueError("restitution 'ked-3d' needs the distribution of mass: give the HullBody its solid")
-        position = impulse_position(body.solid)
-        return _on_base(body, base, lambda step: position.at(np.array(step)))
-    if isinstance(restitution, FixedPosition):
-        return _on_base(body, base, lambda _step: restitution.k)
-    if isinstance(restitution, (int, float)):
-        r = checks.within("restitution", float(restitution), 0.0, 1.0)
-        return _on_base(body, base, _Coefficient(body, base, r).at)
-    raise InvalidValueError(f"restitution must be 'housner-3d', 'ked-3d' or a number, got {restitution!r:.60}")
+    position = impulse_position(spread_of(body))
+    return _on_base(body, base, lambda step: position.at(np.array(step)))
+
+
+def spread_of(body: HullBody) -> Solid:
+    """Return the distribution of mass of a body, which "ked-3d" needs; refused where its moments alone are known."""
+    if body.solid is None:
+        raise InvalidValueError(
+            "restitution 'ked-3d' needs the distribution of mass, and of this body moments alone are known"
+        )
+    return body.solid
 
 
 def _on_base(body: HullBody, base: int, position: Callable[[Vector], float]) -> ImpulseLaw:
@@ -108,12 +114,14 @@ def nearest(points: list[Vector], to: Vector) -> Vector:
     return best
 
 
-def law_on_hull(restitution: Any) -> str | float:
+def law_on_hull(restitution: Any) -> str | float | FixedPosition:
     """Return a restitution as the hull engine takes it.
 
     >>> law_on_hull("ked"), law_on_hull(0.8)
     ('ked-3d', 0.8)
     """
+    if isinstance(restitution, FixedPosition):
+        return restitution
     law = batch_law(restitution)
     coefficient = getattr(law.law, "coefficient", None)
     if coefficient is not None:
@@ -141,10 +149,8 @@ class RestitutionOnHull(ConstantRestitution):
     def on_hull(self) -> HullBody:
         """The body on the vertices of its hull; refused where the model needs to know more of it."""
         made = HullBody.of(self.body)
-        if self.model == "ked-3d" and made.solid is None:
-            raise InvalidValueError(
-                "restitution 'ked-3d' needs the distribution of mass, of this body moments are known"
-            )
+        if self.model == "ked-3d":
+            spread_of(made)
         return made
 
     @property
@@ -160,11 +166,12 @@ class RestitutionOnHull(ConstantRestitution):
     @classmethod
     def of(cls, body: Any, restitution: Any, gravity: float) -> "RestitutionOnHull":
         """Return the law of a body in space."""
-        if isinstance(restitution, ImpactLaw):
+        law = None if isinstance(restitution, ImpactLaw) else law_on_hull(restitution)
+        if law is None or isinstance(law, FixedPosition):
             raise InvalidValueError(
                 f"a body in space takes a model or one coefficient in a study, got {type(restitution).__name__}"
             )
-        law, made = law_on_hull(restitution), SpatialBody.of(body)
+        made = SpatialBody.of(body)
         angle = math.atan2(made.reach, float(made.centre[2]))
         return cls(
             body=body, model=law, frequency=made.frequency(gravity), gravity=gravity, slenderness_angle=angle,

@@ -11,7 +11,7 @@ from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.settings import Settings, check_progress, check_threads, processors
+from rocking.dynamics.settings import Settings, check_progress, thread_count
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.outcome import Outcome, Status
@@ -76,7 +76,7 @@ class Batch:
     engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
-        check_threads(self.threads)
+        thread_count(self.threads)
         if any(isinstance(motion, Components) for motion in self.motions) and not hasattr(type(self.law), "on_hull"):
             raise InvalidValueError("a motion of several components is for bodies in space; a plane body takes one")
 
@@ -89,11 +89,11 @@ class Batch:
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
         """Return arrays by the keys of `fast_engine.RESULTS`, and the steps taken (none by the reference engine)."""
         check_progress(progress)
-        check_threads(threads)
+        taken = thread_count(self.threads if threads is None else threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
         if self.settings.friction is not None:
-            return self._run_with_contact(count, rows, progress, threads)
+            return self._run_with_contact(count, rows, progress, taken)
         library = self._library if fast_engine.chosen(self.engine, self.law) == "fast" else None
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
@@ -111,7 +111,7 @@ class Batch:
             else:
                 done = fast_engine.module().run_batch(
                     library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
-                    order=self.settings.order, threads=threads or self.threads or processors(), chunk=_CHUNK,
+                    order=self.settings.order, threads=taken, chunk=_CHUNK,
                     **fast_engine.common(self.settings, self.law),
                 )  # fmt: skip
                 total = {name: total.get(name, 0) + value for name, value in done.items()}
@@ -124,7 +124,7 @@ class Batch:
         count: int,
         rows: Callable[[int, int], Rows],
         progress: Callable[[int], None] | None,
-        threads: int | None,
+        threads: int,
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
         if not isinstance(self.law, ConstantRestitution):
             raise InvalidValueError(
@@ -134,7 +134,7 @@ class Batch:
         results, steps = fast_engine.empty_results(count), 0
         for first in range(0, count, PIECE):
             piece = rows(first, min(first + PIECE, count))
-            found = self._with_contact.run(piece.values, piece.motion, threads or self.threads or processors())
+            found = self._with_contact.run(piece.values, piece.motion, threads)
             steps += int(found["steps"].sum())
             for name, values in results.items():
                 values[first : first + len(piece)] = found[name]

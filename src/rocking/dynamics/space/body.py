@@ -96,7 +96,7 @@ class SpatialBody:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
-        object.__setattr__(self, "centre", finite("centre", self.centre, (3,), "m"))
+        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "m", (3,)))
         object.__setattr__(self, "inertia", checked_inertia(self.inertia))
         if np.ndim(self.base) == 0:
             object.__setattr__(self, "base", checks.length("radius of the base", self.base))
@@ -322,18 +322,9 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
     )
 
 
-def finite(name: str, values: Any, shape: tuple[int, ...], unit: str) -> FloatArray:
-    """Return an array of finite numbers of a given shape, frozen."""
-    given = checks.real_array(name, values, unit).copy()
-    if given.shape != shape or not np.isfinite(given).all():
-        raise InvalidValueError(f"{name} must be {shape} finite numbers [{unit}], got {values!r:.60}")
-    given.flags.writeable = False
-    return given
-
-
 def checked_inertia(values: Any) -> FloatArray:
     """Return an inertia tensor that some body has."""
-    tensor = finite("inertia", values, (3, 3), "kg m2")
+    tensor = checks.finite("inertia", values, "kg m2", (3, 3))
     scale = float(np.abs(tensor).max())
     moments = np.linalg.eigvalsh(tensor)
     symmetric = np.abs(tensor - tensor.T).max() <= _ROUNDING * scale
@@ -348,7 +339,7 @@ def _polygon(values: Any) -> FloatArray:
     points = checks.real_array("base", values, "m")
     if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
         raise GeometryError(f"base must be vertices (k, 2) with k >= 3, or a radius [m], got shape {points.shape}")
-    points = finite("base", points, points.shape, "m")
+    points = checks.finite("base", points, "m", points.shape)
     along = np.roll(points, -1, axis=0) - points
     turns = along[:, 0] * np.roll(along[:, 1], -1) - along[:, 1] * np.roll(along[:, 0], -1)
     around = float(np.arctan2(turns, (along * np.roll(along, -1, axis=0)).sum(axis=1)).sum())

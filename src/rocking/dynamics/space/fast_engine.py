@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.settings import CompiledEngine, Settings, check_threads, processors
+from rocking.dynamics.settings import CompiledEngine, Settings, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
@@ -112,10 +112,9 @@ def run_compiled(
     progress: Progress,
 ) -> tuple[Results, str]:
     """Return the results of all rows, and which engine gave them."""
-    check_threads(threads)
     stock = _stock(bodies, grounds, table, settings.gravity)
     results, counts = room(len(table))
-    limits = {"threads": threads or processors(), **_limits(settings)}
+    limits = {"threads": thread_count(threads), **_limits(settings)}
     for first in range(0, len(table), PIECE):
         last = min(first + PIECE, len(table))
         stock.run(*table.piece(first, last), results[first:last], counts[first:last], **limits)

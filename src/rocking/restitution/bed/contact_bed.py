@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any, Literal, Self, cast
+from typing import Any, Literal, Self, get_args
 
 import numpy as np
 
@@ -48,20 +48,9 @@ class Sticking(BaseFriction):
 
 @dataclass(frozen=True)
 class SlidingFriction(BaseFriction):
-    """What the laws share by which the base can slide.
+    """What the laws share by which the base can slide."""
 
-    Parameters
-    ----------
-    coefficient : float
-        mu [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If it is negative.
-    """
-
-    coefficient: float
+    coefficient: float  # mu [-]
 
     def __post_init__(self) -> None:
         checks.within("coefficient of friction", self.coefficient, 0.0, 100.0)
@@ -164,21 +153,23 @@ class ContactBed:
     kinematics: Kinematics = "exact"
 
     def __post_init__(self) -> None:
-        positions = _line("positions", self.positions)
+        positions = checks.finite("positions", self.positions, "m")
         count = len(positions)
         if count > 1 and not bool((np.diff(positions) > 0.0).all()):
             raise InvalidValueError("positions of contact points must grow; two points on one place?")
-        shares = np.full(count, 1.0 / count) if self.shares is None else _line("shares", self.shares, count)
-        checks.all_positive("shares", shares)
-        heights = np.zeros(count) if self.heights is None else _line("heights", self.heights, count)
-        law, friction, kinematics = cast("tuple[object, ...]", (self.law, self.friction, self.kinematics))
-        if kinematics not in {"exact", "small"}:
-            raise InvalidValueError(f'kinematics must be "exact" or "small", got {self.kinematics!r}')
-        if not isinstance(law, ContactLaw) or not isinstance(friction, BaseFriction):
-            raise InvalidValueError(f"law and friction must be a contact law and a friction, got {self.law!r:.40}")
-        for name, values in (("positions", positions), ("shares", shares), ("heights", heights)):
-            values.setflags(write=False)
-            object.__setattr__(self, name, values)
+        shares = np.full(count, 1.0 / count) if self.shares is None else self.shares
+        heights = np.zeros(count) if self.heights is None else self.heights
+        made: dict[str, Any] = {
+            "positions": positions,
+            "shares": checks.finite("shares", shares, shape=(count,)),
+            "heights": checks.finite("heights", heights, "m", (count,)),
+            "kinematics": checks.one_of("kinematics", self.kinematics, get_args(Kinematics)),
+        }
+        checks.all_positive("shares", made["shares"])
+        checks.of_kind("law", self.law, ContactLaw, "a contact law")
+        checks.of_kind("friction", self.friction, BaseFriction, "a friction of the base")
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def uniform(
@@ -223,10 +214,9 @@ class ContactBed:
             If there are fewer than two points or the rule is unknown.
         """
         count = checks.whole("count", count, 2, 100_000)
-        if rule not in {"ends", "trapezoid"}:
-            raise InvalidValueError(f'rule must be "ends" or "trapezoid", got {rule!r}')
+        alike = checks.one_of("rule", rule, get_args(Rule)) == "ends"
         positions, lengths = _along(contact_of(body, onto), body, count, onto)
-        shares = lengths if rule == "trapezoid" else np.ones(len(positions))
+        shares = np.ones(len(positions)) if alike else lengths
         return cls(positions, law, shares / shares.sum(), friction=friction or Sticking(), kinematics=kinematics)
 
     def with_profile(self, heights: Any) -> Self:
@@ -248,16 +238,6 @@ class ContactBed:
     def ends(self) -> tuple[float, float]:
         """First and last point [m]."""
         return float(self.positions[0]), float(self.positions[-1])
-
-
-def _line(name: str, values: Any, count: int | None = None) -> FloatArray:
-    line = np.array(checks.real_array(name, values), dtype=np.float64)
-    if line.ndim != 1 or line.size == 0 or (count is not None and line.size != count):
-        wanted = "one or more numbers" if count is None else f"{count} numbers, one for each point"
-        raise InvalidValueError(f"{name} must be a list of {wanted}, got shape {line.shape}")
-    if not bool(np.isfinite(line).all()):
-        raise InvalidValueError(f"{name} must be finite, got {line[~np.isfinite(line)][0]}")
-    return line
 
 
 def _along(patches: FloatArray, body: Body, count: int, onto: Foot) -> tuple[FloatArray, FloatArray]:

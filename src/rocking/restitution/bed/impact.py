@@ -214,17 +214,16 @@ def bed_impact(
     >>> round(impact.coefficient, 2)
     0.7
     """
-    if engine not in ENGINES:
-        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r:.40}; a typing error?")
+    asked = checks.one_of("engine", engine, ENGINES)
     setup = setup_of(
         body, bed, rotation=rotation, angular_velocity=angular_velocity, impulsive=impulsive,
         ground_acceleration=ground_acceleration, tolerance=tolerance,
     )  # fmt: skip
-    if engine == "fast" and not fast.available():
+    if asked == "fast" and not fast.available():
         raise MissingExtraError(
             "the bed's fast engine was not built: it takes a C++17 compiler when rocking is installed"
         )
-    return BedImpact(setup, *(reference if engine == "reference" or not fast.available() else fast).one(setup))
+    return BedImpact(setup, *(reference if asked == "reference" or not fast.available() else fast).one(setup))
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,11 +298,9 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     rows = list(setups)
     if not rows:
         raise InvalidValueError("at least one impact is needed, got none")
-    number = checks.positive("threads", threads)
-    if number != int(number):
-        raise InvalidValueError(f"threads must be a whole number, got {threads}")
+    number = checks.whole("threads", threads, 1)
     if fast.available():
-        results = fast.many(rows, int(number))
+        results = fast.many(rows, number)
     else:
         computed = [reference.one(row)[0] for row in rows]
         results = {name: np.array([each[name] for each in computed]) for name in computed[0]}

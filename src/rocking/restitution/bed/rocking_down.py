@@ -70,19 +70,18 @@ def bed_free_rocking(
     >>> bed_free_rocking(block, bed, rotation=0.2, peaks=3).coefficients.round(2).tolist()
     [0.7, 0.7, 0.7]
     """
-    if checks.positive("peaks", peaks) != int(peaks):
-        raise InvalidValueError(f"peaks must be a whole number, got {peaks}")
+    peaks = checks.whole("peaks", peaks, 1)
     setup = setup_of(body, bed, rotation=rotation, tolerance=tolerance)
     if setup.law.kind is LawKind.PLASTIC:
         raise InvalidValueError("plastic points remember their past, which is lost from peak to peak; use another law")
     rigid = setup.rigid
     angles, times, touches, now, lingers = [float(rotation)], [0.0], list[float](), 0.0, False
-    for _ in range(_MOST_RUNS * int(peaks)):
+    for _ in range(_MOST_RUNS * peaks):
         row = (fast.one(setup) if fast.available() else reference.one(setup))[0]
         now += row["time"]
         if status_of(row["status"]) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:
             break
-        if row["rotation"] > 0.0 and not lingers and len(angles) > int(peaks):
+        if row["rotation"] > 0.0 and not lingers and len(angles) > peaks:
             break
         if row["rotation"] > 0.0 and not lingers:
             angles.append(row["rotation"])

@@ -14,7 +14,7 @@ from rocking.dynamics import Settings
 from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.fast_engine import batch_law
-from rocking.dynamics.space.ground import ground_of, joined
+from rocking.dynamics.space.ground import ground_of
 from rocking.dynamics.space.impact_laws import FixedSpatial
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 from rocking.outcome import Status
@@ -225,13 +225,19 @@ def test_an_instruction_set_that_is_not_there_is_refused(monkeypatch):
 
 
 @pytest.mark.parametrize("until", [math.inf, 1.234, 0.5])
-def test_components_with_one_step_are_joined_as_others_are(until):
-    """The quick way gives the bits of the general one, for records of different lengths; a pulse takes it."""
+def test_components_with_one_step_stay_as_they_are(until):
+    """Records of one step are not cut anew, whatever their lengths; beside another step they are, to rounding."""
     short = rk.GroundMotion(np.cos(TIME[:77]), 0.01)
-    for parts in ((RECORD[0], short), (None, RECORD[0], short), (short, None, RECORD[1]), (PULSE, None)):
-        quick, general = joined(parts, until), ground_of(*parts, until=until)
-        np.testing.assert_array_equal(quick.times, general.times)
-        np.testing.assert_array_equal(quick.coefficients, general.coefficients)
+    for parts in ((RECORD[0], short), (None, RECORD[0], short), (short, None, RECORD[1])):
+        found = ground_of(*parts, until=until)
+        for which, part in ((k, part) for k, part in enumerate(parts) if part is not None):
+            lines = part.segments().horizontal[: found.count]
+            np.testing.assert_array_equal(found.coefficients[: len(lines), which], lines)
+            assert not found.coefficients[len(lines) :, which].any()
+    cut = ground_of(RECORD[0], rk.GroundMotion(np.zeros(300), 0.007), until=until)
+    inside = np.linspace(0.0, 0.99 * min(until, 2.0), 500)
+    assert cut.count > ground_of(RECORD[0], until=until).count
+    np.testing.assert_allclose(cut.at(inside)[:, 0], ground_of(RECORD[0]).at(inside)[:, 0], atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -382,7 +382,7 @@ NARROW = Block(width=0.2, height=0.4).with_feet(0.02, 0.2)
 STUCK = ContactBed.uniform(NARROW, 2, KelvinVoigt(1e9, damping_ratio=1.0))
 
 
-@pytest.mark.parametrize("engine", ["cuda", "", None, "Fast", 1])
+@pytest.mark.parametrize("engine", ["cuda", "", None, "fastest", 1])
 def test_engines_that_do_not_exist(engine):
     """Only the three engines are taken, and the sentence names them."""
     with pytest.raises(InvalidValueError, match="engine must be one of auto, fast, reference, got"):
