@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking import checks
 from rocking.campaigns import disk, ledger
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import NAME as LOCK
@@ -223,8 +224,8 @@ class Campaign:
         """
         if progress is not None and not callable(progress):
             raise InvalidValueError(f"progress must be a function of a Progress, or None, got {progress!r:.60}")
-        if order_seed is not None and (type(order_seed) is not int or order_seed < 0):
-            raise InvalidValueError(f"order_seed must be a whole number >= 0, got {order_seed!r:.60}")
+        if order_seed is not None:
+            checks.whole("order_seed", order_seed)
         who = chosen(executor, workers, start_method)
         self.identity.refuse_other(self.folder, self.histories)
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
@@ -253,9 +254,8 @@ class Campaign:
         dict of str to ndarray
             Those keys, one entry a history.
         """
-        if odd := [name for name in names if name not in RESULTS]:
-            raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {odd[0]!r:.60}")
-        whole = {name: np.empty(self.plan.count, RESULTS[name]) for name in names or RESULTS}
+        wanted = [checks.one_of("column", name, RESULTS) for name in names or RESULTS]
+        whole = {name: np.empty(self.plan.count, RESULTS[name]) for name in wanted}
         for piece in self.pieces():
             for name, values in whole.items():
                 values[piece.first : piece.last] = piece.results[name]

@@ -77,13 +77,10 @@ class Processes(Executor):
     """Computes the chunks on processes of this machine, one thread of the engine each."""
 
     def __init__(self, workers: int | None = None, start_method: str = "spawn") -> None:
-        known = multiprocessing.get_all_start_methods()
-        if start_method not in known:
-            raise InvalidValueError(f"start_method must be one of {', '.join(known)}, got {start_method!r:.60}")
+        self.start_method = checks.one_of("start_method", start_method, multiprocessing.get_all_start_methods())
         affinity = getattr(os, "sched_getaffinity", None)
         processors = len(affinity(0)) if affinity else os.cpu_count() or 1
         self.at_once = processors if workers is None else checks.whole("workers", workers, 1, MOST_WORKERS)
-        self.start_method = start_method
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
         with closing(_Crew(self.at_once, self.start_method, job, retried)) as crew:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import conventions
+from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.plane.fast_engine import Arrays
@@ -87,9 +87,7 @@ class AdaptiveGrid:
     """Points between the values of two axes, numbered in steps of the finest level, and what is known of them."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
-        number: object = levels
-        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number <= MOST_LEVELS:
-            raise InvalidValueError(f"levels of refinement must be a whole number in [0, {MOST_LEVELS}], got {levels}")
+        levels = checks.whole("levels of refinement", levels, 0, MOST_LEVELS)
         if plane.question.law.kind == 2:
             raise InvalidValueError("a restitution drawn at random has no boundary to refine; sample it instead")
         self.plane, self.levels, self.progress = plane, levels, progress

@@ -118,17 +118,15 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     amplitude = checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
     count, start = whole("points", points, 2), whole("seed", seed, 0)
     s = np.linspace(-1.0, 1.0, count)
-    match shape:
+    match checks.one_of("shape", shape, SHAPES):
         case "concave":
             heights = amplitude * (1.0 - s**2)
         case "convex":
             heights = amplitude * s**2
         case "tilted":
             heights = 0.5 * amplitude * (1.0 + s)
-        case "random":
+        case _:  # random
             heights = np.random.default_rng(start).uniform(0.0, amplitude, count)
-        case _:
-            raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
     return tuple(heights.tolist())
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.studies._overturning_map import MapArrays
@@ -157,9 +158,7 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
         If it is no map, or has no such axis.
     """
     modes, _, _, axes = _read(overturning)
-    along = axes[1] if along is None else along
-    if along not in axes:
-        raise InvalidValueError(f"along must be one of {', '.join(axes)}, got {along!r:.60}")
+    along = axes[1] if along is None else checks.one_of("along", along, axes)
     fallen = np.maximum.accumulate(modes >= 0, axis=1 if along == axes[0] else 0)
     beyond: xr.DataArray = overturning["mode"].copy(data=fallen & (modes < 0) & (modes != FAILED))
     return beyond.rename("safe_beyond_overturning").assign_attrs(

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.campaigns import CampaignIncompleteError
 from rocking.campaigns.jobs.folder import JobFolder, job_status
 from rocking.campaigns.jobs.kinds.fragility import MEASURES, columns_of, measures_of
@@ -231,6 +232,4 @@ def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
     if restitution is None and len(labels) > 1:
         own = what if what == MEASURES else f"a {what}"
         raise InvalidValueError(f"restitution must be one of {', '.join(labels)}: each has {own} of its own")
-    if restitution is not None and restitution not in labels:
-        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}, got {restitution!r:.60}")
-    return labels[0] if restitution is None else restitution
+    return labels[0] if restitution is None else checks.one_of("restitution", restitution, labels)

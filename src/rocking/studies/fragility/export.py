@@ -34,14 +34,14 @@ Destination = str | os.PathLike[str]
 
 def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> Table:
     """Return one of the tables of a model."""
-    makers = {"parameters": _parameters, "points": _points}
-    word: object = which
-    known = (*TABLES, "pelicun")
-    if not isinstance(word, str) or which not in known:
-        raise InvalidValueError(f"table must be one of {', '.join(known)}, got {which!r:.60}")
-    if which == "pelicun":
-        return _pelicun(model, crossing)
-    return makers[which](model) if which in makers else fema_p58_table(model, crossing=crossing)
+    match checks.one_of("table", which, (*TABLES, "pelicun")):
+        case "parameters":
+            return _parameters(model)
+        case "points":
+            return _points(model)
+        case "pelicun":
+            return _pelicun(model, crossing)
+    return fema_p58_table(model, crossing=crossing)
 
 
 def _parameters(model: FragilityModel) -> Table:
@@ -354,8 +354,7 @@ def to_nrml(
         If OpenQuake does not know the measure or the loss category, a name cannot stand in XML, or curves cross.
     """
     target = target_of(path)
-    if loss_category not in LOSS_CATEGORIES:
-        raise InvalidValueError(f"loss_category must be one of {', '.join(LOSS_CATEGORIES)}, got {loss_category!r:.60}")
+    loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
     imt, unit = intensity_type(model.measure)
     model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
     top = model.highest if highest is None else highest

@@ -125,14 +125,9 @@ class InventoryObject:
             object.__setattr__(self, "mass", self._checked_mass(self.mass))
         if self.friction is not None:
             checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
-        self._check_words()
-        count: object = self.count
-        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
-            raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
-
-    def _check_words(self) -> None:
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
+        checks.whole("count", self.count, 1, 1_000_000)
 
     def base(self, direction: Direction) -> float:
         """Return the size of the base in a direction.

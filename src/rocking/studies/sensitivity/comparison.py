@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import percent
 from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
@@ -59,8 +60,7 @@ class Sensitivity:
     drawn: Collection[str] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
-        if self.baseline not in self.results:
-            raise InvalidValueError(f"baseline must be one of {', '.join(self.results)}, got {self.baseline!r:.60}")
+        object.__setattr__(self, "baseline", checks.one_of("baseline", self.baseline, self.results))
         shapes = {label: dict(dataset["outcome"].sizes) for label, dataset in self.datasets.items()}
         odd = next((label for label, shape in shapes.items() if shape != shapes[self.baseline]), None)
         if odd is not None:
@@ -103,7 +103,8 @@ class Sensitivity:
             the histories, and is missing (NaN) where nothing is drawn. A choice compared with itself is known to flip
             nothing.
         """
-        a, b = (self._of(label, self.datasets)["outcome"] for label in (first, second))
+        first, second = (checks.one_of("choice", label, self.labels) for label in (first, second))
+        a, b = (self.datasets[label]["outcome"] for label in (first, second))
         if first == second:
             return replace(flips_of(a.values, b.values), low=0.0, high=0.0)
         drawn = not {first, second}.isdisjoint(self.drawn)
@@ -174,7 +175,8 @@ class Sensitivity:
         InvalidValueError
             If the study has no such curves.
         """
-        pair = [self._of(label, self.results) for label in (baseline or self.baseline, choice)]
+        both = (baseline or self.baseline, choice)
+        pair = [self.results[checks.one_of("choice", each, self.labels)] for each in both]
         if state not in self.states:
             known = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
             raise InvalidValueError(f"state must be one of the study's, {known}; got {state!r:.60}")
@@ -262,11 +264,6 @@ class Sensitivity:
         ]
         return "; ".join(words) + "."
 
-    def _of(self, label: str, by_label: dict[str, Any]) -> Any:
-        if label not in by_label:
-            raise InvalidValueError(f"choice must be one of {', '.join(self.labels)}, got {label!r:.60}")
-        return by_label[label]
-
 
 def _dataset(label: str, result: Any) -> "xr.Dataset":
     data = getattr(result, "dataset", result)
@@ -349,9 +346,7 @@ def sensitivity(
     if not callable(study):
         raise InvalidValueError(f"study must be a function that takes restitution=, got {study!r:.60}")
     choices = named_restitutions(restitutions)
-    first = next(iter(choices)) if baseline is None else baseline
-    if first not in choices:
-        raise InvalidValueError(f"baseline must be one of {', '.join(choices)}, got {baseline!r:.60}")
+    first = next(iter(choices)) if baseline is None else checks.one_of("baseline", baseline, choices)
     results = {label: study(restitution=choice) for label, choice in choices.items()}
     drawn = [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == _RANDOM]
     return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, drawn=drawn)
