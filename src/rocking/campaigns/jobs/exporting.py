@@ -46,6 +46,7 @@ from rocking.tables import (
     to_netcdf,
     to_parquet,
 )
+from rocking.tables.table import written_whole
 
 MOST_REPETITIONS = 100_000  # most repetitions of a bootstrap
 COMPARED = ("flips", "differences")  # tables of a comparison
@@ -149,26 +150,21 @@ def export(
     target, what = checked(folder, path, what, restitution, crossing, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
-    unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
-    with disk.guarded(target.parent, lambda: "the campaign itself is safe"):
-        try:
-            if what in ANALYSES:
-                _write_fragility(folder, unfinished, what, restitution, crossing, bootstrap)
-            elif what == MEASURES:
-                ranking = measure_comparison(folder, restitution, progress)
-                provenance |= {"measures_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
-                provenance |= {} if restitution is None else {"restitution": restitution}
-                _write_tables([measures_table(ranking)], unfinished, attributes_of(folder, provenance))
-            elif what in COMPARED:
-                table = comparison_table(comparison(folder), what)
-                _write_tables([table], unfinished, attributes_of(folder, provenance))
-            else:
-                _write_study(folder, unfinished, what, attributes_of(folder, provenance), progress)
-            if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
-                write_provenance(provenance, target)
-            unfinished.replace(target)
-        finally:
-            unfinished.unlink(missing_ok=True)
+    with disk.guarded(target.parent, lambda: "the campaign itself is safe"), written_whole(target) as unfinished:
+        if what in ANALYSES:
+            _write_fragility(folder, unfinished, what, restitution, crossing, bootstrap)
+        elif what == MEASURES:
+            ranking = measure_comparison(folder, restitution, progress)
+            provenance |= {"measures_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
+            provenance |= {} if restitution is None else {"restitution": restitution}
+            _write_tables([measures_table(ranking)], unfinished, attributes_of(folder, provenance))
+        elif what in COMPARED:
+            table = comparison_table(comparison(folder), what)
+            _write_tables([table], unfinished, attributes_of(folder, provenance))
+        else:
+            _write_study(folder, unfinished, what, attributes_of(folder, provenance), progress)
+        if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
+            write_provenance(provenance, target)
     return target
 
 
@@ -200,9 +196,8 @@ def checked(
 ) -> tuple[Path, str]:  # fmt: skip
     """Return the file and what it will hold, after refusing what `export` would."""
     target = target_of(path)
-    what, suffix = exports_of(folder)[0] if what is None else what, target.suffix.lower()
-    if what not in ENDINGS:
-        raise InvalidValueError(f"what must be one of {', '.join(ENDINGS)}, got {what!r:.60}")
+    what = exports_of(folder)[0] if what is None else checks.one_of("what", what, ENDINGS)
+    suffix = target.suffix.lower()
     if suffix not in ENDINGS[what]:
         more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
