@@ -2,7 +2,7 @@
 
 from rocking.tables.arrays import add_to_netcdf, to_dataset, to_mat, to_netcdf
 from rocking.tables.rows import to_csv, to_dataframe, to_excel, to_parquet
-from rocking.tables.table import PIECE, Cell, Column, Grid, Table, escaped, safe_cell, target_of, text_array
+from rocking.tables.table import PIECE, Cell, Column, Grid, Table, escaped, prefixed, safe_cell, target_of, text_array
 
 __all__ = [
     "PIECE",
@@ -12,6 +12,7 @@ __all__ = [
     "Table",
     "add_to_netcdf",
     "escaped",
+    "prefixed",
     "safe_cell",
     "target_of",
     "text_array",

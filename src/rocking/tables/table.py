@@ -272,6 +272,14 @@ def text_array(values: Sequence[Any]) -> np.ndarray:
     return array
 
 
+def prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
+    """Return columns under names by which several tables fit into one file."""
+    return {
+        name: Column(each.values, each.unit, each.meaning, f"{prefix}_{each.variable or name}")
+        for name, each in columns.items()
+    }
+
+
 def decoded(columns: Mapping[str, Column]) -> dict[str, Column]:
     """Return columns as people read them: after each column of codes one that says what they stand for."""
     every = {}

@@ -25,7 +25,7 @@ from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import Question, modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
-from rocking.tables import PIECE, Column, Table, text_array
+from rocking.tables import PIECE, Column, Table, prefixed, text_array
 
 MOST_POINTS = 10_000_000  # points of a map that is refined: they take less than 2 GiB of memory
 _PROBES = 1024
@@ -214,41 +214,30 @@ class MapSearch:
 
 
 def _points(points: RefinedMap, plane: Plane) -> Table:
-    x, y = plane.x, plane.y
-    mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
-    base, meaning = points.base.astype(np.int64), "1 for points of the map itself, 0 for new ones"
     columns = {
-        "x": (x.name, points.x, x.unit, x.words),
-        "y": (y.name, points.y, y.unit, y.words),
-        "mode": ("mode", points.modes, mode.unit, mode.meaning),
-        "peak_ratio": ("peak_ratio", points.peak_ratio, ratio.unit, ratio.meaning),
-        "base": ("base", base, "1", meaning),
+        plane.x.name: Column(points.x, plane.x.unit, plane.x.words, "x"),
+        plane.y.name: Column(points.y, plane.y.unit, plane.y.words, "y"),
+        "mode": Column.of("mode", points.modes),
+        "peak_ratio": Column.of("peak_ratio", points.peak_ratio),
+        "base": Column(points.base.astype(np.int64), "1", "1 for points of the map itself, 0 for new ones"),
     }
-    return Table("point", _columns("refined", columns))
+    return Table("point", prefixed("refined", columns))
 
 
 def _vertices(lines: list[Polyline], plane: Plane) -> Table:
-    x, y = plane.x, plane.y
+    x, y, mode = plane.x, plane.y, QUANTITIES["mode"]
     sizes = [len(line.points) for line in lines]
     points = np.concatenate([np.empty((0, 2)), *(line.points for line in lines)])
     modes = np.concatenate([np.empty((0, 2), np.int64), *(line.modes for line in lines)])
     closed = np.repeat(np.array([line.closed for line in lines], np.int64), sizes)
     regions = text_array([line.region for line in lines for _ in line.points])
-    unit, meaning = QUANTITIES["mode"].unit, QUANTITIES["mode"].meaning
     columns = {
-        "line": ("line", np.repeat(np.arange(len(lines)), sizes), "1", "number of the polyline"),
-        "region": ("region", regions, "1", "what lies inside"),
-        "closed": ("closed", closed, "1", "1 if the polyline ends where it starts"),
-        "x": (x.name, points[:, 0], x.unit, x.words),
-        "y": (y.name, points[:, 1], y.unit, y.words),
-        "mode_outside": ("mode_outside", modes[:, 0], unit, f"outside: {meaning}"),
-        "mode_inside": ("mode_inside", modes[:, 1], unit, f"inside: {meaning}"),
+        "line": Column(np.repeat(np.arange(len(lines)), sizes), "1", "number of the polyline"),
+        "region": Column(regions, "1", "what lies inside"),
+        "closed": Column(closed, "1", "1 if the polyline ends where it starts"),
+        x.name: Column(points[:, 0], x.unit, x.words, "x"),
+        y.name: Column(points[:, 1], y.unit, y.words, "y"),
+        "mode_outside": Column(modes[:, 0], mode.unit, f"outside: {mode.meaning}"),
+        "mode_inside": Column(modes[:, 1], mode.unit, f"inside: {mode.meaning}"),
     }
-    return Table("vertex", _columns("boundary", columns))
-
-
-def _columns(prefix: str, columns: dict[str, tuple[str, np.ndarray, str, str]]) -> dict[str, Column]:
-    """Return columns of name, values, unit and meaning, each under a name by which all tables fit into one file."""
-    return {
-        name: Column(values, unit, meaning, f"{prefix}_{key}") for key, (name, values, unit, meaning) in columns.items()
-    }
+    return Table("vertex", prefixed("boundary", columns))

@@ -21,7 +21,7 @@ from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, sea
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
-from rocking.tables import Column, Table, text_array
+from rocking.tables import Column, Table, prefixed, text_array
 
 # histories of later rounds over those of the first, by what the motions are
 _LATER = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
@@ -137,7 +137,7 @@ def tables_of(
     for name, (unit, meaning) in described.items():
         values = np.array([row[name] for row in rows], np.int64 if name in _COUNTS else np.float64)
         columns[name] = Column(values, unit, meaning)
-    minima = Table("case", _prefixed("case", columns))
+    minima = Table("case", prefixed("case", columns))
     known = [(k, each) for k, each in enumerate(crossings) if each is not None and len(each)]
     case = np.repeat(np.array([k for k, _ in known], np.int64), [len(each) for _, each in known])
     columns = _places(case, shape, names)
@@ -146,7 +146,7 @@ def tables_of(
     modes = np.concatenate([np.empty((0, 2), np.int64), *(c.modes for _, c in known)])
     for place, name in enumerate(("mode_below", "mode_above")):
         columns[name] = Column(modes[:, place], "1", f"just {name[5:]}: {_MODE}")
-    return {"crossings": Table("crossing", _prefixed("crossing", columns)), "minima": minima}
+    return {"crossings": Table("crossing", prefixed("crossing", columns)), "minima": minima}
 
 
 def _row(crossings: Transitions | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
@@ -165,8 +165,3 @@ def _places(case: np.ndarray, shape: tuple[int, int, int], names: Mapping[str, l
         "restitution": Column(text_array([names["restitution"][k] for k in restitution]), "1", "restitution"),
         "body": Column(np.asarray(body, np.int64), "1", "number of the body in the job"),
     }
-
-
-def _prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
-    """Give the columns names under which both tables fit into one file."""
-    return {name: Column(each.values, each.unit, each.meaning, f"{prefix}_{name}") for name, each in columns.items()}
