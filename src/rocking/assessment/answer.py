@@ -13,7 +13,7 @@ from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
-from rocking.studies.remedies import Remedies, millimetres
+from rocking.studies.remedies import Remedies, millimetres, rounded_up
 
 
 def just_above(factor: float) -> float:
@@ -23,12 +23,6 @@ def just_above(factor: float) -> float:
 
 def _degrees(angle: float) -> str:
     return f"{math.degrees(angle) % 360.0:.0f} deg"
-
-
-def upwards(value: float, digits: int = 3) -> float:
-    """Return what is demanded with so many digits, never less than it is."""
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value > 0.0 else 1.0
-    return math.ceil(value / step - 1e-9) * step
 
 
 @dataclass(frozen=True, eq=False)
@@ -314,10 +308,11 @@ class BodyAssessment:
         if not remedy.needed:
             return (f"Nothing: it does not lift under {ask}.",)
         both = " and ".join(
-            f"{upwards(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items()
+            f"{rounded_up(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items()
         )
         found = [
-            f"Anchors that keep it from lifting under {ask}: {both}; shear {upwards(remedy.shear / 1e3):.3g} kN in all."
+            f"Anchors that keep it from lifting under {ask}: {both}; shear "
+            f"{rounded_up(remedy.shear / 1e3):.3g} kN in all."
         ]
         for change, what in (
             (remedy.wider, "Base wider by {} on each side"), (remedy.lower, "Centre of mass lower by {}"),

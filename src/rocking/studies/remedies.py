@@ -152,6 +152,16 @@ def millimetres(length: float) -> int:
     return math.ceil(1e3 * length - 1e-9)
 
 
+def rounded_up(value: float) -> float:
+    """Return what is demanded in three digits, never less than it is.
+
+    >>> rounded_up(2588.96), rounded_up(0.062), rounded_up(0.0)
+    (2590.0, 0.062, 0.0)
+    """
+    digits = 2 - math.floor(math.log10(value)) if value > 0.0 else 0
+    return round(math.ceil(value * 10.0**digits - 1e-9) / 10.0**digits, max(digits, 0))
+
+
 @dataclass(frozen=True)
 class LengthChange:
     """How far a length must be changed."""

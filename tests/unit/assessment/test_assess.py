@@ -11,7 +11,7 @@ import pytest
 import rocking as rk
 import rocking.studies.remedies
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
-from rocking.assessment.answer import millimetres, upwards
+from rocking.assessment.answer import millimetres, rounded_up
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
@@ -100,7 +100,7 @@ def test_what_is_demanded_is_never_rounded_down():
         exact += [asked.isolation[0], 1e3 * asked.isolation[1]]
         for words, value in zip(map(float, itertools.chain(*said)), filter(None, exact), strict=True):
             assert value * (1.0 - 1e-9) <= words < 1.01 * value + 1.0
-    assert (upwards(12.34), upwards(12.3), upwards(0.0), millimetres(0.0031), millimetres(0.003)) == (
+    assert (rounded_up(12.34), rounded_up(12.3), rounded_up(0.0), millimetres(0.0031), millimetres(0.003)) == (
         pytest.approx(12.4), pytest.approx(12.3), 0.0, 4, 3,
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ from rocking.language import Language, language
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.plan import PlanEntry
+from rocking.studies.remedies import rounded_up
 from rocking.tables import escaped
 
 COLUMNS = (
@@ -305,16 +306,6 @@ def model_note(verdict: Verdict, assessment: Assessment) -> str:
 def rotation_words(value: float | None, say: Language) -> str:
     """Return a peak rotation over the slenderness angle in words; None overturns."""
     return say("report.overturns") if value is None else say.number(f"{value:.2f}")
-
-
-def rounded_up(value: float) -> float:
-    """Return what is demanded in three digits, never less than it is.
-
-    >>> rounded_up(2588.96), rounded_up(0.062), rounded_up(0.0)
-    (2590.0, 0.062, 0.0)
-    """
-    digits = 2 - math.floor(math.log10(value)) if value > 0.0 else 0
-    return round(math.ceil(value * 10.0**digits - 1e-9) / 10.0**digits, max(digits, 0))
 
 
 def _demanded(value: float, say: Language) -> str:
