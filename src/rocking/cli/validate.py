@@ -14,7 +14,7 @@ from rocking.cli.page import Page, bar, deliver
 if TYPE_CHECKING:
     from rocking.spec.document import ValidationDocument
     from rocking.spec.reading import InputFiles
-    from rocking.spec.validation import FolderFiles, FolderValidation
+    from rocking.spec.validation import FolderValidation
 
 TABLES = ("body", "motion", "settings", "predict")
 NOTE = "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
@@ -43,11 +43,11 @@ def validate(
 ) -> None:
     """Print how good predictions of a folder's trials are, beside the plain curve that they must beat."""
     from rocking.cli.arguments import as_typed
-    from rocking.spec.validation import FolderFiles, ValidationProblem
+    from rocking.spec.validation import ValidationProblem, files_of
 
     exports = Exports.of(out, EXPORTS)
-    files = FolderFiles.of(folder)
-    document, inputs = _document(context, files)
+    files = files_of(folder)
+    document, inputs = _document(context, files[0])
     with as_typed():
         problem = ValidationProblem.of(document, files, inputs)
         with bar("motions", len(problem.motions), quiet=as_json) as progress:
@@ -55,7 +55,7 @@ def validate(
     deliver(ValidationAnswer(found), exports, as_json=as_json)
 
 
-def _document(context: typer.Context, files: "FolderFiles") -> "tuple[ValidationDocument, InputFiles]":
+def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, InputFiles]":
     from rocking.cli.arguments import Arguments, as_typed
     from rocking.spec.document import ValidationDocument
     from rocking.spec.reading import CommandFiles, checked, located, tables_in
@@ -71,12 +71,12 @@ def _document(context: typer.Context, files: "FolderFiles") -> "tuple[Validation
         "settings": arguments.table("settings", {}),
         "motion": arguments.table("motion", {"units": arguments.acceleration}),
     }
-    stated: dict[str, Any] = {"body": {"file": files.body.name}}
-    if is_question(files.body):
-        stated = dict(tables_in(files.body) or {})
-    with located(files.body.name), as_typed():
+    stated: dict[str, Any] = {"body": {"file": body.name}}
+    if is_question(body):
+        stated = dict(tables_in(body) or {})
+    with located(body.name), as_typed():
         whole = {**stated, **{name: {**stated.get(name, {}), **keys} for name, keys in typed.items() if keys}}
-        return checked(ValidationDocument, whole), CommandFiles(files.body.parent)
+        return checked(ValidationDocument, whole), CommandFiles(body.parent)
 
 
 @dataclass(frozen=True)

@@ -27,21 +27,13 @@ _PLAIN = {
 }
 
 
-@dataclass(frozen=True)
-class InputFile:
-    """A file that a job names."""
-
-    path: str  # as the job names it, or as its pattern finds it: relative to the folder of the job file
-    sha256: str  # hash of its bytes, 64 hexadecimal digits
-    size: int  # its length [bytes]
-
-
 @dataclass
 class InputFiles:
     """The files that a job names, hashed when they are asked for."""
 
     folder: Path  # folder of the job file
-    files: dict[str, InputFile] = field(default_factory=dict)
+    # by the name of the job, or as its pattern finds it: path, sha256, and bytes
+    files: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def file(self, name: str) -> Path:
         """Return the path of a file, and note its hash."""
@@ -55,7 +47,7 @@ class InputFiles:
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
             raise InvalidValueError(f"{name}: {why}; files are relative to the job file, here {self.folder}") from error
-        self.files[name] = InputFile(name, digest.hexdigest(), size)
+        self.files[name] = {"path": name, "sha256": digest.hexdigest(), "bytes": size}
         return path
 
     def named(self, pattern: str) -> list[str]:
@@ -75,7 +67,7 @@ class InputFiles:
 
     def facts(self) -> list[dict[str, Any]]:
         """Return the files as plain values, in the order of their names."""
-        return [{"path": f.path, "sha256": f.sha256, "bytes": f.size} for _, f in sorted(self.files.items())]
+        return [self.files[name] for name in sorted(self.files)]
 
 
 class CommandFiles(InputFiles):

@@ -26,25 +26,17 @@ if TYPE_CHECKING:
 _HOW = "a folder holds one body file, record files, and one table of outcomes"
 
 
-@dataclass(frozen=True)
-class FolderFiles:
-    """The two files of a folder that say what is tried and what was seen; records are named by the table."""
-
-    body: Path
-    outcomes: Path
-
-    @classmethod
-    def of(cls, folder: Path) -> "FolderFiles":
-        """Return them, refusing a folder that does not have exactly one of each."""
-        if not folder.is_dir():
-            raise InvalidValueError(f"{folder}: no such folder; {_HOW}")
-        files = sorted(path for path in folder.iterdir() if path.is_file())
-        seen = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
-        bodies = [path for path in files if path.suffix.lower() in FORMATS]
-        # a file that says everything may name another one as its body
-        asked = [path for path in bodies if is_question(path)]
-        body = _one(asked or bodies, folder, f"body file ({', '.join(FORMATS)})")
-        return cls(body, _one(seen, folder, "table of outcomes, a .csv file with the columns motion and overturned"))
+def files_of(folder: Path) -> tuple[Path, Path]:
+    """Return the one body file of a folder and its one table of outcomes, which names the records."""
+    if not folder.is_dir():
+        raise InvalidValueError(f"{folder}: no such folder; {_HOW}")
+    files = sorted(path for path in folder.iterdir() if path.is_file())
+    seen = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
+    bodies = [path for path in files if path.suffix.lower() in FORMATS]
+    # a file that says everything may name another one as its body
+    asked = [path for path in bodies if is_question(path)]
+    body = _one(asked or bodies, folder, f"body file ({', '.join(FORMATS)})")
+    return body, _one(seen, folder, "table of outcomes, a .csv file with the columns motion and overturned")
 
 
 def is_question(path: Path) -> bool:
@@ -120,11 +112,11 @@ class ValidationProblem:
     name: str
 
     @classmethod
-    def of(cls, document: "ValidationDocument", files: FolderFiles, inputs: InputFiles) -> "ValidationProblem":
-        """Return what a folder says."""
+    def of(cls, document: "ValidationDocument", files: tuple[Path, Path], inputs: InputFiles) -> "ValidationProblem":
+        """Return what a folder says; files: its body file, and its table of outcomes."""
         with located("body"):
             body = any_body_of(document.body, inputs)
-        outcomes = Outcomes.read(files.outcomes)
+        outcomes = Outcomes.read(files[1])
         records = _Records(inputs, document.motion.model_dump(exclude_none=True, exclude={"scale"}))
         trials, refused, motions = list[Trial](), list(outcomes.refused), dict[Any, Any]()
         for trial in outcomes.trials:
@@ -138,7 +130,7 @@ class ValidationProblem:
             why = f"; line {refused[0].line}: {refused[0].reason}" if refused else "; it has no rows"
             raise InvalidValueError(f"{outcomes.source}: no row could be taken{why}")
         options = {**options_of(document, body, inputs), "shares": False}
-        name = files.body.stem
+        name = files[0].stem
         clusters = tuple(" ".join(records.place(word)["record"] for _, word in trial.files) for trial in trials)
         return cls(body, options, outcomes, tuple(trials), tuple(refused), clusters, motions, name)
 
