@@ -1,10 +1,4 @@
-"""Bootstrap: the study repeated many times on the computer, all repetitions fitted at once.
-
-Few records of one capacity each are repeated at the ends themselves: a parameter belongs to the interval unless what
-was found would be among the rarest 2.5 % at either end, had the parameter this value (Neyman 1937,
-doi:10.1098/rsta.1937.0005). Repetitions of the study as it was fitted would be too narrow: where few capacities happen
-to lie between the same levels, so do most of theirs.
-"""
+"""Bootstrap: the study repeated many times on the computer, all repetitions fitted at once."""
 
 import math
 from collections.abc import Callable

@@ -1,8 +1,4 @@
-"""Lognormal fragility by maximum likelihood: P(failure | im) = Phi(ln(im / median) / dispersion).
-
-J. W. Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra 31
-(2015) 579-599, whose likelihood this maximises; inside, the curve is Phi(a + b ln im), in which it is concave.
-"""
+"""Lognormal fragility by maximum likelihood: P(failure | im) = Phi(ln(im / median) / dispersion)."""
 
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass

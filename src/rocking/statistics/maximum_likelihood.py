@@ -1,12 +1,4 @@
-"""Likeliest curves, each with the proof that it is a maximum, and whether the data fix one at all, in words.
-
-A curve is Phi(a + b u) with the position u of a level in a scale near one; standard errors are from the observed
-information, or from the scores of whole clusters.
-
-Decided exactly, from the order of the levels, never by iterating: A. Albert and J. A. Anderson, On the existence of
-maximum likelihood estimates in logistic regression models, Biometrika 71 (1984) 1-10; their conditions hold for probit
-as well, and with one covariate they are about order.
-"""
+"""Likeliest curves, each with the proof that it is a maximum, and whether the data fix one at all, in words."""
 
 from dataclasses import dataclass, replace
 from enum import Enum

@@ -1,9 +1,4 @@
-"""Nested states of one body: no rocking, rocking to a level, overturned; their lognormal curves.
-
-Fitted one by one, two curves of different dispersion cross at some level, beyond which overturning would be likelier
-than rocking: where, and by how much, is reported. By one likelihood of all states, with one dispersion, they never
-cross.
-"""
+"""Nested states of one body, whose curves cross if each is fitted by itself, and do not with one dispersion."""
 
 from dataclasses import dataclass
 from itertools import pairwise

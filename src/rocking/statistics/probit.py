@@ -1,11 +1,4 @@
-"""Probit likelihood of many data sets at once, safe however far in the tails a curve is tried; plain and penalised.
-
-Firth's penalised likelihood is the likelihood times Jeffreys' prior, whose maximum exists for separated data too:
-D. Firth, Bias reduction of maximum likelihood estimates, Biometrika 80 (1993) 27-38; for probit, I. Kosmidis and
-D. Firth, Jeffreys-prior penalty, finiteness and shrinkage in binomial-response generalized linear models, Biometrika
-108 (2021) 71-82, who prove that the estimates are always finite. For probit the prior takes most of the bias of
-maximum likelihood away, not exactly its leading term as it does for the logit.
-"""
+"""Probit likelihood of many data sets at once, safe however far in the tails a curve is tried; plain and penalised."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self

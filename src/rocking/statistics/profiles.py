@@ -1,8 +1,4 @@
-"""Profile-likelihood intervals and bands: every value that the data do not reject, however lopsided.
-
-Each end is where twice the fall of the constrained maximum reaches the chi-square quantile of one degree of freedom
-(Wilks 1938). Over rising curves the confidence region is convex, so that what it allows is one interval.
-"""
+"""Profile-likelihood intervals and bands: every value that the data do not reject, however lopsided."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -152,6 +148,7 @@ class Profile:
 
     def ends(self, constraint: Constraint, start: FloatArray, error: FloatArray, side: FloatArray) -> FloatArray:
         """Return where the profile has fallen by the quantile, one end a row; infinite where it never does."""
+        # over rising curves the confidence region is convex, so that what it allows is one interval
         result = side * np.inf
         closed = np.flatnonzero(self._root(constraint.limit(self.model, side)) > self.quantile)
         if closed.size:

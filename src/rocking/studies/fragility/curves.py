@@ -1,8 +1,4 @@
-"""Fragility curves apart from how they were found: what is exported, and what an analysis turns into.
-
-Curves of unlike dispersion always cross somewhere: where a worse state would be likelier than a lesser one, they are
-refused or fitted again with one dispersion.
-"""
+"""Fragility curves apart from how they were found: what is exported; those that cross are refused, or fitted again."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,4 @@
-"""What all fragility analyses share: a body under motions, limit states read from its responses, and their curves.
-
-No rocking, rocking beyond a level, overturned. Whether a body rocks at all is certain once PGA is known: that is a
-check of the histories, not a curve.
-"""
+"""What all fragility analyses share: a body under motions, limit states read from its responses, and their curves."""
 
 import math
 from abc import ABC, abstractmethod
