@@ -189,18 +189,18 @@ def _impossible(found: SolidMoments, box: FloatArray) -> str:
     if found.mass <= 0.0:
         return f"has the mass {found.mass:g} kg, which must be above zero"
     if (found.centre < low - slack).any() or (found.centre > high + slack).any():
-        return f"has its centre at {_put(found.centre)} m, outside its box {_put(low)} to {_put(high)} m"
+        return f"has its centre at {_at(found.centre)} m, outside its box {_at(low)} to {_at(high)} m"
     spread = np.asarray(np.linalg.eigvalsh(found.second), dtype=np.float64)
     if spread[0] < -_PART_SLACK * abs(spread[2]) or spread[2] <= 0.0:
         return (
-            f"has principal second moments {_put(spread)} kg m2, which must not be negative: its inertia breaks the "
+            f"has principal second moments {_at(spread)} kg m2, which must not be negative: its inertia breaks the "
             "triangle inequality"
         )
     most = found.mass * ((found.centre - low) * (high - found.centre) + slack * (high - low + slack))
     if (np.diag(found.second) > most).any():
         return (
-            f"has second moments {_put(np.diag(found.second))} kg m2 along x, y, z, more than any mass in its box can "
-            f"have, {_put(most)} kg m2"
+            f"has second moments {_at(np.diag(found.second))} kg m2 along x, y, z, more than any mass in its box can "
+            f"have, {_at(most)} kg m2"
         )
     return ""
 
@@ -220,7 +220,3 @@ def _out_of_hull(part: Part) -> str:
     if beyond > _PART_SLACK * float(np.ptp(vertices, axis=0).max()):
         return f"has its centre {beyond:.3g} m outside its convex hull"
     return ""
-
-
-def _put(values: FloatArray) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in values.tolist())})"

@@ -19,7 +19,7 @@ from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, decimated, hollowed, oriented_shells, turned_consistently
 from rocking.bodies.solid._skin import Surface, skin
 from rocking.bodies.solid.part import Part
-from rocking.bodies.solid.polyhedron import Polyhedron, alone, numbered, open_edges
+from rocking.bodies.solid.polyhedron import Polyhedron, alone, checked_triangles, numbered, open_edges
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
@@ -213,7 +213,7 @@ def repaired(
 ) -> Repaired:
     """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
     surface = checks.one_of("surface", surface, get_args(Surface))
-    vertices, faces = _triangles(vertices, faces, surface != "faces")
+    vertices, faces = checked_triangles(vertices, faces, int(surface == "faces"))
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
@@ -256,28 +256,6 @@ def _closed_surface(
 def _used(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     used, numbers = np.unique(faces, return_inverse=True)
     return points[used], numbers.reshape(faces.shape)
-
-
-def _triangles(vertices: FloatArray, faces: IntArray, cloud: bool) -> tuple[FloatArray, IntArray]:
-    points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
-    if points.ndim != 2 or points.shape[1:] != (3,):
-        raise GeometryError(f"vertices must be points (x, y, z) in m, got an array of shape {points.shape}")
-    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or not (len(numbers) or cloud):
-        raise GeometryError(
-            f"faces must be triangles, each of three vertex numbers, got {numbers.dtype} of shape {numbers.shape}"
-        )
-    finite = np.isfinite(points).all(axis=1)
-    if not finite.all():
-        bad = int(np.argmin(finite))
-        raise GeometryError(f"vertex {bad} must be finite, got {tuple(points[bad].tolist())}; is the file damaged?")
-    if len(points) < 4:
-        raise GeometryError(f"a closed surface has at least 4 vertices, got {len(points)}")
-    if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
-        raise GeometryError(
-            f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
-            "do the numbers start at 1, or belong to another list of vertices?"
-        )
-    return points, numbers.astype(np.int64)
 
 
 def _welded(

@@ -132,8 +132,8 @@ class SupportPolygon(Base):
         return SupportPolygon(moved if area > 0.0 else moved[::-1], self.height * scale + shift[2])
 
 
-def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:
-    """Return the convex hull of points (x, y) on a ground of some height [m], without points on its straight edges.
+def hull(points: ArrayLike) -> SupportPolygon:
+    """Return the convex hull of points (x, y) on the ground z = 0 [m], without points on its straight edges.
 
     >>> len(hull([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.0), (0.5, 0.5)]).vertices)
     4
@@ -150,7 +150,7 @@ def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:
             f"the body stands on {len(ordered)} point(s) of one line; it needs a base with an area: "
             "pass base= with the points it stands on, or raise base_tolerance"
         )
-    return SupportPolygon(np.array(chain), checks.number("height", height, "m"))
+    return SupportPolygon(np.array(chain))
 
 
 def _chain(points: FloatArray, slack: float) -> list[FloatArray]:

@@ -31,8 +31,7 @@ class Polyhedron(Shape):
     def __init__(
         self, vertices: ArrayLike, faces: ArrayLike, *, simple: bool = False, mended: Sequence[FloatArray] = ()
     ) -> None:
-        self.vertices = _vertices(vertices)
-        self.faces = _faces(faces, len(self.vertices))
+        self.vertices, self.faces = checked_triangles(vertices, faces)
         if count := len(open_edges(self.faces)):
             raise GeometryError(
                 f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
@@ -163,23 +162,25 @@ def open_edges(faces: IntArray) -> IntArray:
     return np.stack([left // base, left % base], axis=1)
 
 
-def _vertices(values: ArrayLike) -> FloatArray:
-    array = checks.real_array("vertices", values, "m")
-    if array.ndim != 2 or array.shape[1:] != (3,) or len(array) < 4:
-        raise GeometryError(f"vertices must be at least 4 points (x, y, z) in m, got an array of shape {array.shape}")
-    finite = np.isfinite(array).all(axis=1)
+def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) -> tuple[FloatArray, IntArray]:
+    """Return points [m] and the triangles between them; fewest: so many of these there must be."""
+    points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
+    if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 4:
+        raise GeometryError(f"vertices must be at least 4 points (x, y, z) in m, got an array of shape {points.shape}")
+    finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         bad = int(np.argmin(finite))
-        raise GeometryError(f"vertex {bad} must be finite, got {tuple(array[bad].tolist())}")
-    if np.abs(array).max() > checks.LARGEST:
+        raise GeometryError(f"vertex {bad} must be finite, got {tuple(points[bad].tolist())}; is the file damaged?")
+    if np.abs(points).max() > checks.LARGEST:
         raise GeometryError(f"coordinates must be within {checks.LARGEST:g} m of the origin; wrong unit?")
-    return array.copy()
-
-
-def _faces(values: ArrayLike, vertices: int) -> IntArray:
-    array = np.asarray(values)
-    if array.ndim != 2 or array.shape[1:] != (3,) or array.dtype.kind not in "iu" or len(array) < 4:
-        raise GeometryError("faces must be at least 4 triangles, each of three vertex numbers")
-    if array.min() < 0 or array.max() >= vertices:
-        raise GeometryError(f"faces must name vertices 0 to {vertices - 1}, got {array.min()} to {array.max()}")
-    return array.astype(np.int64)
+    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or len(numbers) < fewest:
+        raise GeometryError(
+            f"faces must be at least {fewest} triangles, each of three vertex numbers, got {numbers.dtype} of shape "
+            f"{numbers.shape}"
+        )
+    if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
+        raise GeometryError(
+            f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
+            "do the numbers start at 1, or belong to another list of vertices?"
+        )
+    return points.copy(), numbers.astype(np.int64)

@@ -302,7 +302,7 @@ def test_more_pairs_than_can_be_tried(monkeypatch):
         (CUBE.vertices, CUBE.faces * 1.0, "three vertex numbers"),
         (CUBE.vertices, CUBE.faces[:, :2], "three vertex numbers"),
         (CUBE.vertices, np.zeros((0, 3), dtype=int), "three vertex numbers"),
-        (CUBE.vertices[:, :2], CUBE.faces, "vertices must be points"),
+        (CUBE.vertices[:, :2], CUBE.faces, "vertices must be at least 4 points"),
     ],
 )
 def test_numbers_of_vertices_that_are_not_there(vertices, faces, words):
