@@ -102,12 +102,12 @@ def identify(  # noqa: PLR0913 - what is known beside the measurement
 
 
 def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
-    found = fit_times(measurement, known, None)
-    if found is None or found.track.clicks.size < 4:
+    found = fit_times(measurement, known)
+    if found is None or found[0].clicks.size < 4:
         return _nothing(measurement, "fewer than four times belong together as impacts")
-    track, refused, doubts = found.track, [], list(measurement.doubts)
+    (track, told), refused, doubts = found, [], list(measurement.doubts)
     times = measurement.times[track.clicks]
-    advantage = found.posterior.evidence - _steady(np.diff(times) / np.diff(track.impacts))
+    advantage = told.evidence - _steady(np.diff(times) / np.diff(track.impacts))
     missed, extra = int(np.ptp(track.impacts)) + 1 - track.impacts.size, track.within - track.clicks.size
     bounces = min(track.bounces, extra)
     outside = int(np.sum((measurement.times < times[0]) | (measurement.times > times[-1] + _AFTER)))
@@ -127,7 +127,7 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
     result = _result(
         measurement,
         known,
-        found.posterior,
+        told,
         known.first,
         refused,
         doubts,
@@ -138,31 +138,27 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
 
 
 def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
-    found = fit_series(measurement, known, None)
+    found = fit_series(measurement, known)
     if found is None:
         return _nothing(measurement, "the rotation does not pass through its middle often enough")
-    residuals = found.posterior.average(found.posterior.residuals)
-    total, at, refused = 0.0, 0, []
-    for row in found.rows:
-        part = residuals[at : at + row.values.size] * row.scale
-        total, at = (
-            max(total, float(part @ part) / float(((row.values - row.values.mean()) ** 2).sum())),
-            at + part.size,
-        )
+    told, rows, independent = found
+    parts = np.split(told.average(told.residuals), np.cumsum([row.values.size for row in rows])[:-1])
+    missed = [part * row.scale for row, part in zip(rows, parts, strict=True)]
+    about = [row.values - row.values.mean() for row in rows]
+    total = max(float(a @ a) / float((b**2).sum()) for a, b in zip(missed, about, strict=True))
+    refused = []
     if total > 1.0 - _EXPLAINED:
         refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
-    first: Foot = "right" if found.posterior.model.sides[0] == 0 else "left"
+    first: Foot = "right" if told.model.sides[0] == 0 else "left"
     doubts = list(measurement.doubts)
-    far = float(np.linalg.norm(found.posterior.average(found.posterior.u)[[FREQUENCY, SLENDERNESS]]))
+    far = float(np.linalg.norm(told.average(told.u)[[FREQUENCY, SLENDERNESS]]))
     if known.body is not None and far > _STRANGE:
         words = (
             f"it moves as a body of other sizes would, by {far:.2g} standard deviations of size_error; another clock?"
         )
         (refused if far > _FOREIGN else doubts).append(words)
-    result = _result(
-        measurement, known, found.posterior, first, refused, doubts, independent=found.independent, advantage=math.nan
-    )
-    return replace(result, residual_times=np.concatenate([row.time for row in found.rows]))
+    result = _result(measurement, known, told, first, refused, doubts, independent=independent, advantage=math.nan)
+    return replace(result, residual_times=np.concatenate([row.time for row in rows]))
 
 
 def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:

@@ -165,16 +165,8 @@ UNKNOWN_NOISE = Noise(3e-4, 1.2)
 _USUAL = 0.9
 
 
-@dataclass(frozen=True, eq=False)
-class TimesFit:
-    """The impacts among the times, and the posterior."""
-
-    track: Track
-    posterior: Posterior
-
-
-def fit_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None) -> TimesFit | None:
-    """Return what impact times say, or None if no three of them belong together."""
+def fit_times(measurement: ImpactTimes, known: Knowledge) -> tuple[Track, Posterior] | None:
+    """Return the impacts among the times, and what they say; None if no three of them belong together."""
     sure = np.full(measurement.times.size, 0.98) if measurement.probabilities is None else measurement.probabilities
     noise = UNKNOWN_NOISE if measurement.sigma is None else Noise(measurement.sigma)
     guess = max(2.0 * noise.median, 1e-3) if noise.dispersion else noise.median
@@ -191,7 +183,7 @@ def fit_times(measurement: ImpactTimes, known: Knowledge, scatter: float | None)
     observer = Clicks(times, track.impacts - first)
     speeds = speeds_between(times, observer.impacts, known, frequency[0])
     model = known.model(known.sides(speeds.size), float(times[0]), speeds, frequency)
-    return TimesFit(track, posterior(model, observer, scatter, noise, lambda s: start(model, speeds, s)))
+    return track, posterior(model, observer, None, noise, lambda s: start(model, speeds, s))
 
 
 def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p: float) -> FloatArray:

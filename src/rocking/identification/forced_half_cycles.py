@@ -11,6 +11,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray, g
 from rocking.dynamics.contact.batch import module
 from rocking.dynamics.plane.equations import angular_acceleration, reactions
 from rocking.dynamics.settings import NEVER_SLIDES
+from rocking.identification.measurement import white_noise
 from rocking.motions.motion import GroundMotion
 
 _LONGEST = 0.03  # step, as p times time
@@ -175,8 +176,7 @@ class Excursions:
 
 def excursions_of(time: FloatArray, rotation: FloatArray, share: float) -> Excursions:
     """Return them of a rotation that is zero at rest; share: least rotation over the range."""
-    noise = float(np.median(np.abs(np.diff(rotation, 2)))) / (0.6745 * np.sqrt(6.0))
-    least = max(_NOISES * noise, share * float(np.ptp(rotation)))
+    least = max(_NOISES * white_noise(rotation), share * float(np.ptp(rotation)))
     side = np.where(np.abs(rotation) > least, np.sign(rotation), 0.0)
     cuts = np.flatnonzero(np.diff(side) != 0.0) + 1
     first, last = np.concatenate([[0], cuts]), np.concatenate([cuts, [side.size]]) - 1

@@ -26,7 +26,7 @@ from rocking.identification.forced_model import (
     Forced,
     fitted,
 )
-from rocking.identification.measurement import RotationSeries
+from rocking.identification.measurement import RotationSeries, white_noise
 from rocking.identification.posterior import Knowledge
 from rocking.identification.series import correlation
 from rocking.motions.motion import GroundMotion
@@ -82,8 +82,7 @@ def rotation_of(problem: Forced, shared: FloatArray) -> FloatArray:
     turning = np.asarray(series.angular_velocity) - shared[OFFSET + 1] - shared[DRIFT + 1] * problem.line
     found = np.concatenate([[0.0], np.cumsum(0.5 * (turning[1:] + turning[:-1]) * np.diff(time))])
     # where nothing turns for a while it rests, and so it does at the begin
-    noise = float(np.median(np.abs(np.diff(turning, 2)))) / (0.6745 * math.sqrt(6.0))
-    loud = np.flatnonzero(np.abs(turning) > 4.0 * noise)
+    loud = np.flatnonzero(np.abs(turning) > 4.0 * white_noise(turning))
     edges = np.concatenate([[0], loud, [time.size - 1]])
     calm = np.flatnonzero(np.diff(edges) > max(10, 0.3 / float(np.median(np.diff(time)))))
     if not calm.size:
@@ -151,9 +150,8 @@ def _misfits(problem: Forced, x: FloatArray, shifts: FloatArray) -> FloatArray:
 
 
 def noise_of(problem: Forced) -> FloatArray:
-    """Return the standard deviation of the noise of each kind of sample, from second differences."""
-    each = [np.diff(getattr(problem.series, KINDS[k]), 2) for k in problem.kinds]
-    return np.array([float(np.median(np.abs(d))) / (0.6745 * math.sqrt(6.0)) for d in each])
+    """Return the standard deviation of the noise of each kind of sample."""
+    return np.array([white_noise(getattr(problem.series, KINDS[k])) for k in problem.kinds])
 
 
 def deviations(problem: Forced, fit: Fit) -> FloatArray:

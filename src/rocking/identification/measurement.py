@@ -1,5 +1,6 @@
 """What was measured of a body that rocks: when it hit the ground, or how it turned."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,6 +114,11 @@ class RotationSeries:
         for name, unit in (("rotation", "rad"), ("angular_velocity", "rad/s")):
             if (values := getattr(self, name)) is not None:
                 object.__setattr__(self, name, _row(name, values, unit, time.size))
+
+
+def white_noise(values: FloatArray) -> float:
+    """Return the standard deviation of the noise of samples, from their second differences."""
+    return float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * math.sqrt(6.0))
 
 
 def _row(name: str, values: object, unit: str, size: int | None = None) -> FloatArray:

@@ -10,13 +10,13 @@ from numpy.polynomial import Polynomial
 from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import state_space
 from rocking.identification.association import speeds_between, start
-from rocking.identification.measurement import RotationSeries
+from rocking.identification.measurement import RotationSeries, white_noise
 from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
 from rocking.identification.state_space import SHARED, Path
 
 _STEP = 1e-7  # of ln of the speed
 _MOST, _LOOKED_AT = 3000, 20_000
-_FEWEST, _ROUNDS = 3, 3
+_FEWEST, _ROUNDS, _SCATTER = 3, 3, 0.03
 _NOISES = 6.0  # below so many standard deviations of the noise nothing turns any more
 
 
@@ -87,18 +87,8 @@ class SampledSeries:
         return residual / row.scale, slopes / row.scale
 
 
-@dataclass(frozen=True, eq=False)
-class SeriesFit:
-    """What a series says, and how far its noise is correlated."""
-
-    posterior: Posterior
-    rows: tuple[Row, ...]
-    impacts: FloatArray  # [s]
-    independent: float  # samples that count
-
-
-def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) -> SeriesFit | None:
-    """Return what a series says, or None if it does not cross its middle often enough."""
+def fit_series(series: RotationSeries, known: Knowledge) -> tuple[Posterior, tuple[Row, ...], float] | None:
+    """Return the posterior, the rows and how many samples count; None if it does not cross its middle often enough."""
     crossings, first = impacts_of(series)
     if crossings.size < _FEWEST:
         return None
@@ -112,15 +102,13 @@ def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) 
         frequency = min(known.frequencies, key=lambda each: _misfit(each, crossings, known, rows))
     speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
     model = known.model(known.sides(speeds.size), float(crossings[0]), speeds, frequency)
-    fixed = scatter if scatter is not None else 0.03
     spread = np.array([float(np.ptp(row.values)) * 0.02 for row in rows])
     begin: Callable[[FloatArray], FloatArray] = lambda s: start(model, speeds, s)  # noqa: E731
     impacts = crossings
     for _ in range(_ROUNDS):
         used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
-        found = posterior(model, SampledSeries(used, model.sides), fixed, Noise(float(spread[0])), begin)
-        u, at = found.u[0], fixed
-        begin = partial(_rescaled, u, at)
+        found = posterior(model, SampledSeries(used, model.sides), _SCATTER, Noise(float(spread[0])), begin)
+        begin = partial(_rescaled, found.u[0], _SCATTER)
         impacts = model.path(found.u, found.scatter).times[0]
         parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in used])[:-1])
         each = [correlation(part) for part in parts]
@@ -129,10 +117,8 @@ def fit_series(series: RotationSeries, known: Knowledge, scatter: float | None) 
             for row, part, one in zip(used, parts, each, strict=True)
         ])  # fmt: skip
     used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
-    found = posterior(model, SampledSeries(used, model.sides), scatter, Noise(float(spread[0])), begin)
-    return SeriesFit(
-        found, used, impacts, float(sum(row.values.size / one for row, one in zip(used, each, strict=True)))
-    )
+    found = posterior(model, SampledSeries(used, model.sides), None, Noise(float(spread[0])), begin)
+    return found, used, float(sum(row.values.size / one for row, one in zip(used, each, strict=True)))
 
 
 def _away(row: Row, impacts: FloatArray, scale: float) -> Row:
@@ -149,8 +135,7 @@ def impacts_of(series: RotationSeries) -> tuple[FloatArray, Foot]:
         steps = 0.5 * (turning[1:] + turning[:-1]) * np.diff(time)
         values, degree = np.concatenate([[0.0], np.cumsum(steps)]), 2
         values = values - np.median(turning) * (time - time[0])
-    noise = float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6.0))
-    least = max(_NOISES * noise, 0.01 * float(np.ptp(values)))
+    least = max(_NOISES * white_noise(values), 0.01 * float(np.ptp(values)))
     values = _about_middle(time, values, degree, least)
     ends = _changes(values, least)
     if ends.size == 0:
@@ -200,7 +185,7 @@ def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowle
     """How far the first half cycle is from what was measured, for a frequency parameter."""
     speeds = speeds_between(crossings, np.arange(crossings.size), known, frequency[0])
     model = known.model(known.sides(speeds.size), float(crossings[0]), speeds, frequency)
-    path = model.path(start(model, speeds, np.array([0.03])), np.array([0.03]))
+    path = model.path(start(model, speeds, np.array([_SCATTER])), np.array([_SCATTER]))
     residual = SampledSeries(rows, model.sides).residuals(path)[0]
     return float((residual**2).sum())
 

@@ -99,7 +99,7 @@ _BELOW_OVERTURNING = 1.0 - 1e-9
 _ROUNDING = 1e-14
 _STEEPEST = 1.5  # slenderness angle [rad]
 _PART = 128  # rows of a product small enough that a library of linear algebra starts no threads, which wait and burn
-_PATIENCE, _FAR_BEHIND = 12, 100.0  # steps, ln of the probability density
+_STEPS, _PATIENCE, _FAR_BEHIND = 40, 12, 100.0  # at most; steps, ln of the probability density
 _CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
 
 
@@ -259,16 +259,14 @@ class Laplace:
     converged: BoolArray  # g
 
 
-def laplace(
-    model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray, steps: int = 40
-) -> Laplace:
+def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray) -> Laplace:
     """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
     u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
     damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
     eye = np.eye(model.size)
     parts = [slice(k, k + _PART) for k in range(0, best[1].shape[1], _PART)]
-    for taken in range(steps):
+    for taken in range(_STEPS):
         if taken == _PATIENCE:  # what is far behind by then weighs nothing
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
