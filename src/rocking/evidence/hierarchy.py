@@ -1,13 +1,4 @@
-"""The calibration that knows who measured what: rows of one block, interface and laboratory deviate together.
-
-The calibrated default as in `rocking.evidence.calibration`, but its scatter has shares: what all rows of a laboratory
-have in common, what those of a group with one interface, what those of one block, and what each row has alone. A new
-body on a new interface meets all of them, so that its interval is wider where few interfaces were measured.
-
-Priors: as there for eta, k, s and gamma; the share of the variance that lies between groups is uniform in [0, 1], the
-uniform shrinkage prior (Daniels 1999, Canad. J. Statist. 27, 567-578), as are the part of it that lies between
-laboratories, and the part of the rest that lies between blocks. Effects are integrated in closed form, shares on nodes.
-"""
+"""The calibration that knows who measured what: rows of one block, interface and laboratory deviate together."""
 
 import math
 from dataclasses import dataclass

@@ -1,10 +1,4 @@
-"""Restitution from rocking under a known ground motion: half cycles that begin anew in the state that was measured.
-
-The unknowns are what all half cycles share, and two numbers for each of them: when it begins and ln of its angular
-velocity after the impact there, or, where no impact is seen, rotation and angular velocity at its first sample. What
-follows from them is compared with the samples, and where an impact is seen with the beginning of the next half cycle.
-So nothing grows from impact to impact, however chaotic the motion is.
-"""
+"""Restitution from rocking under a known ground motion: half cycles that begin anew in the state that was measured."""
 
 import math
 from dataclasses import dataclass

@@ -1,14 +1,4 @@
-"""The TOML body file, read and written: one table says what the body is, and `units` is never left out.
-
-.. code-block:: toml
-
-    units = "cm"
-    [section]
-    feet = [5, 75]
-    [[section.region]]
-    outline = [[0, 0], [80, 0], [80, 200], [0, 200]]
-    density = 2400        # kg/m3, whatever the units
-"""
+"""The TOML body file, read and written: one table says what the body is, and `units` is never left out."""
 
 import math
 import tomllib

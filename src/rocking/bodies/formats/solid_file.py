@@ -1,17 +1,4 @@
-"""A body in space from the text of a TOML file: parts of simple shapes and of meshes, each in its place.
-
-.. code-block:: toml
-
-    units = "cm"
-    [[solid.part]]
-    box = { width = 60, depth = 50, height = 100 }
-    density = 2400        # kg/m3, whatever the units
-    [[solid.part]]
-    mesh = { file = "bust.stl", units = "mm" }
-    density = 2700
-    turned = [{ axis = [0, 0, 1], degrees = 90 }]
-    at = [0, 0, 100]
-"""
+"""A body in space from the text of a TOML file: parts of simple shapes and of meshes, each in its place."""
 
 import math
 from collections.abc import Callable

@@ -1,10 +1,4 @@
-"""Families of synthetic motions: a generator, and a distribution for each of its parameters.
-
-The distributions are round numbers chosen by the authors of this package so that the motions look like records of
-strong shaking of the kind that a family is named for. They are illustrative ranges. They are not fits to records, not
-the regressions on magnitude, distance and site of the papers whose generators they feed, and not a hazard model:
-scale the motions to the level that a hazard model gives.
-"""
+"""Families of synthetic motions: a generator, and for each of its parameters a distribution in round numbers."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -1,8 +1,4 @@
-"""Kanai-Tajimi motions: white noise at the bedrock through a layer of soil, under an envelope.
-
-Kanai (1957), Bulletin of the Earthquake Research Institute 35:309; Tajimi (1960), Proceedings of the 2nd World
-Conference on Earthquake Engineering 2:781.
-"""
+"""Kanai-Tajimi motions: white noise at the bedrock through a layer of soil, under an envelope."""
 
 import math
 from dataclasses import dataclass

@@ -1,8 +1,4 @@
-"""Stochastic point source after Boore: noise with the spectrum that a fault far away radiates.
-
-Boore (2003), Pure and Applied Geophysics 160:635, DOI 10.1007/PL00012553. Spectra here are of the acceleration in
-SI units, ``integral of a(t) exp(-2 pi i f t) dt`` [m/s].
-"""
+"""Stochastic point source after Boore (2003): noise with the spectrum that a fault far away radiates."""
 
 import math
 from dataclasses import dataclass

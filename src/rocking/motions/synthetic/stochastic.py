@@ -1,10 +1,4 @@
-"""Fully nonstationary motions after Rezaeian and Der Kiureghian: filtered, modulated white noise.
-
-Rezaeian & Der Kiureghian (2008), Earthquake Engineering & Structural Dynamics 37(13):1565-1584, DOI
-10.1002/eqe.831; the parametrisation by the middle of the strong shaking is theirs of 2010, ibid. 39:1155, DOI
-10.1002/eqe.997. Their regressions on magnitude, distance and site are not part of this module: the parameters are
-the user's.
-"""
+"""Fully nonstationary motions after Rezaeian and Der Kiureghian (2008, 2010): filtered, modulated white noise."""
 
 import math
 from dataclasses import dataclass
