@@ -139,13 +139,7 @@ class ResponseBase(Exported):
         return figure
 
     def exported(self) -> "Table":
-        """Return what the files of this response hold.
-
-        Returns
-        -------
-        Table
-            Samples, with tables of impacts and the like beside them, units and provenance.
-        """
+        """Return samples, with tables of impacts and the like beside them."""
         from rocking.tables import Column, Table
 
         def columns(values: dict[str, Any]) -> dict[str, Column]:

@@ -322,13 +322,7 @@ class Recommendation(Exported):
         }
 
     def exported(self) -> "Table":
-        """Return what files and frames of it hold.
-
-        Returns
-        -------
-        Table
-            One row a model, with units.
-        """
+        """Return one row a model."""
         from rocking.tables import Column, Table, text_array
 
         def column(values: list[Any], meaning: str) -> Column:

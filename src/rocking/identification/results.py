@@ -323,13 +323,7 @@ class Identification(Exported):
         return written
 
     def exported(self) -> "Table":
-        """Return what files of it hold.
-
-        Returns
-        -------
-        Table
-            One row an impact, the models and what is left over beside them, with units.
-        """
+        """Return one row an impact, the models and what is left over beside them."""
         from rocking.tables import Column, Table, text_array
 
         of = self.impacts

@@ -29,18 +29,6 @@ def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, dam
     damping : float
         Damping ratio of every mode [-].
 
-    Returns
-    -------
-    GroundMotion
-        The absolute acceleration of the floor.
-
-    Raises
-    ------
-    InvalidValueError
-        If the building has no such floor, or a value is outside its range.
-
-    Examples
-    --------
     >>> push = GroundMotion([1.0] * 101, time_step=0.01)
     >>> on_floor(push, 1, storeys=1, period=1.0, damping=0.0).acceleration[[0, 50, 100]].round(6).tolist()
     [0.0, 2.0, 0.0]

@@ -191,13 +191,7 @@ class Prediction(Exported):
         }
 
     def exported(self) -> "Table":
-        """Return what files and frames of it hold.
-
-        Returns
-        -------
-        Table
-            One row a motion, the inputs beside it, with units.
-        """
+        """Return one row a motion, the inputs beside it."""
         from rocking.tables import Column, Table, text_array
 
         columns = {"motion": Column(text_array(list(self.motions)), "", "name of the motion")}
