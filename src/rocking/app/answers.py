@@ -70,7 +70,7 @@ _ERRORS = {
     503: "The server ends.",
     507: "The disk of the server takes nothing more.",
 }
-_UNITS = {
+UNITS = {
     "_rad_s": "rad/s", "_m_s2": "m/s2", "_kg_m2": "kg m2", "_m_s": "m/s", "_rad": "rad", "_kg": "kg", "_s": "s",
     "_m": "m", "_J": "J", "_N": "N",
 }  # fmt: skip
@@ -147,7 +147,7 @@ def shape_of(kind: type, name: str, *, without: tuple[str, ...] = ()) -> Any:
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
     if not isinstance(words, str):
         return kind, ... if words is None else words
-    unit = next((unit for ending, unit in _UNITS.items() if key.endswith(ending)), "")
+    unit = next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "")
     if quantity is not None:
         unit = "-" if QUANTITIES[quantity].unit == "1" else QUANTITIES[quantity].unit
     return kind, Field(description=f"{words} [{unit}]".strip() if unit else words)

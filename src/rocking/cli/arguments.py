@@ -32,6 +32,7 @@ _AS_TYPED = (
     (re.compile(r"\b(kind|column|unit|time_column|time_unit|region|frame_rate)="), r"--set measurement.\1="),
     (re.compile(r"\b(give|takes no) height= of the sensor"), r"\1 --set measurement.height= of the sensor"),
     (re.compile(r"\btrend=True"), "--set identify.trend=true"),
+    (re.compile(r'\bcrossing="([\w-]+)"'), r"--crossing \1"),
     (re.compile(r"^threads must be"), "--threads must be"),
     (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),

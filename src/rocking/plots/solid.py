@@ -7,10 +7,11 @@ import numpy as np
 
 from rocking.bodies.equilibria import Equilibria, StablePose
 from rocking.bodies.equilibria.poses import tilt_towards
-from rocking.bodies.solid import Edge, RoundBase, Solid, SupportPolygon, box, voxels
+from rocking.bodies.solid import Edge, Solid, box, voxels
 from rocking.bodies.solid.surfaces import TriangleSurface
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.plots.space_glb import corners_of
 from rocking.plots.style import (
     COLORS,
     DASHED,
@@ -181,14 +182,8 @@ def _shaded(
 
 
 def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
-    base = solid.local_base
-    if isinstance(base, SupportPolygon):
-        flat = base.vertices
-    else:
-        phi = np.linspace(0.0, 2.0 * np.pi, 90)
-        circle = base if isinstance(base, RoundBase) else RoundBase(np.zeros(2), 0.0)
-        flat = circle.centre + circle.radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
-    ring = np.column_stack([flat, np.zeros(len(flat))])[[*range(len(flat)), 0]] @ frame.T
+    corners = corners_of(solid)
+    ring = np.concatenate([corners, corners[:1]]) @ frame.T
     axes.plot(ring[:, 0], ring[:, 1], color=INK, linewidth=0.8)
     centre = frame @ solid.local_moments.centre
     axes.plot([centre[0]], [centre[1]], marker="+", color=INK)

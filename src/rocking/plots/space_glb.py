@@ -43,7 +43,7 @@ class GltfFile:
         self.document["meshes"] = [{"primitives": [{"attributes": self.attributes, "indices": indices}]}]
         name, place = solid.name or "body", moments.centre
         self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(place[2])]})
-        corners = _corners(solid) - place
+        corners = corners_of(solid) - place
         self.extras: dict[str, Any] = {"height": float(place[2]), "base": corners.tolist()}
         if len(mended := _mended(solid)):
             self.extras["mended"] = self._add((mended - place).reshape(-1, 3).astype(np.float32))
@@ -148,7 +148,8 @@ def _mended(solid: Solid) -> FloatArray:
     ] or [np.empty((0, 3, 3))])  # fmt: skip
 
 
-def _corners(solid: Solid) -> FloatArray:
+def corners_of(solid: Solid) -> FloatArray:
+    """Return the corners of the base of a body, and points of a round one [m]."""
     base = solid.local_base
     if isinstance(base, SupportPolygon):
         return np.column_stack([base.vertices, np.zeros(len(base.vertices))])

@@ -12,7 +12,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
-from rocking.app.answers import answered_with_file, attachment
+from rocking.app.answers import UNITS, answered_with_file, attachment
 from rocking.app.api.motion import DAMPING, spectrum_of
 from rocking.app.downloads.evaluation import Evaluation
 from rocking.app.errors import NotFound
@@ -35,9 +35,6 @@ What = Literal["body", "coefficients", "measures", "motion", "spectrum", "respon
 Kind = Literal["csv", "xlsx", "mat", "nc"]
 
 MOST_CELLS = 2_000_000  # cells of a workbook; more would take minutes to write and longer to open
-
-_UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg": "kg", "m": "m"}
-"""Endings of keys; the longer ones come first."""
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
@@ -116,9 +113,9 @@ def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> 
 
 
 def _fact(key: str, foot: str, value: float) -> tuple[str, str, float, str]:
-    for ending, unit in _UNITS.items():
-        if key.endswith(f"_{ending}"):
-            return key.removesuffix(f"_{ending}"), foot, value, unit
+    for ending, unit in UNITS.items():
+        if key.endswith(ending):
+            return key.removesuffix(ending), foot, value, unit
     return key, foot, value, "1"  # "-" alone in a cell would be taken for the start of a formula
 
 
