@@ -1,16 +1,20 @@
-"""Overturning by pulses: boundaries found by bisection on the amplitude against closed forms and published numbers.
-
-REF numbers: see CONTRIBUTING.md. They follow from the stable manifold of the unstable
-equilibrium: the linear equations overturn without an impact if A times the integral of s(tau) exp(-(tau - tau_0)) from
-uplift tau_0 to the end exceeds one, with A = a_p / (g alpha) and tau = p t; for sines these are modes II (no impact)
-and I (one impact) of Zhang & Makris 2001 (EESD 30:461). Omega = omega_p / p throughout.
-"""
+"""Overturning by pulses: boundaries found by bisection on the amplitude against closed forms and published numbers."""
 
 import math
 
 import mpmath as mp
 import numpy as np
 import pytest
+from pulse_boundaries import (
+    COSINE,
+    HALF_SINE,
+    LOWER_AT_ONE,
+    RECTANGLE,
+    SINE_NO_IMPACT,
+    SINE_ONE_IMPACT,
+    SINE_ONE_IMPACT_ELASTIC,
+    mode_two,
+)  # fmt: skip
 from scipy.optimize import brentq
 
 import rocking as rk
@@ -24,32 +28,14 @@ pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.15, 1.7
-RECTANGLE = {0.5: 2.5414940825367982841, 1.0: 1.5819767068693264244, 2.0: 1.1565176427496656518}
-HALF_SINE = {
-    1: 1.3223965979078765668, 2: 1.8007239305607457817, 3: 2.2938723134392918526, 5: 3.2891467775230030447,
-    8: 4.7870712683499157432, 10: 5.7865216516964278046,
-}  # fmt: skip
-SINE_NO_IMPACT = {
-    1: 1.4183153355788508339, 2: 2.3499031269556409935, 3: 3.6311498724447945014, 8: 14.871352061270091178,
-    10: 21.599989284727501635,
-}  # fmt: skip
-SINE_ONE_IMPACT = {  # r = 0.9: lower, upper
-    1: (1.13204711059768365, None), 2: (1.22517942326831362, 2.31440295302158405),
-    3: (1.40356535564278266, 3.48466273332249203), 5: (3.01859986087179637, 6.31807052982744609),
-    6: (5.1641589274575678, 7.6698730415941765),
-}  # fmt: skip
-SINE_ONE_IMPACT_ELASTIC = {  # r = 1: lower
-    1: 1.12780479486212521, 2: 1.21383084814880623, 3: 1.36705162931038883, 4: 1.6482806535939368,
-    5: 2.22056633180111026, 6: 3.41721761686939524, 8: 6.87138435869612107, 10: 11.5999959514276214,
-}  # fmt: skip
-COSINE = {2: 5.225828526818421, 5: 36.34378926613579}
 LINEAR = {
     **{f"rectangle {k}": (("rectangle", k), 0.9, v, 0) for k, v in RECTANGLE.items()},
     **{f"half sine {k}": (("half_sine", k), 0.9, v, 0) for k, v in HALF_SINE.items()},
     **{f"sine, no impact {k}": (("sine", k), 0.9, v, 0) for k, v in SINE_NO_IMPACT.items() if k != 1},
     "sine, no impact 1": (("sine", 1), 0.0, SINE_NO_IMPACT[1], 0),  # with r = 0.9 mode I covers it
     **{f"sine, lower {k}": (("sine", k), 0.9, v[0], 1) for k, v in SINE_ONE_IMPACT.items()},
-    **{f"sine, upper {k}": (("sine", k), 0.9, v[1], 1) for k, v in SINE_ONE_IMPACT.items() if v[1]},
+    "sine, lower 1": (("sine", 1), 0.9, LOWER_AT_ONE, 1),
+    **{f"sine, upper {k}": (("sine", k), 0.9, v[1], 1) for k, v in SINE_ONE_IMPACT.items()},
     **{f"sine, elastic {k}": (("sine", k), 1.0, v, 1) for k, v in SINE_ONE_IMPACT_ELASTIC.items()},
     **{f"cosine {k}": (("cosine", k), 0.9, v, 0) for k, v in COSINE.items()},
 }
@@ -184,7 +170,7 @@ def test_nonlinear_rectangles(tangent, ratio, p_time, engine, agreement):
 
 
 @pytest.mark.verifies(
-    "computed anew", "boundaries to 17 and 8 digits", within="1e-10, and 3e-8 where 8 digits are known"
+    "computed anew", "boundaries to 17 and 8 digits", within="1e-10, and 3e-8 where fewer digits are known"
 )
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
@@ -221,7 +207,7 @@ def test_first_impact_of_the_nonlinear_sine(engine):
 def test_survival_between_the_modes(omega, engine):
     """Stronger is not worse: overturned by mode I, standing above its upper boundary, overturned again by mode II."""
     upper = SINE_ONE_IMPACT[omega][1]
-    second = SINE_NO_IMPACT.get(omega) or sine_without_impact(omega)
+    second = SINE_NO_IMPACT.get(omega) or mode_two(omega)
     lower = SINE_ONE_IMPACT[omega][0]
     scales = ALPHA * np.concatenate(
         [
@@ -242,7 +228,7 @@ def test_survival_between_the_modes(omega, engine):
 def test_modes_without_a_gap():
     """With r = 1 there is no survival between the modes; with r = 0.9 and Omega = 8, 10 there is no mode I."""
     for omega, lower in SINE_ONE_IMPACT_ELASTIC.items():
-        second = sine_without_impact(omega)
+        second = mode_two(omega)
         scales = ALPHA * np.linspace(lower * (1.0 + 1e-9), 1.5 * second, 2001)
         found = outcomes(unit_pulse("sine", omega), scales, 1.0, "fast")
         assert (found["outcome"] == Outcome.OVERTURNED.code).all()
@@ -252,18 +238,9 @@ def test_modes_without_a_gap():
         assert (found["outcome"] != Outcome.OVERTURNED.code).all()
 
 
-def sine_without_impact(omega):
-    """Mode II of the full sine, solved here."""
-
-    def open_terms(psi):
-        return math.cos(psi) - math.exp(-(2.0 * math.pi - psi) / omega) - omega * math.sin(psi)
-
-    return 1.0 / math.sin(brentq(open_terms, 1e-9, 0.5 * math.pi, xtol=1e-16))
-
-
 def largest_below_mode_two(omega):
     """Largest theta / alpha on the boundary of mode II, from the closed form of the linear equations."""
-    amplitude = sine_without_impact(omega)
+    amplitude = mode_two(omega)
     psi, gain = math.asin(1.0 / amplitude), 1.0 / (1.0 + omega**2)
     tau = np.linspace(0.0, (2.0 * math.pi - psi) / omega, 200_001)
     x = 1.0 - amplitude * gain * np.sin(omega * tau + psi)
@@ -276,7 +253,7 @@ def largest_below_mode_two(omega):
 @pytest.mark.parametrize(("omega", "published"), [(2, 1.61), (3, 1.51), (5, 1.39), (10, 1.24)])
 def test_beyond_the_top_and_back(omega, published, engine):
     """Just below mode II a block leans past its balance, up to 1.6 alpha, and the reversal of the pulse saves it."""
-    scale = ALPHA * sine_without_impact(omega) * (1.0 - 1e-9)
+    scale = ALPHA * mode_two(omega) * (1.0 - 1e-9)
     found = outcomes(unit_pulse("sine", omega), [scale], 0.9, engine)
     reached = abs(found["peak_rotation"][0]) / ALPHA
     assert found["outcome"][0] == Outcome.ROCKED.code
