@@ -179,16 +179,17 @@ def test_commands(tmp_path, capsys):
     """The option of the command gives what Python gives; a picture and a table are written."""
     text = 'units = "m"\n[[solid.part]]\nbox = { width = 0.6, depth = 0.5, height = 0.7 }\ndensity = 2000\n'
     (tmp_path / "body.toml").write_text(text)
-    out = [f"picture={tmp_path / 'a.png'}", f"csv={tmp_path / 'a.csv'}"]
+    out = [f"picture={tmp_path / 'a.png'}", f"csv={tmp_path / 'a.csv'}", tmp_path / "a.html"]
     words = ["simulate", str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5", "--friction", "0.2", "--json"]
     with pytest.raises(SystemExit) as stop:
-        main([*words, *(word for each in out for word in ("--out", each))])
+        main([*words, *(str(word) for each in out for word in ("--out", each))])
     assert not stop.value.code
     told = json.loads(capsys.readouterr().out)
     one = rk.simulate(SHORT, PULSE, friction=0.2)
     assert told["outcome"] == "slid"
     assert told["sliding_distance_m"] == pytest.approx(one.sliding_distance, rel=1e-9)
     assert (tmp_path / "a.png").stat().st_size > 1000
+    assert "friction 0.2" in (tmp_path / "a.html").read_text()
     assert (tmp_path / "a.csv").read_text().startswith("time [s],quaternion_s")
 
 

@@ -321,14 +321,6 @@ def test_check_of_a_small_disk(run, job, tmp_path, monkeypatch):
     assert err.startswith(f"rocking: {tmp_path / 'c'}: 0 MB are needed")
 
 
-def test_cluster_by_address():
-    """--executor dask makes the executor of that address; nothing is asked of the network yet."""
-    from rocking.cli.campaign_output import executor_of
-
-    executor, workers = executor_of("dask", None, "tcp://127.0.0.1:1")
-    assert (executor.address, workers) == ("tcp://127.0.0.1:1", None)
-
-
 def test_run_on_a_cluster(run, job, tmp_path):
     """A cluster that is there already computes the same file."""
     distributed = pytest.importorskip("distributed")

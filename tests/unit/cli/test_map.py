@@ -42,26 +42,6 @@ def test_json_is_the_python_call(run):
     assert (told["refined_points"], told["sensitivity"]) == (None, None)
 
 
-def test_overturning_begins_at_the_closed_form(run):
-    """Under a constant acceleration the linear block falls from g alpha / (1 - exp(-pT)); refined, it begins there."""
-    block = rk.Block.from_angle(0.2, 1.0)
-    p, time = block.frequency_parameter, 0.5
-    exact = 1.0 / (1.0 - math.exp(-p * time))
-    body = ("--set", "body.slenderness_angle=0.2", "--set", "body.semi_diagonal=1")
-    words = (*body, f"rectangular:amplitude=2,duration={time}", "--set", "settings.linear=true")
-    over = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
-    found = {}
-    for levels in ((), ("--refine", 6)):
-        code, out, _ = run(*words, *over, *levels, "--json")
-        assert code == 0
-        found[bool(levels)] = json.loads(out)["overturning"]["first"]["y"]
-    # the first point above it on a grid of 0.05, and of 0.05 / 64
-    assert 0.0 <= found[False] - exact <= 0.05
-    assert 0.0 <= found[True] - exact <= 0.05 / 64
-    wrong = math.tan(0.2) / 0.2 * exact
-    assert not 0.0 <= found[True] - wrong <= 0.05 / 64
-
-
 def test_late_modes_are_one_line(run, tmp_path):
     """Under a long record all that overturns after more than 3 impacts is one line; JSON parts it."""
     time = np.arange(1500) * 0.01

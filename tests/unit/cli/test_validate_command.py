@@ -62,16 +62,6 @@ def test_outcomes_of_other_trials_are_not_foreseen(answered, tmp_path):
     assert found["better_by"]["logistic"]["brier"]["high"] < 0.0
 
 
-@pytest.mark.verifies("negative control", room="studies")
-def test_friction_that_is_taken_for_known_is_noticed(answered, folder):
-    """Balanced accuracy does not see it, and is higher even; the verdict says that it is too sure of itself."""
-    right, wrong = (answered(folder, *words)["events"]["overturning"] for words in ((), ("--friction", "0.45")))
-    yes, no = (each["scores"]["prediction"]["balanced_accuracy"]["value"] for each in (right, wrong))
-    assert no > yes > 0.85
-    assert (right["too_sure"], wrong["too_sure"]) == (False, True)
-    assert wrong["verdict"].endswith("and it is too sure of itself.")
-
-
 def test_json_is_the_python_call(answered, copy):
     """Probabilities are those of `predict` of the motions by themselves, which know nothing of the outcomes."""
     found = answered(copy, *FEW)

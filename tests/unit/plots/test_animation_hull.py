@@ -11,7 +11,6 @@ from PIL import Image
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
-from rocking.cli import main
 from rocking.dynamics import SpatialBody
 from rocking.dynamics.space.attitude import matrix
 from rocking.errors import InvalidValueError
@@ -62,22 +61,6 @@ def test_the_film(tmp_path):
         first = np.asarray(film.convert("L"), float)[60:380]
         film.seek(3)
         assert np.abs(np.asarray(film.convert("L"), float)[60:380] - first).max() > 50.0
-
-
-def test_the_command(tmp_path):
-    """--out of a page is taken for a body in space, with friction and without."""
-    body = "[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 1.2 }\ndensity = 2000\n"
-    (tmp_path / "body.toml").write_text(f'units = "m"\n{body}')
-    words = ["simulate", str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5"]
-    out = ["--out", str(tmp_path / "a.html")]
-    with pytest.raises(SystemExit) as stop:
-        main([*words, "--friction", "0.2", *out])
-    assert not stop.value.code
-    assert "friction 0.2" in (tmp_path / "a.html").read_text()
-    with pytest.raises(SystemExit) as stop:
-        main([*words, *out])
-    assert not stop.value.code
-    assert "friction" not in (tmp_path / "a.html").read_text()
 
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.4, 0.0), (0.6, 1.5), (0.1, 1.5)], 2000.0)], depth=0.8)
