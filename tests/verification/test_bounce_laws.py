@@ -60,6 +60,7 @@ def test_no_law_creates_energy(rotation, u, w, spin, mu, e, law):
         return
     found, _ = _struck(state, mu, e, law)
     assert away(TALL, found.state, RIGHT) >= -1e-12
+    assert e > 0.0 or away(TALL, found.state, RIGHT) < 1e-12
     assert kinetic(TALL, found.state) <= kinetic(TALL, state) * (1.0 + 1e-12)
 
 

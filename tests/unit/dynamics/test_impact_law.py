@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from engines import built, every_engine
+from engines import every_engine
 from scipy import stats
 
 import rocking as rk
@@ -23,15 +23,6 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 
 def impacts_of(restitution: Any, name: str, key: int = 0) -> Any:
     return rk.free_rocking(BLOCK, 0.12, restitution, engine=name, stream=key, duration=4.0).impacts
-
-
-def test_random_law_by_seed_and_key() -> None:
-    """The same seed, history and impact give the same draw whatever the speed; any other gives another."""
-    law, same = (rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=3) for _ in range(2))
-    other = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=4)
-    draw = law.factor(1.0, 7, 2)
-    assert draw == same.factor(99.0, 7, 2)
-    assert len({draw, other.factor(1.0, 7, 2), law.factor(1.0, 8, 2), law.factor(1.0, 7, 3)}) == 4
 
 
 def test_speed_law() -> None:
@@ -64,28 +55,6 @@ def test_speed_law_in_a_response(name: str) -> None:
     speeds = np.abs(found["velocity_before"])
     assert speeds[0] > 0.3 > speeds[-1], "both sides of a corner are met"
     np.testing.assert_allclose(found["coefficient"], housner * np.interp(speeds, [0.05, 0.3], [1.0, 0.9]), rtol=1e-13)
-
-
-@every_engine
-def test_random_law_in_a_response(name: str) -> None:
-    """The n-th impact has the n-th draw of its history, times 0.95, and another key other draws."""
-    law = RANDOM([0.7, 0.8, 1.0], 12, times=0.95)
-    for key in (0, 5, 2**63 - 1):
-        found = impacts_of(law, name, key)["coefficient"]
-        assert found.size > 5
-        np.testing.assert_allclose(found, [0.95 * law.factor(0.0, key, k) for k in range(found.size)], rtol=1e-14)
-        assert 0.95 * 0.7 <= found.min() <= found.max() <= 0.95
-
-
-@built
-@pytest.mark.parametrize(
-    "law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8)]
-)
-def test_both_engines_give_the_same_coefficients(law: Any) -> None:
-    """Impact by impact the two engines agree: coefficients to 1e-10, and the draws to the last bit or two."""
-    fast, slow = impacts_of(law, "fast", 3), impacts_of(law, "reference", 3)
-    assert fast.size == slow.size
-    np.testing.assert_allclose(fast["coefficient"], slow["coefficient"], rtol=1e-10 if law.kind == 1 else 1e-15)
 
 
 @pytest.mark.parametrize(
