@@ -7,15 +7,13 @@ ROCKING_CAMPAIGN=1 there are 60 rooms at each level and 100 sounds of each other
 
 import os
 import re
-import time
 
 import numpy as np
 import pytest
 import rocking_sounds
-from rocking_sounds import RATE, no_rocking, wav
+from rocking_sounds import RATE, no_rocking
 
 from rocking.errors import MeasurementError
-from rocking.identification.readers import read_measurement
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import law_misfit
 from rocking.identification.readers.sound import _begun, impacts_heard
@@ -172,17 +170,3 @@ def test_what_is_no_rocking_is_refused(kind):
             refusals.append(str(refusal))
     assert len(refusals) == OTHERS
     assert all(re.search("no sound of a rocking body|fewer than three clicks", words) for words in refusals)
-
-
-@pytest.mark.timed
-@pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU")
-def test_a_minute_takes_seconds(tmp_path):
-    """From file to times, with a rocking body in its middle."""
-    sound = rocking_sounds.rocking(FIRST, 25.0)
-    rng = np.random.default_rng(1)
-    quiet = rng.normal(0.0, sound.samples[: RATE // 4].std(), (2, 27 * RATE))
-    path = tmp_path / "minute.wav"
-    path.write_bytes(wav(np.concatenate([quiet[0], sound.samples, quiet[1]])[: 60 * RATE].clip(-1.0, 1.0)))
-    begun = time.process_time()
-    read_measurement(path)
-    assert time.process_time() - begun < 2.0

@@ -12,7 +12,7 @@ from scipy import optimize, stats
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RockingParameters, Settings
+from rocking.dynamics import RandomRestitution, RockingParameters, Settings
 from rocking.outcome import Outcome
 from rocking.studies import (
     HistoryTable,
@@ -129,7 +129,7 @@ def test_draws_are_independent():
 def test_no_width_is_the_constant_in_every_study():
     """Map, spectrum and stripes with a distribution of no width equal those with the constant."""
     motions = synthetic(6, seed=9)
-    choices = [0.9, SampledRestitution([0.9, 0.9], 4)]
+    choices = [0.9, SampledRestitution([0.9, 0.9], 4), RandomRestitution([0.9, 0.9], 4)]
     levels = conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
     axes = ("scale", [0.5, 1.0, 2.0]), ("semi_diagonal", [0.5, 1.0])
     for found in (
@@ -137,9 +137,10 @@ def test_no_width_is_the_constant_in_every_study():
         spectrum_sensitivity(motions[:1], [0.15, 0.3], [1.0, 2.0], choices),
         fragility_sensitivity(BLOCK, motions, levels, choices, repetitions=0),
     ):
-        first, second = found.datasets.values()
+        first, once, each = found.datasets.values()
         assert found.flips()["count"].sum() == 0
-        assert np.array_equal(first["outcome"], second["outcome"])
+        assert np.array_equal(first["outcome"], once["outcome"])
+        assert all(each[name].values.tobytes() == first[name].values.tobytes() for name in first.data_vars)
 
 
 @pytest.mark.verifies("same bits", "the constant coefficient")

@@ -2,12 +2,10 @@
 
 import csv
 import io
-import json
 import os
 import re
 import shutil
 import subprocess
-import sys
 import tomllib
 import xml.etree.ElementTree as ET
 import zipfile
@@ -19,7 +17,6 @@ import pytest
 import scipy.io
 import xarray
 
-import rocking as rk
 from rocking.app.answers import attachment
 from rocking.app.downloads.animation import page_of
 from rocking.app.downloads.archive import bundle_of
@@ -34,7 +31,6 @@ from rocking.app.plain_text import plain_line
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.motions import GroundMotion
-from rocking.motions.formats import read_motion
 from rocking.reports import Document
 from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, response_pdf
 
@@ -307,21 +303,3 @@ def test_these_checks_find_what_they_look_for():
     with pytest.raises(AssertionError):
         check_excel(stream.getvalue(), sheet)
     assert Tags("<img src=x onerror=alert(1)>").handlers == ["onerror"]
-
-
-@pytest.mark.verifies("same bits", "Python and `rocking simulate`", control="within")
-def test_the_archive_gives_the_same_numbers_on_the_command_line(tmp_path, records):
-    """`rocking simulate response.toml` in the unpacked archive prints the numbers of Python, to the last digit."""
-    record = records.add(WAVE, "wave 1.txt").record
-    inputs = inputs_named("x", record=record, units="m/s2", file_name="wave-1.txt", scale=1.1)
-    with zipfile.ZipFile(io.BytesIO(bundle_of(Evaluation(inputs, records)))) as archive:
-        archive.extractall(tmp_path)
-    command = [sys.executable, "-m", "rocking", "simulate", "response.toml", "--json"]
-    said = subprocess.run(command, cwd=tmp_path, capture_output=True, check=True, text=True)
-    found = json.loads(said.stdout)
-    motion = read_motion(tmp_path / "wave-1.txt", units="m/s2")
-    expected = rk.simulate(rk.Block(width=0.5, height=2.0), motion, "ked", scale=1.1)
-    assert found["peak_rotation_rad"] == expected.peak_rotation
-    assert [one["time_s"] for one in found["impacts"]] == expected.impacts["time"].tolist()
-    other = rk.simulate(rk.Block(width=0.5, height=2.0), motion, "ked", scale=1.1000001)
-    assert found["peak_rotation_rad"] != other.peak_rotation

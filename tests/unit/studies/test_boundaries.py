@@ -238,17 +238,6 @@ def test_safe_beyond_overturning():
     assert upwards.name == "safe_beyond_overturning"
 
 
-def test_the_full_sine_has_one_between_its_modes():
-    """Over few frequencies the gap between modes I and II is an island that reaches the edge; with r = 1 it is gone."""
-    block, pulse = rk.Block.from_angle(0.15, 1.0), rk.pulses.sine(1.0, 0.5)
-    axes = ("frequency_ratio", np.linspace(3.0, 6.0, 31)), ("amplitude_ratio", np.linspace(0.5, 10.0, 191))
-    found = safe_islands(overturning_map(block, pulse, *axes, 0.9, linear=True, threads=1), enclosed=False)
-    assert len(found) == 1
-    assert found[0].x == (3.0, 6.0)
-    elastic = overturning_map(block, pulse, *axes, 1.0, linear=True, threads=1)
-    assert len(safe_islands(elastic, enclosed=False)) == 0
-
-
 @pytest.mark.parametrize("bad", [None, 3, xr.Dataset(), xr.Dataset({"mode": ("x", [1, 2])})])
 def test_what_is_no_map_is_refused(bad):
     """Only a dataset with a mode over two axes is a map."""

@@ -2,7 +2,6 @@
 
 import json
 import os
-import subprocess
 import time
 from typing import Any
 
@@ -59,17 +58,6 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager, long_job, u
     }
     assert before.items() <= after.items()
     assert manager.get(study)["histories_done"] > facts["histories_done"]
-
-
-def test_a_study_that_does_not_listen_is_killed(manager, long_job, monkeypatch, until):
-    """Where the signal is lost the group is killed soon after, and nothing that was finished is lost."""
-    study = manager.create(None, long_job)
-    done = until(manager, study, "running", done=1)["histories_done"]
-    monkeypatch.setattr(subprocess.Popen, "send_signal", lambda *_: None)
-    begun = time.monotonic()
-    manager.cancel(study)
-    assert 0.3 < time.monotonic() - begun < 1.0
-    assert manager.get(study)["histories_done"] >= done
 
 
 def test_one_runs_and_the_others_wait(manager, long_job, map_job, until):

@@ -129,17 +129,6 @@ def test_identical_restitutions_change_nothing():
         assert not (moved.fillna(0.0) != 0.0).any()
 
 
-def test_a_distribution_without_width_changes_nothing():
-    """Drawn per history or per impact from a distribution without width, the map is that of the constant, bitwise."""
-    choices = [0.9, SampledRestitution([0.9, 0.9], 1), RandomRestitution([0.9, 0.9], 1)]
-    found = map_sensitivity(BLOCK, PULSE, *AXES, choices)
-    first, once, each = (found.datasets[label] for label in found.labels)
-    for name in first.data_vars:
-        assert each[name].values.tobytes() == first[name].values.tobytes()
-    assert found.flips()["count"].sum() == 0
-    assert abs(once["peak_rotation"] - first["peak_rotation"]).max() < 1e-9
-
-
 def test_a_map_differs_cell_by_cell():
     """Differences of a map are those of two maps computed apart, and the verdict flips where their outcomes differ."""
     found = map_sensitivity(BLOCK, PULSE, *AXES, ["housner", "ked"])
