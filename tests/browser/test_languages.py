@@ -160,7 +160,6 @@ def sentences_of_the_server() -> list[str]:
         "Difference to Housner",
         "a.txt: the file does not state its time step; the file does not state its unit.",
         "Its base is round: it is tipped in four directions.",
-        "Sound.csv: column 'b' states no unit: say it under \u201cUnit\u201d.",
     ]
 
 
@@ -205,13 +204,32 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     steps = [*info["steps"].values(), *info["targets"].values()]
     made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
     made += [one.reason for one in parse_inventory(LIST).not_assessed]
-    made += ["Choose files", "Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
+    made += ["Choose files", "a.csv: column 'b' states no unit: say it under \u201cUnit\u201d.", "from a file"]
+    made += ["Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
     made = [text for text in dict.fromkeys(made) if len(re.findall(r"\b[a-z]{2,}\b", text)) >= 2]
     assert len(made) > 110
     said = open_page(link(), locale=code).evaluate(SAID, made)
     assert [text for text, other in zip(made, said, strict=True) if text == other] == []
     for text, other in zip(made, said, strict=True):
         assert sorted(re.findall(r"\d+", text)) == sorted(re.findall(r"\d+", other)), other
+
+
+def test_the_history_of_a_project_speaks_it(open_page: Callable[..., Any]) -> None:
+    """What was changed has its words part by part, whatever was changed at once."""
+    page = open_page(locale="de")
+    page.get_by_label("Höhe").first.fill("3")
+    page.locator("#tab-decide").click()
+    page.get_by_label("Unterzeichnet von").fill("A. Person")
+    page.get_by_test_id("project-saved").get_by_text("gespeichert", exact=True).wait_for()
+    page.get_by_test_id("project").click()
+    states = page.get_by_test_id("projects").locator(".states li")
+    states.last.wait_for()
+    said = [states.nth(k).locator("span").first.inner_text() for k in range(states.count())]
+    assert said[-1] == "begonnen"
+    assert {part for each in said[:-1] for part in each.removesuffix(" geändert").split(", ")} == {
+        "Körper",
+        "Entscheidung",
+    }
 
 
 def test_what_a_chart_reads_out_speaks_it(answered: Callable[..., Any]) -> None:

@@ -7,6 +7,7 @@ import { number, pretty } from "/app/format.js";
 import { Button } from "/parts/fields.js";
 
 const LONG = 20;
+const SENTENCE = 40; // letters, from which a cell has room for several words
 
 /** A table of columns (text or {label, unit, digits}) and rows of numbers, texts or templates; `copied` are the rows as
  * text and numbers where they are others.
@@ -47,7 +48,7 @@ export const Rows = ({ caption, head, rows }) => html`
       <tbody>${rows.map((row, k) => html`<tr key=${k}>
         ${row.map((cell, j) => {
           const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
-          return j ? html`<td class=${kind ? `light ${kind}` : null}>${text}</td>`
+          return j ? html`<td class=${kind ? `light ${kind}` : text.length > SENTENCE ? "sentence" : null}>${text}</td>`
             : html`<th scope="row" translate=${kind !== "own"}>${text}</th>`;
         })}</tr>`)}
       </tbody>

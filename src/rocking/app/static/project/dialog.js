@@ -1,12 +1,20 @@
 /** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
 
 import { html, signal, useRef } from "/parts/preact.js";
+import { words } from "/app/words.js";
 import { Button } from "/parts/fields.js";
 
 const FEW = 12;
 
 /** @param {string} time */
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+
+// "body, motion changed", each part in its word.
+/** @param {string} text */
+const changed = (text) => {
+  const parts = /^(.+) changed$/.exec(text)?.[1].split(", ");
+  return parts ? `${parts.map(words).join(", ")} ${words("changed")}` : text;
+};
 
 /** The dialog; `handle.current.openIt()` opens it.
  * @param {{ projects: Projects, app: App, handle: { current: unknown } }} props */
@@ -102,7 +110,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         <ul class="project-list states" aria-label="History">
           ${states.map((one) => html`
             <li key=${one.number}>
-              <p><span>${one.words}</span><span class="quiet">${when(one.time)}</span></p>
+              <p><span>${changed(one.words)}</span><span class="quiet">${when(one.time)}</span></p>
               ${one.here
                 ? html`<span class="project-open">now</span>`
                 : html`<${Button} aria-label=${`Go back to state ${one.number}: ${one.words}`}
