@@ -344,6 +344,25 @@ def test_all_projects(open_page: Callable[..., Any], tmp_path: Path) -> None:
     expect(page.locator("#status")).to_contain_text("one ZIP archive")
 
 
+def test_what_is_said_is_seen_over_a_dialog(open_page: Callable[..., Any]) -> None:
+    """On a phone the dialog covers the page: what is said of it lies over it, and stays when it is closed."""
+    page = open_page(viewport={"width": 390, "height": 700})
+    saved(page)
+    dialog = opened_dialog(page)
+    dialog.get_by_label("A project from its file").set_input_files(
+        {"name": "x.zip", "mimeType": "application/zip", "buffer": b"nothing"}
+    )
+    told = page.locator("#status")
+    expect(told).to_contain_text("one ZIP archive")
+    over = """node => { const { x, y, width, height } = node.getBoundingClientRect();
+        return node.contains(document.elementFromPoint(x + width / 2, y + height / 2)); }"""
+    assert told.evaluate(over)
+    assert dialog.locator("#status").count() == 1
+    dialog.get_by_role("button", name="Close").click()
+    expect(told).to_contain_text("one ZIP archive")
+    assert told.evaluate(over)
+
+
 def test_back_to_a_state_of_the_history(open_page: Callable[..., Any]) -> None:
     """Any earlier state is one press away, and what was there stays in the history."""
     page = open_page()

@@ -6,10 +6,14 @@ import { el, fill } from "/app/dom.js";
 const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
 let timer = 0;
 let said = "";
+/** @type {HTMLElement | null} */
+let kept = null; // it may have gone with the dialog that it was in
+const place = () => (kept ??= document.getElementById("status"));
 
 /** Say something in the status line. @param {string} text @param {string} [kind] */
 export const say = (text, kind = "info") => {
-  const line = document.getElementById("status");
+  const line = place();
+  inSight(line);
   said = text;
   fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), el("span", {}, text));
   line.dataset.kind = kind;
@@ -18,11 +22,20 @@ export const say = (text, kind = "info") => {
   timer = setTimeout(() => hush(), kind === "error" ? 12_000 : 5_000);
 };
 
+// A dialog is over all else, and what is outside of it is not read out: while one is open the line is in it.
+/** @param {HTMLElement} line */
+const inSight = (line) => {
+  const dialog = [...document.querySelectorAll("dialog[open]")].at(-1);
+  if ((dialog ?? document.body) === line.parentElement) return;
+  (dialog ?? document.body).append(line);
+  dialog?.addEventListener("close", () => document.body.append(line), { once: true });
+};
+
 /** Take the status line away, or some words alone if it still says them. */
 export const hush = (text = said) => {
   if (text !== said) return;
   said = "";
-  const line = document.getElementById("status");
+  const line = place();
   line.hidden = true;
   fill(line);
 };
