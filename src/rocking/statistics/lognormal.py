@@ -480,6 +480,23 @@ def lognormal_probability(level: FloatArray, median: float, dispersion: float) -
         return np.asarray(ndtr(np.log(level / median) / dispersion))  # Eq. 190
 
 
+def difference_extremes(log_median: FloatArray, dispersion: FloatArray) -> FloatArray:
+    """Return ln level at the two places, or twice the one, where both lognormal curves of a pair differ most.
+
+    >>> difference_extremes(np.zeros(2), np.array([0.5, 0.25])).round(4).tolist()
+    [0.3399, -0.3399]
+    """
+    (m, n), (s, t) = log_median, dispersion
+    # where the densities are equal: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
+    a, b = t**2 - s**2, s**2 * (n - m)
+    c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)  # Eq. 189
+    root = np.sqrt(np.maximum(b**2 - a * c, 0.0))
+    q = -(b + np.where(b < 0.0, -root, root))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        places = m + np.array([np.where(a != 0.0, q / a, np.inf), np.where(q != 0.0, c / q, 0.0)])
+    return np.asarray(np.where(np.isfinite(places), places, m))
+
+
 def levels_of(im: Any) -> tuple[FloatArray, Any]:
     """Return levels that are finite and >= 0, and which of them are above zero."""
     levels = checks.real_array("im", im)

@@ -10,7 +10,13 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.statistics.counts import StateCounts, count_states
-from rocking.statistics.lognormal import LognormalFit, fit_lognormal, levels_of, lognormal_probability
+from rocking.statistics.lognormal import (
+    LognormalFit,
+    difference_extremes,
+    fit_lognormal,
+    levels_of,
+    lognormal_probability,
+)
 from rocking.statistics.maximum_likelihood import LogScale, maximise
 from rocking.statistics.probit import Derivatives, tails
 
@@ -130,7 +136,8 @@ class OrderedFit:
         if self.rocked is None or self.overturned is None:
             return None
         ends = np.log(self.counts.levels[[0, -1]])
-        places = np.concatenate([ends, np.clip(difference_extremes(self.rocked, self.overturned), *ends)])
+        both = np.array([self.rocked, self.overturned]).T
+        places = np.concatenate([ends, np.clip(difference_extremes(np.log(both[0]), both[1]), *ends)])
         over, rocked = (lognormal_probability(np.exp(places), *curve) for curve in (self.overturned, self.rocked))
         apart = over - rocked
         return max(0.0, float(apart.max()))
@@ -206,17 +213,3 @@ def fit_ordered(
         return OrderedFit(counts, (least, worst), chosen, least.curve, worst.curve)
     curves = nested_curves(counts.levels, np.stack([counts.rocked, counts.overturned]), counts.trials)
     return OrderedFit(counts, (least, worst), chosen, curves[0], curves[1])
-
-
-def difference_extremes(first: Curve, second: Curve) -> FloatArray:
-    """Return ln level where two lognormal curves differ most, at none, one or two places of equal densities.
-
-    >>> difference_extremes((1.0, 0.5), (1.0, 0.25)).round(4).tolist()
-    [-0.3399, 0.3399]
-    """
-    (m, s), (n, t) = (first, second)
-    x, y = 1.0 / s**2, 1.0 / t**2
-    u, v = np.log(m), np.log(n)
-    # (z - u)^2 / s^2 - (z - v)^2 / t^2 + 2 ln(s / t) = 0
-    roots = np.roots([x - y, -2.0 * (u * x - v * y), u * u * x - v * v * y + 2.0 * np.log(s / t)])  # Eq. 189
-    return np.asarray(roots.real[np.abs(roots.imag) <= 1e-9 * np.maximum(1.0, np.abs(roots.real))], dtype=np.float64)

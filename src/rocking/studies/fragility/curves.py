@@ -11,8 +11,8 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
-from rocking.statistics.lognormal import LognormalFit, lognormal_probability
-from rocking.statistics.ordered_probit import ORDERED_METHODS, OrderedMethod, difference_extremes, nested_curves
+from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
+from rocking.statistics.ordered_probit import ORDERED_METHODS, OrderedMethod, nested_curves
 from rocking.studies.fragility.subject import Subject, checked_levels
 
 if TYPE_CHECKING:
@@ -328,8 +328,9 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
     """Return where neighbouring curves are most out of order between two levels; None if they never are."""
     largest = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
+        medians, dispersions = np.array([(c.median, c.dispersion) for c in (lesser, worse)]).T
         with np.errstate(over="ignore", under="ignore"):
-            extremes = np.exp(difference_extremes(*((c.median, c.dispersion) for c in (lesser, worse))))
+            extremes = np.exp(difference_extremes(np.log(medians), dispersions))
         places = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
         apart = worse.probability(places) - lesser.probability(places)
         k = int(np.argmax(apart))

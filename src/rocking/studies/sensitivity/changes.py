@@ -11,6 +11,7 @@ from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.statistics.counts import share_interval
+from rocking.statistics.lognormal import difference_extremes
 from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dispersion, log_fractile
 
 if TYPE_CHECKING:
@@ -211,14 +212,7 @@ def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[Floa
     from scipy.special import ndtr
 
     (m, n), (s, t) = log_median, dispersion
-    # where the densities are equal: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
-    a, b = t**2 - s**2, s**2 * (n - m)
-    c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)  # Eq. 189
-    root = np.sqrt(np.maximum(b**2 - a * c, 0.0))
-    q = -(b + np.where(b < 0.0, -root, root))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        places = m + np.array([np.where(a != 0.0, q / a, np.inf), np.where(q != 0.0, c / q, 0.0)])
-    places = np.where(np.isfinite(places), places, m)
+    places = difference_extremes(log_median, dispersion)
     apart = np.abs(ndtr((places - m) / s) - ndtr((places - n) / t))
     best = apart.argmax(axis=0)[np.newaxis]
     return np.take_along_axis(apart, best, 0)[0], np.take_along_axis(places, best, 0)[0]
