@@ -342,24 +342,17 @@ class _Assessor:
         self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
     ) -> Verdict | NotAssessed:
         """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
-        found: list[Any] = []
         try:
-            moving = self._moving(item, threads, progress)
-            for restitution in self.spatial:
-                first = self.spatial.index(restitution)
-                found.append(found[first] if first < len(found) else moving.results(restitution))
-            lifts = moving.moves()
+            row = self._histories_in_space(item)
+            parts = {id(part): part for part in row.parts}  # a model that stands twice is computed once
+            found = {key: results_of(part, threads=threads, progress=progress) for key, part in parts.items()}
         except RockingError as error:
             return NotAssessed(item.row, item.name, str(error))
-        outcome, ratio = (np.stack(each, axis=-1) for each in zip(*found, strict=True))
-        return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
+        names = ("outcome", "peak_rotation")
+        return row.rule({name: np.concatenate([found[id(part)][name] for part in row.parts]) for name in names})
 
-    def _moving(
-        self, item: InventoryObject, threads: int | None = None, progress: Callable[[int], None] | None = None
-    ) -> SpatialObject:
-        return SpatialObject(
-            item, self.hazard, self.draws, self.gravity, self._friction(item), threads=threads, progress=progress
-        )
+    def _moving(self, item: InventoryObject, threads: int | None = None) -> SpatialObject:
+        return SpatialObject(item, self.hazard, self.draws, self.gravity, self._friction(item), threads)
 
     def object_histories(self, item: InventoryObject) -> ObjectHistories | NotAssessed:
         """Return the histories of one object, whether it rocks in a plane or moves in three dimensions."""
@@ -380,12 +373,13 @@ class _Assessor:
         return ObjectHistories(item, parts, len(parts), lambda results: next(self.verdicts([item], product, results)))
 
     def _histories_in_space(self, item: InventoryObject) -> ObjectHistories:
-        moving, lifts = self._moving(item), self._moving(item).moves()
+        moving = self._moving(item)
+        lifts = moving.moves()
         models: list[list[Product]] = []
         for restitution in self.spatial:
             first = self.spatial.index(restitution)
-            found = moving.histories(restitution, self.order)
-            models.append(models[first] if first < len(models) else [rows for _, rows in found])
+            known = first < len(models)
+            models.append(models[first] if known else [rows for _, rows in moving.histories(restitution, self.order)])
         angle = np.concatenate([np.full(len(one.motions), one.sides["alpha_right"].item()) for one in models[0]])
         shape = (-1, len(DIRECTIONS), len(self.labels))
 

@@ -1,6 +1,6 @@
 """An object in three dimensions: its histories on the vertices of its hull, and what would help it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -23,9 +23,9 @@ class SpatialObject:
 
     def __init__(
         self, item: InventoryObject, hazard: Hazard, draws: Draws, gravity: float, friction: float | None,
-        *, threads: int | None, progress: Callable[[int], None] | None = None,
+        threads: int | None,
     ) -> None:  # fmt: skip
-        self.item, self.hazard, self.gravity, self.threads, self.progress = item, hazard, gravity, threads, progress
+        self.item, self.hazard, self.gravity, self.threads = item, hazard, gravity, threads
         self.bodies = [each.in_space() for each in draws.bodies(item)]
         self.number = draws.number(len(self.bodies))
         self.settings = settings_of(gravity, {"friction": friction}, self.bodies[0])
@@ -33,14 +33,11 @@ class SpatialObject:
         self.friction = self.settings.friction
         self._first = slenderest(item).in_space()  # of approximate sizes, those that lift first
 
-    def results(
-        self, restitution: Any, which: IntArray | None = None, scale: float = 1.0
-    ) -> tuple[np.ndarray, FloatArray]:
+    def results(self, restitution: Any, which: IntArray, scale: float) -> tuple[np.ndarray, FloatArray]:
         """Return outcomes, and peak rotations over the slenderness angle, of some motions and both directions."""
-        which = np.arange(len(self.hazard.motions)) if which is None else which
         outcome, ratio = np.zeros((len(which), 2), np.int64), np.zeros((len(which), 2))
         for own, rows in self.histories(restitution, which, scale):
-            found = results_of(rows, threads=self.threads, progress=self.progress)
+            found = results_of(rows, threads=self.threads)
             outcome[own] = found["outcome"].reshape(-1, 2)
             ratio[own] = np.abs(found["peak_rotation"]).reshape(-1, 2) / rows.sides["alpha_right"].item()
         return outcome, ratio
