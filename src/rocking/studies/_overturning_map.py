@@ -128,21 +128,11 @@ class MapArrays:
         return dataset
 
 
-def map_arrays(  # noqa: PLR0913
-    body: Body,
-    motion: Motion,
-    x: Axis | tuple[str, Any],
-    y: Axis | tuple[str, Any],
-    restitution: Any = "ked",
-    *,
-    gravity: float = conventions.g,
-    threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
-    refine: int | None = None,
-    **settings: Any,
+def map_arrays(
+    *subject: Any, progress: Callable[[int], None] | None = None, refine: int | None = None, **options: Any
 ) -> MapArrays:
-    """Return an overturning map as arrays; parameters as of `overturning_map`."""
-    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, threads=threads, **settings)
+    """Return an overturning map as arrays; parameters as of `overturning_map`, which stand as in `Plane.of`."""
+    plane = Plane.of(*subject, **options)
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)
     variables = {name: results[name].reshape(shape) for name in HISTORY}

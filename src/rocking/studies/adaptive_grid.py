@@ -35,12 +35,12 @@ class Plane:
             axis.check_beside(other)
 
     @classmethod
-    def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any, **options: Any) -> "Plane":
+    def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any = "ked", **options: Any) -> "Plane":
         """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
         options |= friction_beside(axes, options.get("friction"))
-        settings = settings_of(options.pop("gravity"), options, body)
+        settings = settings_of(options.pop("gravity", conventions.g), options, body)
         return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
