@@ -180,8 +180,7 @@ class Maximum:
     theta: FloatArray  # rows of coefficients [-]
     value: FloatArray  # the functions there [-]
     curvature: FloatArray  # minus their Hessians there [-]
-    decrement: FloatArray  # gradient times Newton step: the squared distance to the maximum in standard errors [-]
-    proven: BoolArray  # whether the decrement is below 1e-18 and the curvature positive definite there
+    proven: BoolArray  # whether the squared distance to them is below 1e-18, the curvature positive definite there
 
 
 def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
@@ -210,7 +209,7 @@ def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> 
         if not active.size:
             break
     proven = (decrement <= DECREMENT) & np.isfinite(value) & np.isfinite(theta).all(axis=1)
-    return Maximum(theta, value, curvature, decrement, proven)
+    return Maximum(theta, value, curvature, proven)
 
 
 def maximise_from(objective: Objective, starts: FloatArray) -> Maximum:

@@ -178,7 +178,9 @@ def assess(
     >>> assess([vase], hazard).verdicts[0].light.word
     'green'
     """
-    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
+    assessor = _Assessor(
+        inventory, hazard, restitution=restitution, thresholds=thresholds, gravity=gravity, friction=friction
+    )
     in_space = filter(assessor.in_space, assessor.inventory.objects)
     rulings = [assessor.verdict_in_space(item, threads, progress) for item in in_space]
     for objects in assessor.pieces():
@@ -190,19 +192,13 @@ def assess(
 
 
 def assessment_plan(
-    inventory: Inventory | Sequence[InventoryObject],
-    hazard: Hazard,
-    *,
-    restitution: Any = None,
-    thresholds: Thresholds | None = None,
-    gravity: float = g,
-    friction: float | None = None,
+    inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, **options: Any
 ) -> tuple[Histories, Callable[[Arrays], Assessment], dict[str, int], tuple[InventoryObject, ...]]:
     """Return the histories of an assessment, what makes it of their results, what they are over, and the objects.
 
     For campaigns. Objects that move in three dimensions have models of impact that change more slowly than motions.
     """
-    assessor = _Assessor(inventory, hazard, restitution, thresholds, gravity, friction)
+    assessor = _Assessor(inventory, hazard, **options)
     objects = assessor.inventory.objects
     shaken, models = {"motion": len(hazard.motions)}, {"restitution": len(assessor.labels)}
     ways = {"direction": len(DIRECTIONS)}
@@ -251,8 +247,8 @@ class _Assessor:
     """What an assessment is made with, checked, and its steps: bodies, histories, verdicts."""
 
     def __init__(
-        self, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, restitution: Any,
-        thresholds: Thresholds | None, gravity: float, friction: float | None = None,
+        self, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, *, restitution: Any = None,
+        thresholds: Thresholds | None = None, gravity: float = g, friction: float | None = None,
     ) -> None:  # fmt: skip
         self.friction = friction
         self.inventory = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
