@@ -5,7 +5,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import singledispatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,14 +27,6 @@ if TYPE_CHECKING:
     from rocking.bodies.formats import schema
 
 LARGEST_TOML = 16 * 2**20  # larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF
-
-
-class _Options(TypedDict, total=False):
-    density: float
-    depth: float
-    mass: float | None
-    centre: tuple[float, float] | None
-    moment_of_inertia: float | None
 
 
 def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
@@ -132,7 +124,7 @@ _OUTLINES: dict[str, Callable[..., FloatArray]] = {
 """Shapes of which the keys of their tables are the arguments: lengths, and `sides`."""
 
 
-def _options(table: "schema.ShapeTable", scale: float) -> "_Options":
+def _options(table: "schema.ShapeTable", scale: float) -> dict[str, Any]:
     options = _known(table, scale)
     if table.density is not None:
         options["density"] = table.density
@@ -141,7 +133,7 @@ def _options(table: "schema.ShapeTable", scale: float) -> "_Options":
     return options
 
 
-def _known(table: "schema.KnownTable", scale: float) -> "_Options":
+def _known(table: "schema.KnownTable", scale: float) -> dict[str, Any]:
     centre = _pair(table.centre, scale)
     return {"mass": table.mass, "centre": centre, "moment_of_inertia": table.moment_of_inertia}
 
@@ -166,8 +158,8 @@ def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> S
         check_count(sum(len(ring) for region in regions for ring in region.rings))
     with blamed("section"):
         depth = 1.0 if table.depth is None else table.depth * scale
-        known: Any = _known(table, scale)
-        return Section(regions, _pair(table.feet, scale), depth=depth, ground=table.ground * scale, **known)
+        known, feet = _known(table, scale), _pair(table.feet, scale)
+        return Section(regions, feet, depth=depth, ground=table.ground * scale, **known)
 
 
 def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> list[Region]:

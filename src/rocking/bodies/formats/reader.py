@@ -245,22 +245,19 @@ def _standing(regions: list[Region], request: Request) -> Section:
 
 def _mesh(request: Request) -> Solid:
     path, kind = request.path, request.path.suffix[1:].lower()
-    options, units = request.options, request.units
+    options: dict[str, Any] = {key: value for key, value in request.options.items() if value is not None}
+    units, by_specification = request.units, kind == "glb"
     if given := request.given((*Placement.__annotations__, "moment_of_inertia")):
         raise BodyFileError(f"{path.name}: is a mesh, which stands on its lowest point and takes no {given}")
-    up, by_specification = options.get("up"), kind == "glb"
-    taken = [*(["in m"] if units is None else []), *(["with y up"] if up is None else [])] if by_specification else []
+    said = (("in m", units is None), ("with y up", "up" not in options)) if by_specification else ()
+    taken = [words for words, silent in said if silent]
     density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)
     if units is None and not by_specification:
         raise BodyFileError(
             f"{path.name}: {kind.upper()} files do not state their unit; give units=, one of {', '.join(LENGTH_UNITS)}"
         )
-    solid = solid_from_mesh(
-        path, density, units=units or "m", up=up if up is not None else ("y" if by_specification else "z"),
-        repair=options.get("repair") or "safe", surface=options.get("surface") or "faces", wall=options.get("wall"),
-        base_tolerance=options.get("base_tolerance"), mass=options.get("mass"), centre=options.get("centre"),
-        inertia=options.get("inertia"),
-    )  # fmt: skip
+    options.setdefault("up", "y" if by_specification else "z")
+    solid = solid_from_mesh(path, density, units=units or "m", **options)
     if taken:
         solid.repairs = (f"read {' and '.join(taken)}, as the specification of GLB says", *solid.repairs)
     return solid

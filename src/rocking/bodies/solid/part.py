@@ -229,9 +229,9 @@ class Part:
 
 def footprint(part: Part, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
     """Return the corners, and centre and radius of the round faces, with which a part stands on a level ground [m]."""
-    whole = part.shape.footprint()
-    points = placed_points(whole.points, part.rotation, part.translation)
+    corners, round_faces = part.shape.footprint()
+    points = placed_points(corners, part.rotation, part.translation)
     upright = abs(abs(float(part.rotation[2, 2])) - 1.0) <= 1e-12
-    discs = [(placed_points(centre, part.rotation, part.translation), radius) for centre, radius in whole.discs]
+    discs = [(placed_points(centre, part.rotation, part.translation), radius) for centre, radius in round_faces]
     standing = [(c[:2], r) for c, r in discs if upright and abs(float(c[2]) - ground) <= tolerance]
     return points[np.abs(points[:, 2] - ground) <= tolerance, :2], standing

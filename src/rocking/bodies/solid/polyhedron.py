@@ -80,7 +80,7 @@ class Polyhedron(Shape):
         return np.array([turned.min(axis=0), turned.max(axis=0)])
 
     def footprint(self) -> Footprint:
-        return Footprint(self.vertices)
+        return self.vertices, ()
 
     def hull_points(self) -> FloatArray:
         """Return the vertices."""

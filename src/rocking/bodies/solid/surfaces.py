@@ -202,13 +202,8 @@ class TurnedSurface(Surface):
         return np.sin(polar), centre + half * np.cos(polar), np.cos(polar) * sweep, -half * np.sin(polar) * sweep
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Footprint:
-    """What a shape leaves on the plane it may stand on."""
-
-    points: FloatArray  # corners that may touch the ground [m]; shape (n, 3)
-    # centre [m] and radius [m] of round faces that may stand flat on it
-    discs: tuple[tuple[FloatArray, float], ...] = ()
+Footprint = tuple[FloatArray, tuple[tuple[FloatArray, float], ...]]
+"""Corners that may touch the ground, (n, 3) [m], and centre and radius of round faces that may stand flat on it [m]."""
 
 
 class Shape(ABC):

@@ -108,7 +108,7 @@ class Turned(Shape):
                 discs.append((np.array([0.0, 0.0, height]), a * radius))
             else:
                 rims.append(np.stack([a * radius * np.cos(phi), b * radius * np.sin(phi), 0 * phi + height], axis=1))
-        return Footprint(np.concatenate([np.zeros((0, 3)), *rims]), tuple(discs))
+        return np.concatenate([np.zeros((0, 3)), *rims]), tuple(discs)
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Return which points lie inside the turned profile."""
