@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -79,41 +79,29 @@ def family(
     return Contender(f"{prefix}{name}({parameter})", (("eta", parameter) if eta else (parameter,)), fit)
 
 
-def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]) -> Contender:
-    """Return a contender that is fitted as several families; the one with the least squares takes part."""
+def contact_bed(*, eta: bool) -> Contender:
+    """Return the contact bed with points and hardness fitted, damping its default, and a factor on request."""
+
+    def of(points: int) -> Contender:
+        return family(
+            "contact-bed", "hardness", lambda x: ContactBedModel(points=points, hardness=x), HARDNESS, eta=eta
+        )
 
     def fit(data: DataSet) -> RestitutionModel:
-        """Fit every family."""
-        fitted = [member.fit(data) for member in members]
+        """Fit the hardness with every number of points; the one with the least squares takes part."""
+        fitted = [of(points).fit(data) for points in POINTS]
         return min(
             fitted, key=lambda model: float(((model.of_slenderness(data.slenderness) - data.coefficient) ** 2).sum())
         )
 
-    return Contender(name, parameters, fit)
-
-
-def contact_bed(*, eta: bool) -> Contender:
-    """Return the contact bed with points and hardness fitted, damping its default, and a factor on request."""
-    members = [
-        family(ContactBedModel.name, "hardness", partial(_bed_of, points), HARDNESS, eta=eta) for points in POINTS
-    ]
     prefix, first = ("eta*", ("eta",)) if eta else ("", ())
-    return best_of(f"{prefix}contact-bed(points, hardness)", (*first, "points", "hardness"), members)
+    return Contender(f"{prefix}contact-bed(points, hardness)", (*first, "points", "hardness"), fit)
 
 
 def contenders() -> list[Contender]:
     """Return everyone who takes part by default."""
-    whole = [
-        Housner(),
-        Ked(),
-        HorizontalMomentum(),
-        ShiftedImpulse(k=2.0 / 3.0),
-        DistributedImpulse(q=0.0),
-        DistributedImpulse(q=1.0),
-        DistributedImpulse(q=2.0),
-        PlasticWinkler(),
-        ContactBedModel(),
-    ]
+    impulses = [ShiftedImpulse(k=2.0 / 3.0), *(DistributedImpulse(q=q) for q in (0.0, 1.0, 2.0))]
+    whole = [Housner(), Ked(), HorizontalMomentum(), *impulses, PlasticWinkler(), ContactBedModel()]
     factored = [Housner(), Ked(), HorizontalMomentum(), PlasticWinkler()]
     shifted = ("shifted-impulse", "k", ShiftedImpulse, (0.0, 1.0))
     distributed = ("distributed-impulse", "q", DistributedImpulse, (0.0, 20.0))
@@ -127,10 +115,6 @@ def contenders() -> list[Contender]:
         contact_bed(eta=False),
         contact_bed(eta=True),
     ]
-
-
-def _bed_of(points: int, hardness: float) -> RestitutionModel:
-    return ContactBedModel(points=points, hardness=hardness)
 
 
 def _best_eta(model: FloatArray, measured: FloatArray) -> float:
