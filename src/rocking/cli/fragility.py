@@ -61,7 +61,10 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 def fragility(
     context: typer.Context,
     body: options.BodyFile = None,
-    record: options.SeveralRecords = None,
+    record: Annotated[
+        list[str] | None,
+        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
+    ] = None,
     motion: options.SeveralMotions = None,
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.inventory.assessment import Assessment
 
+_SHAKING = "How it shakes"
 _MOST_PLANNED = 5
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
@@ -25,21 +26,23 @@ def inventory(
         Path, typer.Argument(help="List as .xlsx, .ods or CSV: name, width, depth, height and more, with units.")
     ],
     columns: Annotated[str | None, options.key(InventoryTable, "columns")] = None,
-    pga: Annotated[str | None, options.key(InventoryTable, "pga", rich_help_panel=options.SHAKING)] = None,
-    pgv: Annotated[str | None, options.key(InventoryTable, "pgv", rich_help_panel=options.SHAKING)] = None,
+    pga: Annotated[str | None, options.key(InventoryTable, "pga", rich_help_panel=_SHAKING)] = None,
+    pgv: Annotated[str | None, options.key(InventoryTable, "pgv", rich_help_panel=_SHAKING)] = None,
     motion: Annotated[
         list[str] | None,
-        typer.Option(help="Record file, again for more; as recorded without a level.", rich_help_panel=options.SHAKING),
+        typer.Option(help="Record file, again for more; as recorded without a level.", rich_help_panel=_SHAKING),
     ] = None,
     synthetic: Annotated[
         str | None,
         typer.Option(
             help="Family of motions: firm-ground (default), soft-ground, kanai-tajimi, point-source, pulse-like.",
-            rich_help_panel=options.SHAKING,
+            rich_help_panel=_SHAKING,
         ),
     ] = None,
-    count: Annotated[int | None, options.count(200)] = None,
-    seed: options.Seed = None,
+    count: Annotated[int | None, options.count(200, _SHAKING)] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
+    ] = None,
     restitution: Annotated[
         str | None,
         typer.Option(

@@ -141,9 +141,9 @@ Seed = Annotated[
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 
 
-def count(usual: int) -> Any:
+def count(usual: int, panel: str = SHAKING) -> Any:
     """Return the option of how many synthetic motions there are."""
-    return typer.Option(help=f"How many synthetic motions, {usual} if not given.", rich_help_panel=SHAKING)
+    return typer.Option(help=f"How many synthetic motions, {usual} if not given.", rich_help_panel=panel)
 
 
 def out(kinds: dict[str, Any]) -> Any:
