@@ -7,6 +7,7 @@ import re
 from collections.abc import AsyncIterator
 from typing import Any, NoReturn
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import refusal
@@ -19,10 +20,6 @@ _DRAINED = 64 * MEBIBYTE
 _LONG_JSON = 1 << 16
 _BRACKETS = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{}]', re.DOTALL)
 _LARGEST = 2**63
-
-
-class Gone(Exception):  # noqa: N818 - nothing went wrong
-    """The client went away."""
 
 
 class BodyLimits:
@@ -43,7 +40,7 @@ class BodyLimits:
             await self._read(RequestHead.of(scope), receive, body)
         except Refused as error:
             await refusal(error, close=True)(scope, receive, send)
-        except Gone:
+        except ClientDisconnect:
             return
         else:
             await self._app(scope, _again(bytes(body), receive), send)
@@ -87,7 +84,7 @@ async def _pieces(receive: Receive) -> AsyncIterator[bytes]:
     while more:
         message = await receive()
         if message["type"] == "http.disconnect":
-            raise Gone
+            raise ClientDisconnect
         more = message.get("more_body", False)
         yield message.get("body", b"")
 
