@@ -224,12 +224,13 @@ def test_the_api_and_the_page_say_it():
     """A motion and a body that were hardly meant carry their sentences in the answers that the page shows as notes."""
     pytest.importorskip("fastapi")
     from rocking.app.api.body import described
-    from rocking.reports.response_facts import MotionAnswer, motion_facts
+    from rocking.plots.labels import fine_samples
+    from rocking.reports.response_facts import motion_facts
 
     assert "1000 m above the ground" in described(rk.Block(width=500.0, height=2000.0), 9.81, None)["warnings"][0]
     assert described(rk.Block(width=0.5, height=2.0), 9.81, None)["warnings"] == []
-    strong = MotionAnswer.of(rk.pulses.sine(amplitude=3000.0, period=0.8), [1.0], 0.05)
-    assert "306 g" in motion_facts(strong.motion, strong.samples, strong.measures)["warnings"][0]
+    strong = rk.pulses.sine(amplitude=3000.0, period=0.8)
+    assert "306 g" in motion_facts(strong, fine_samples(strong), {})["warnings"][0]
 
 
 def test_what_no_ground_does_is_doubted(tmp_path) -> None:

@@ -17,7 +17,9 @@ from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.motions.intensity import Measure
-    from rocking.reports.response_facts import MotionAnswer
+    from rocking.motions.motion import GroundMotion
+    from rocking.motions.pulse import Motion
+    from rocking.motions.spectrum import ResponseSpectrum
 
 _MOST_PERIODS = 1000
 
@@ -31,7 +33,7 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
     from rocking.plots.labels import traces
     from rocking.tables import Column, Table, to_csv
 
-    motion, samples = answer.motion.motion, answer.motion.samples
+    motion, samples = answer.motion, answer.samples
     columns: dict[str, Any] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
     if isinstance(motion, GroundMotion):
         columns |= {"velocity_m_s": ground_velocity(motion), "displacement_m": ground_displacement(motion)}
@@ -67,7 +69,9 @@ def motion(
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli.arguments import Arguments, hinted
-    from rocking.reports.response_facts import MotionAnswer
+    from rocking.motions.spectrum import response_spectrum
+    from rocking.plots.labels import fine_samples
+    from rocking.reports.response_facts import measures_of
     from rocking.spec.construction import motion_of
     from rocking.spec.document import OneMotionTable
     from rocking.spec.reading import CommandFiles, checked
@@ -82,7 +86,10 @@ def motion(
         table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
         subject = motion_of(table, CommandFiles(Path()))
     subject = subject if table.scale == 1.0 else subject.scaled(table.scale)
-    answer = MotionPage(MotionAnswer.of(subject, parsed_periods(periods), damping), arguments.acceleration or "m/s2")
+    samples = fine_samples(subject)
+    spectrum = response_spectrum(samples, parsed_periods(periods), damping)
+    unit = arguments.acceleration or "m/s2"
+    answer = MotionPage(subject, samples, measures_of(subject, samples), spectrum, unit)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -107,31 +114,33 @@ def parsed_periods(text: str) -> list[float]:
 class MotionPage:
     """A motion, what was measured on it, and the unit in which accelerations are printed."""
 
-    motion: "MotionAnswer"
+    motion: "Motion"
+    samples: "GroundMotion"  # itself, or the pulse cut finely
+    measures: "dict[str, Measure]"  # intensity measures by short name
+    spectrum: "ResponseSpectrum"  # response at the periods asked for
     acceleration: str
 
     def draw(self) -> Any:
         from rocking.plots import ground_motion_picture
 
-        return ground_motion_picture(self.motion.motion)
+        return ground_motion_picture(self.motion)
 
     def facts(self) -> dict[str, Any]:
         from rocking.reports.response_facts import motion_facts, spectrum_facts
 
-        motion = self.motion
-        facts = motion_facts(motion.motion, motion.samples, motion.measures)
-        return {**facts, "spectrum": spectrum_facts(motion.spectrum)}
+        facts = motion_facts(self.motion, self.samples, self.measures)
+        return {**facts, "spectrum": spectrum_facts(self.spectrum)}
 
     def show(self, page: Page) -> None:
-        unit, spectrum = beside_g(self.acceleration), self.motion.spectrum
-        page.line(self.motion.motion.name, "bold")
+        unit, spectrum = beside_g(self.acceleration), self.spectrum
+        page.line(self.motion.name, "bold")
         for name, value in self._head(unit):
             page.line(f"  {name + ':':<12} {value}")
-        for line in getattr(self.motion.samples, "provenance", ()) if hasattr(self.motion.motion, "metadata") else ():
+        for line in self.samples.provenance if hasattr(self.motion, "metadata") else ():
             page.line(f"  {line}", "dim")
         page.line()
         head = ("intensity measure", "value", "unit", "")
-        rows: Sequence[Sequence[str]] = [_measure_row(one, unit) for one in self.motion.measures.values()]
+        rows: Sequence[Sequence[str]] = [_measure_row(one, unit) for one in self.measures.values()]
         page.table(head, rows, ("intensity measure", "unit", ""), whole={0, 1, 2})
         page.line()
         page.line(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", "bold")
@@ -141,7 +150,7 @@ class MotionPage:
         page.table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), rows, whole={0})
 
     def _head(self, unit: str) -> list[tuple[str, str]]:
-        motion: Any = self.motion.motion
+        motion: Any = self.motion
         if not hasattr(motion, "metadata"):
             return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
         metadata = motion.metadata

@@ -43,20 +43,8 @@ _MOST_IMPACTS = 24
 
 
 @dataclass(frozen=True)
-class ReportSubject:
-    """What a report is about."""
-
-    name: str = ""  # what the user calls the body
-    date: str = ""  # day of the report
-    toml: str = ""  # the inputs as a file of the command line; empty if they were objects in Python
-    commands: Sequence[str] = ()  # what to type for the same result
-    fingerprint: str = ""  # SHA-256 of the inputs
-    software: str = SOFTWARE  # name and version
-
-
-@dataclass(frozen=True)
-class ReportResults:
-    """What was computed."""
+class ResponseReport:
+    """What was computed, and what it is about."""
 
     impact: ImpactAnswer  # body and coefficients
     motion: Motion | None  # the motion, scaled; None for free rocking
@@ -64,15 +52,20 @@ class ReportResults:
     responses: Mapping[str, Response]  # by label of the restitution; at least one
     refused: Mapping[str, str]  # by label: why there is none
     friction: float  # coefficient of friction between body and ground [-]
+    name: str = ""  # what the user calls the body
+    date: str = ""  # day of the report
+    toml: str = ""  # the inputs as a file of the command line; empty if they were objects in Python
+    commands: Sequence[str] = ()  # what to type for the same result
+    fingerprint: str = ""  # SHA-256 of the inputs
 
 
 PICTURES = ("body", "coefficients", "motion", "response")
 """Stems of the pictures of a report; ``motion`` is left out for free rocking."""
 
 
-def response_document(subject: ReportSubject, results: ReportResults) -> Document:
+def response_document(results: ResponseReport) -> Document:
     """Return the report."""
-    title = subject.name or _KINDS.get(type(results.impact.body).__name__, "A rocking body")
+    title = results.name or _KINDS.get(type(results.impact.body).__name__, "A rocking body")
     first = next(iter(results.responses.values()))
     body = Picture("body", "The body on its feet O and O', with its centre of mass C")
     gravity = results.impact.gravity
@@ -82,17 +75,17 @@ def response_document(subject: ReportSubject, results: ReportResults) -> Documen
         ReportSection("What an impact costs", _impact(results)),
         ReportSection("The ground", _ground(results)),
         ReportSection("The response", _response(results)),
-        ReportSection("To do it again", _again(subject, first)),
+        ReportSection("To do it again", _again(results, first)),
     ]
-    about = ", ".join([subject.software, *([f"inputs {subject.fingerprint[:16]}"] if subject.fingerprint else [])])
+    about = ", ".join([SOFTWARE, *([f"inputs {results.fingerprint[:16]}"] if results.fingerprint else [])])
     ground = "let go, the ground at rest" if results.motion is None else f"under {results.motion.name}"
     if first.scale != 1.0:
         ground = f"{ground}, scaled by {first.scale:g}"
-    subtitle = ground[:1].upper() + ground[1:] + (f". {subject.date}" if subject.date else "")
+    subtitle = ground[:1].upper() + ground[1:] + (f". {results.date}" if results.date else "")
     return Document(title, subtitle, sections, verdict=_verdict(results), footer=about)
 
 
-def _verdict(results: ReportResults) -> list[Paragraph]:
+def _verdict(results: ResponseReport) -> list[Paragraph]:
     label, first = next(iter(results.responses.items()))
     words = first.summary[:1].upper() + first.summary[1:] + "."
     own = Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))
@@ -133,7 +126,7 @@ def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
     return rows
 
 
-def _impact(results: ReportResults) -> list[Block]:
+def _impact(results: ResponseReport) -> list[Block]:
     tables = [_coefficients(results.impact, foot) for foot in results.impact.tables]
     rows = [row for table in results.impact.tables.values() for row in table]
     notes = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
@@ -141,14 +134,14 @@ def _impact(results: ReportResults) -> list[Block]:
     return [picture, *tables, *(Paragraph(words, "", "fair") for words in notes)]
 
 
-def _ground(results: ReportResults) -> list[Block]:
+def _ground(results: ResponseReport) -> list[Block]:
     if results.motion is None:
         return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
     caption = "Acceleration, velocity and displacement of the ground, and the response spectrum for 5 % damping"
     return [Picture("motion", caption, 74), _measures(results.measures)]
 
 
-def _response(results: ReportResults) -> list[Block]:
+def _response(results: ResponseReport) -> list[Block]:
     several = len(results.responses) > 1
     caption = "The models over one another" if several else "Rotation, velocity, energy and the friction that is taken"
     first_label, first = next(iter(results.responses.items()))
@@ -161,16 +154,16 @@ def _response(results: ReportResults) -> list[Block]:
     return [*blocks, _impacts(first_label, first)] if first.impacts.size else blocks
 
 
-def _again(subject: ReportSubject, first: Response) -> list[Block]:
-    toml = subject.toml
+def _again(results: ResponseReport, first: Response) -> list[Block]:
+    toml = results.toml
     if not toml:
-        return [Paragraph(f"{subject.software}.", "Made with"), Paragraph(_how(first), "Computed with")]
+        return [Paragraph(f"{SOFTWARE}.", "Made with"), Paragraph(_how(first), "Computed with")]
     if len(toml) > _LONGEST_LISTING:
         toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"
     return [
         Listing(toml.rstrip("\n"), "This file, saved as response.toml beside the record if there is one:"),
-        Listing("\n".join(subject.commands), "gives the same numbers on the command line:"),
-        Paragraph(f"{subject.software}; SHA-256 of the inputs: {subject.fingerprint}.", "Made with"),
+        Listing("\n".join(results.commands), "gives the same numbers on the command line:"),
+        Paragraph(f"{SOFTWARE}; SHA-256 of the inputs: {results.fingerprint}.", "Made with"),
         Paragraph(_how(first), "Computed with"),
     ]
 
@@ -267,8 +260,8 @@ def response_content(response: Response, *, name: str, date: str, friction: floa
         response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
     )
     measures = {} if motion is None or response.scale == 0.0 else measures_of(motion, fine_samples(motion))
-    results = ReportResults(impact, motion, measures, {response.parameters.label: response}, {}, friction)
-    document = response_document(ReportSubject(name, date), results)
+    responses = {response.parameters.label: response}
+    document = response_document(ResponseReport(impact, motion, measures, responses, {}, friction, name, date))
     pictures: dict[str, Callable[[], Any]] = {
         "body": lambda: body_picture(response.body),
         "coefficients": lambda: coefficient_picture(response.body, impact.tables),

@@ -1,7 +1,7 @@
 """A response and its motion in plain values: SI units, None where there is nothing; the API describes every key."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +11,9 @@ from rocking.dynamics.response import Response
 from rocking.motions.intensity import Measure, intensity_measures, key_with_unit
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
-from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
+from rocking.motions.spectrum import ResponseSpectrum
 from rocking.outcome import Outcome
-from rocking.plots.labels import Traces, fine_samples, traces
+from rocking.plots.labels import Traces, traces
 from rocking.restitution import models
 
 if TYPE_CHECKING:
@@ -176,23 +176,6 @@ def restitution_words(label: str) -> str:
     except ValueError:
         return label
     return f"r = {label}"
-
-
-@dataclass(frozen=True, slots=True)
-class MotionAnswer:
-    """One motion and what was measured on it."""
-
-    motion: GroundMotion | Pulse
-    samples: GroundMotion  # itself, or the pulse cut finely
-    measures: dict[str, Measure]  # intensity measures by short name
-    spectrum: ResponseSpectrum  # response at the periods asked for
-
-    @classmethod
-    def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "MotionAnswer":
-        """Measure a motion, with a spectrum at some periods [s] for a damping ratio from 0 to below 1 [-]."""
-        samples = fine_samples(motion)
-        spectrum = response_spectrum(samples, list(periods), damping)
-        return cls(motion, samples, measures_of(motion, samples), spectrum)
 
 
 def measures_of(

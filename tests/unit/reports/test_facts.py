@@ -9,6 +9,8 @@ import pytest
 import rocking as rk
 from rocking.errors import PureRockingWarning
 from rocking.evidence._coefficient_table import default_models
+from rocking.motions.spectrum import response_spectrum
+from rocking.plots.labels import fine_samples
 from rocking.reports.body_facts import (
     ImpactAnswer,
     body_facts,
@@ -20,8 +22,8 @@ from rocking.reports.body_facts import (
 )
 from rocking.reports.response_facts import (
     ModelAgreement,
-    MotionAnswer,
     finite,
+    measures_of,
     motion_facts,
     other_facts,
     response_facts,
@@ -81,13 +83,12 @@ def test_the_stages_conserve_what_they_say():
 def test_motion_facts_of_a_record_and_a_pulse():
     """A record tells samples and step, a pulse has its peaks from its formula."""
     record = rk.GroundMotion([0.0, 1.0, -2.0, 0.5], 0.1, name="four")
-    told = MotionAnswer.of(record, [0.5, 1.0], 0.05)
-    facts = motion_facts(told.motion, told.samples, told.measures)
+    facts = motion_facts(record, record, measures_of(record, record))
     assert (facts["kind"], facts["samples"], facts["time_step_s"]) == ("record", 4, 0.1)
     assert facts["intensity"]["pga_m_s2"] == 2.0
-    assert spectrum_facts(told.spectrum)["period_s"] == [0.5, 1.0]
-    pulse = MotionAnswer.of(MOTION, [1.0], 0.05)
-    exact = motion_facts(MOTION, pulse.samples, pulse.measures)["intensity"]
+    assert spectrum_facts(response_spectrum(record, [0.5, 1.0], 0.05))["period_s"] == [0.5, 1.0]
+    samples = fine_samples(MOTION)
+    exact = motion_facts(MOTION, samples, measures_of(MOTION, samples))["intensity"]
     assert math.isclose(exact["pgv_m_s"], 3.2 * 0.8 / math.pi, rel_tol=1e-12)
 
 

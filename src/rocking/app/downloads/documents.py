@@ -19,7 +19,7 @@ from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.plots.labels import fine_samples
 from rocking.reports.document import response_pdf
-from rocking.reports.response_document import PICTURES, ReportResults, ReportSubject, response_document
+from rocking.reports.response_document import PICTURES, ResponseReport, response_document
 from rocking.reports.response_facts import measures_of
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
@@ -90,14 +90,11 @@ async def inputs_read(request: Request) -> JsonAnswer:
 def report_of(evaluation: Evaluation, date: str) -> bytes:
     """Return the report as PDF."""
     inputs, motion = evaluation.inputs, None if evaluation.inputs.motion is None else evaluation.motion
-    results = ReportResults(
+    results = ResponseReport(
         evaluation.impact, motion, {} if motion is None else measures_of(motion, fine_samples(motion)),
-        evaluation.responses, evaluation.refused, evaluation.problem.assumed_friction,
-    )  # fmt: skip
-    subject = ReportSubject(
-        evaluation.name, date, inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)],
-        fingerprint(inputs), evaluation.about["software"],
+        evaluation.responses, evaluation.refused, evaluation.problem.assumed_friction, evaluation.name, date,
+        inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)], fingerprint(inputs),
     )  # fmt: skip
     stems = [stem for stem in PICTURES if motion is not None or stem != "motion"]
     pictures = {stem: drawn(partial(figure_of, stem, evaluation), "svg") for stem in stems}
-    return response_pdf(response_document(subject, results), pictures)
+    return response_pdf(response_document(results), pictures)
