@@ -109,13 +109,15 @@ def draw(answer: Any, path: Path) -> None:
 def _report(answer: Any, path: Path) -> None:
     from rocking.reports import report
 
-    report(answer.found, path, name=getattr(answer, "name", ""))
+    report(answer.found, path, name=getattr(answer, "name", ""), **getattr(answer, "signed", {}))
 
 
 DRAWN = Export(PICTURES, draw, "matplotlib")
 # of answers whose `found` has a report, and knows what its files hold (`rocking.exported`)
-PICTURE = Export((".png", ".svg"), draw, "matplotlib")
-REPORTED = {"picture": PICTURE, "report": Export((".pdf", ".html"), _report, "matplotlib")}
+REPORTED = {
+    "picture": Export((".png", ".svg"), draw, "matplotlib"),
+    "report": Export((".pdf", ".html"), _report, "matplotlib"),
+}
 CSV = Export((".csv",), lambda answer, path: answer.found.to_csv(path))
 NETCDF = Export((".nc",), lambda answer, path: answer.found.to_netcdf(path), "h5netcdf")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from rocking.cli import options
-from rocking.cli.exports import CSV, NETCDF, PICTURE, REPORTED, Export, Exports
+from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import percent
@@ -147,20 +147,6 @@ class PredictionAnswer:
         page.warn(self.repairs)
 
 
-def _report_of_assessment(answer: "AssessmentAnswer", path: Path) -> None:
-    from rocking.reports import report
-
-    told = answer.told
-    words = {"project": told.project or "", "author": told.author or ""}
-    report(answer.found, path, name=answer.name, date=told.date or f"{datetime.now(UTC):%d %B %Y}", **words)
-
-
-ASSESSMENT_EXPORTS = {
-    "picture": PICTURE,
-    "report": Export((".pdf", ".html"), _report_of_assessment, "matplotlib"),
-}
-
-
 @options.sized
 def assess(
     context: typer.Context,
@@ -176,7 +162,7 @@ def assess(
     friction: options.FrictionOfRange = None,
     sets: options.Set = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(ASSESSMENT_EXPORTS)] = None,
+    out: Annotated[list[str] | None, options.out(REPORTED)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Print whether a body stands, its margin to overturning, what governs, and what to do about it."""
@@ -184,7 +170,7 @@ def assess(
     from rocking.spec.document import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
 
-    exports = Exports.of(out, ASSESSMENT_EXPORTS)
+    exports = Exports.of(out, REPORTED)
     if file := document_file(context, body, ("assess",), ["threads"]):
         document, inputs = in_file(file, sets, AssessmentDocument, (*TABLES, "assess"))
     else:
@@ -205,6 +191,13 @@ class AssessmentAnswer:
     found: "BodyAssessment"
     told: "AssessTable"
     name: str = ""  # of the body
+
+    @property
+    def signed(self) -> dict[str, str]:
+        """What stands at the head of the report and beside the signature."""
+        told = self.told
+        date = told.date or f"{datetime.now(UTC):%d %B %Y}"
+        return {"project": told.project or "", "author": told.author or "", "date": date}
 
     def facts(self) -> dict[str, Any]:
         words = {name: getattr(self.told, name) for name in ("project", "author", "date")}

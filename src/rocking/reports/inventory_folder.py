@@ -111,15 +111,11 @@ def inventory_json(assessment: Assessment) -> str:
     return json.dumps(as_plain(assessment), indent=2, allow_nan=False, ensure_ascii=False)
 
 
-def _pdf(assessment: Assessment, path: Path) -> None:
+def _document(assessment: Assessment, path: Path) -> None:
+    write = render_pdf if _form(path) == "pdf" else write_html
     # the renderer leaves its source beside the pictures for a moment: not among the user's files
     with TemporaryDirectory() as folder:
-        render_pdf(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
-
-
-def _html(assessment: Assessment, path: Path) -> None:
-    with TemporaryDirectory() as folder:
-        write_html(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
+        write(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
 
 
 def _csv(assessment: Assessment, path: Path) -> None:
@@ -195,8 +191,8 @@ def _colour(sheet: Any, lights: list[Light | None]) -> None:
 
 
 _WRITERS: dict[str, Callable[[Assessment, Path], object]] = {
-    "html": _html,
-    "pdf": _pdf,
+    "html": _document,
+    "pdf": _document,
     "xlsx": write_spreadsheet,
     "csv": _csv,
     "json": lambda assessment, path: path.write_text(inventory_json(assessment) + "\n", encoding="utf-8"),
