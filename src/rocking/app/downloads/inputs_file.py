@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from rocking.app.errors import Refused
 from rocking.app.inputs import Inputs, parsed_toml
 from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
+from rocking.app.records import is_hash
 from rocking.bodies.formats.words import sentence
 from rocking.conventions import Assumed
 from rocking.version import SOFTWARE
@@ -19,7 +20,6 @@ from rocking.version import SOFTWARE
 FILE_NAME = "response.toml"  # what such a file is called
 _TABLES = ("response", "body", "motion", "restitution", "settings")
 _SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points", "units"}
-_HASH = re.compile(r"[0-9a-f]{64}")
 _RECORD = re.compile(r"^# record: ([0-9a-f]{64}) (\".*\")$", re.MULTILINE)
 
 FindRecord = Callable[[str], str | None]
@@ -114,7 +114,7 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
         raise Refused(
             f"motion.record: {plain_line(word, 80)} was not uploaded here; drop the file first, then read this"
         )
-    return {"record": sha} if _HASH.fullmatch(word) else {"record": sha, "file_name": word}
+    return {"record": sha} if is_hash(word) else {"record": sha, "file_name": word}
 
 
 def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str | None:

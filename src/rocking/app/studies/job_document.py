@@ -1,7 +1,6 @@
 """The job that a browser sends: checked before anything is opened, and written as the job file of a campaign."""
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
@@ -12,6 +11,7 @@ from pydantic import ValidationError
 from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
+from rocking.app.records import is_hash
 from rocking.bodies.formats.words import sentence
 from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
@@ -26,7 +26,6 @@ _MEASURED = {"stripes", "incremental", "cloud", "minimum-acceleration"}
 """Kinds that need every motion before they begin."""
 
 _QUICKLY_MADE = 200
-_RECORD = re.compile(r"[0-9a-f]{64}\Z")
 _BODY_KEYS = (
     "units", "name", "note", "width", "height", "depth", "density", "slenderness_angle", "semi_diagonal", "feet",
     "block", "trapezoid", "base", "top", "lean", "ellipse", "regular_polygon", "sides", "radius", "section", "region",
@@ -161,7 +160,7 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
             f"motions.{key} names a file, which a page cannot do; upload one that has both components"
         )
     for name in _listed(table.get("records")):
-        if name is not None and not (isinstance(name, str) and _RECORD.match(name)):
+        if name is not None and not is_hash(name):
             raise InvalidValueError(
                 f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
                 f"got {name!r:.60}; upload the file first"
