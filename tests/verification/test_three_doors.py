@@ -6,23 +6,16 @@ import math
 import os
 import subprocess
 import sys
-import warnings
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from web_clients import new_application, script_of
 
 import rocking as rk
 from rocking import conventions
 from rocking.motions.formats import write_motion
-
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
-
-from rocking.app.application import create_app
-from rocking.app.settings import ServerSettings
 from rocking.plots.animation_scene import DrawnShape, fall_of
 
 pytestmark = pytest.mark.verifies("same bits", control="test_negative_control_a_changed_input_differs", room="doors")
@@ -115,10 +108,7 @@ def record(tmp_path_factory):
 @pytest.fixture(scope="module")
 def inside(tmp_path_factory):
     """The application in this process."""
-    settings = ServerSettings(folder=tmp_path_factory.mktemp("data"))
-    app = create_app(settings)
-    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
-    with TestClient(app, base_url=settings.origin, headers=head) as client:
+    with script_of(new_application(tmp_path_factory.mktemp("data"))) as client:
         yield client
 
 

@@ -3,29 +3,16 @@
 The same requests with one protection switched off succeed: what is tested is the protection, not a typing error here.
 """
 
-import dataclasses
-import hashlib
-import math
-import warnings
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
 
 import pytest
+from web_clients import OWN, Page
 
-from rocking.app.application import create_app
 from rocking.app.security import gate
 from rocking.app.security import request_body as limits
-from rocking.app.security.sessions import Sessions
-from rocking.app.settings import Limits, ServerSettings
-
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
 
 pytestmark = pytest.mark.verifies("damage", control="test_without_the_protection_the_attack_succeeds", room="doors")
 
-OWN = "http://127.0.0.1:8765"
 LINK = "/api/session/link"
 JSON = {"content-type": "application/json"}
 FORBIDDEN, UNKNOWN, TYPE, METHOD = {403}, {401}, {415}, {405}
@@ -43,7 +30,7 @@ class Attack:
     content: bytes = b""
 
 
-def by_head(refused: set[int], header: str, values: dict[str, str | None], **more: Any) -> list[Attack]:
+def by_head(refused, header, values, **more):
     return [Attack(name, refused, head={header: value}, **more) for name, value in values.items()]
 
 
@@ -153,8 +140,8 @@ METHODS = [
 METHODS.append(Attack("method: GET with a body", {400}, "GET", "/api/session", {}, b"{}"))
 
 
-def sessions() -> list[Attack]:
-    values: dict[str, str | None] = {
+def sessions():
+    values = {
         "session: none": None,
         "session: empty": "rocking-8765=",
         "session: guessed": "rocking-8765=" + "A" * 43,
@@ -168,7 +155,7 @@ def sessions() -> list[Attack]:
         "session: an array": "rocking-8765[]={value}",
     }
     cookies = by_head(UNKNOWN, "cookie", values)
-    keys: dict[str, str | None] = {
+    keys = {
         "key: wrong": "Bearer " + "A" * 43,
         "key: empty": "Bearer ",
         "key: cut short": "Bearer {key_short}",
@@ -179,7 +166,7 @@ def sessions() -> list[Attack]:
         "key: None": "Bearer None",
     }
     cookies += [Attack(name, UNKNOWN, head={"cookie": None, "authorization": value}) for name, value in keys.items()]
-    nobody: dict[str, str | None] = {"cookie": None}
+    nobody = {"cookie": None}
     cookies += [
         Attack("key: in the query", UNKNOWN, path=f"{LINK}?key={{key}}&token={{token}}", head=nobody),
         Attack("session: public path with a slash", {401, 404}, "GET", "/api/session/", nobody),
@@ -193,75 +180,54 @@ def sessions() -> list[Attack]:
 ATTACKS = [*HOSTS, *REBINDING, *ORIGINS, *SITES, *CONTENTS, *METHODS, *sessions()]
 
 
-class Page:
-    """Our own page in a browser that is signed in, and what an attacker may know of it."""
-
-    def __init__(self, folder: Path, **changed: Any) -> None:
-        folder.mkdir(exist_ok=True)
-        self.app = create_app(ServerSettings(folder=folder, limits=dataclasses.replace(Limits(), **changed)))
-        self.client = TestClient(self.app, base_url=OWN)
-        self.sessions: Sessions = self.app.state.rocking.sessions
-        value = self.sessions.sign_in(self.sessions.new_link(math.inf))
-        key = self.sessions.key
-        self.known = {
-            "value": value,
-            "short": value[:-1],
-            "upper": value.upper(),
-            "hash": hashlib.sha256(value.encode()).hexdigest(),
-            "token": self.sessions.new_link(math.inf),
-            "key": key,
-            "key_short": key[:-1],
-        }
-        self.head = {"host": "127.0.0.1:8765", "origin": OWN, "cookie": f"rocking-8765={value}"}
-
-    def suffers(self, attack: Attack) -> int:
-        head = {**self.head, **({"origin": None} if attack.method == "GET" else {}), **attack.head}
-        told = {name: value.format(**self.known) for name, value in head.items() if value is not None}
-        path = attack.path.format(**self.known)
-        answer = self.client.request(attack.method, path, headers=told, content=attack.content or None)
-        assert "Traceback" not in answer.text
-        assert not [name for name in answer.headers if name.lower().startswith("access-control")]
-        return answer.status_code
+def suffers(page, attack):
+    head = {**page.head, **({"origin": None} if attack.method == "GET" else {}), **attack.head}
+    told = {name: value.format(**page.known) for name, value in head.items() if value is not None}
+    path = attack.path.format(**page.known)
+    answer = page.client.request(attack.method, path, headers=told, content=attack.content or None)
+    assert "Traceback" not in answer.text
+    assert not [name for name in answer.headers if name.lower().startswith("access-control")]
+    return answer.status_code
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Page:
+def page(tmp_path_factory):
     return Page(tmp_path_factory.mktemp("data"))
 
 
 @pytest.fixture
-def fresh(tmp_path: Path) -> Page:
+def fresh(tmp_path):
     return Page(tmp_path)
 
 
 @pytest.fixture(autouse=True)
-def _no_cookies_are_kept(page: Page) -> None:
+def _no_cookies_are_kept(page):
     page.client.cookies.clear()
 
 
 @pytest.mark.verifies("behaviour")
-def test_there_are_enough_attacks_and_each_has_a_name() -> None:
+def test_there_are_enough_attacks_and_each_has_a_name():
     """The table holds at least 80 attacks, no name twice; raw ones and contents come on top of it elsewhere."""
     names = [attack.name for attack in ATTACKS]
     assert len(names) == len(set(names)) >= 80
 
 
 @pytest.mark.verifies("negative control", "the request that attacks alter")
-def test_the_harness_is_good(page: Page) -> None:
+def test_the_harness_is_good(page):
     """What the attacks alter is a request that succeeds."""
-    assert page.suffers(Attack("nothing", set())) == 200
-    assert page.suffers(Attack("nothing", set(), "GET", "/api/session")) == 200
-    assert page.suffers(Attack("nothing", set(), "GET", "/")) == 200
-    assert page.suffers(Attack("nothing", set(), "POST", LINK, dict(JSON), b"{}")) == 200
+    assert suffers(page, Attack("nothing", set())) == 200
+    assert suffers(page, Attack("nothing", set(), "GET", "/api/session")) == 200
+    assert suffers(page, Attack("nothing", set(), "GET", "/")) == 200
+    assert suffers(page, Attack("nothing", set(), "POST", LINK, dict(JSON), b"{}")) == 200
 
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
-def test_attack_is_refused(page: Page, attack: Attack) -> None:
+def test_attack_is_refused(page, attack):
     """Each attack is answered with the refusal that it deserves."""
-    assert page.suffers(attack) in attack.refused
+    assert suffers(page, attack) in attack.refused
 
 
-WITHOUT: dict[str, tuple[str, int]] = {
+WITHOUT = {
     "host": ("rebinding: script reads", 200),
     "origin": ("origin: foreign", 200),
     "site": ("site: cross-site write", 200),
@@ -273,41 +239,39 @@ WITHOUT: dict[str, tuple[str, int]] = {
 
 @pytest.mark.verifies("negative control", "one protection switched off")
 @pytest.mark.parametrize("protection", WITHOUT)
-def test_without_the_protection_the_attack_succeeds(
-    fresh: Page, monkeypatch: pytest.MonkeyPatch, protection: str
-) -> None:
+def test_without_the_protection_the_attack_succeeds(fresh, monkeypatch, protection):
     """Negative control: with one check switched off, the attack that it stops gets through."""
     name, status = WITHOUT[protection]
     attack = next(attack for attack in ATTACKS if attack.name == name)
-    assert fresh.suffers(attack) in attack.refused
+    assert suffers(fresh, attack) in attack.refused
     monkeypatch.delitem(gate.CHECKS, protection)
     if name == "content: text form":  # the checks of JSON are not what is tried here
         monkeypatch.setattr(limits, "check_json", lambda data, depth: None)
-    assert fresh.suffers(attack) == status
+    assert suffers(fresh, attack) == status
 
 
-def sign_in(page: Page, token: str, **head: str) -> Any:
+def sign_in(page, token, **head):
     told = {"host": "127.0.0.1:8765", "origin": OWN, **head}
     return page.client.post("/api/session", json={"token": token}, headers=told)
 
 
-def test_token_is_good_once(fresh: Page) -> None:
+def test_token_is_good_once(fresh):
     """Token reuse: the second browser with the same link is refused."""
     assert sign_in(fresh, fresh.known["token"]).status_code == 200
     assert sign_in(fresh, fresh.known["token"]).status_code == 401
 
 
-def test_fixed_session_is_not_taken_over(fresh: Page) -> None:
+def test_fixed_session_is_not_taken_over(fresh):
     """Session fixation: a cookie that an attacker planted is worth nothing after somebody signs in."""
     planted = "rocking-8765=" + "F" * 43
     answer = sign_in(fresh, fresh.known["token"], cookie=planted)
     assert planted not in answer.headers["Set-Cookie"]
     fresh.client.cookies.clear()
-    assert fresh.suffers(Attack("planted", set(), head={"cookie": planted})) == 401
+    assert suffers(fresh, Attack("planted", set(), head={"cookie": planted})) == 401
 
 
 @pytest.mark.verifies(control="within")
-def test_guessing_is_slowed_down(fresh: Page, tmp_path: Path) -> None:
+def test_guessing_is_slowed_down(fresh, tmp_path):
     """Token guessing: ten a minute are looked at; without that limit (the control) all are."""
     statuses = [sign_in(fresh, f"{guess:043d}").status_code for guess in range(30)]
     assert statuses == [401] * 10 + [429] * 20
@@ -316,28 +280,28 @@ def test_guessing_is_slowed_down(fresh: Page, tmp_path: Path) -> None:
     assert {sign_in(patient, f"{guess:043d}").status_code for guess in range(30)} == {401}
 
 
-def test_guessing_does_not_shut_out_who_is_inside(fresh: Page) -> None:
+def test_guessing_does_not_shut_out_who_is_inside(fresh):
     """A stranger who guesses can neither sign anybody out nor stop a script with the key."""
     for guess in range(30):
         sign_in(fresh, f"{guess:043d}")
-    assert fresh.suffers(Attack("inside", set())) == 200
+    assert suffers(fresh, Attack("inside", set())) == 200
 
 
 @pytest.mark.verifies(control="within")
-def test_flood_is_refused_before_it_is_read(tmp_path: Path) -> None:
+def test_flood_is_refused_before_it_is_read(tmp_path):
     """A body beyond the limit is 413; with a higher limit (the control) it is read."""
     attack = Attack(
         "flood", {413}, path="/api/session", head=dict(JSON), content=b'{"token": "' + b"x" * 3_000_000 + b'"}'
     )
-    assert Page(tmp_path / "a").suffers(attack) == 413
-    assert Page(tmp_path / "b", json_bytes=4_000_000).suffers(attack) == 422
+    assert suffers(Page(tmp_path / "a"), attack) == 413
+    assert suffers(Page(tmp_path / "b", json_bytes=4_000_000), attack) == 422
 
 
 @pytest.mark.verifies(control="within")
-def test_duplicate_keys_do_not_smuggle(fresh: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_duplicate_keys_do_not_smuggle(fresh, monkeypatch):
     """A key twice, of which two readers may take different ones, is refused; without the check one of them wins."""
     content = ('{"token": "wrong", "token": "' + fresh.known["token"] + '"}').encode()
     attack = Attack("twice", {422}, path="/api/session", head={**JSON, "cookie": None}, content=content)
-    assert fresh.suffers(attack) == 422
+    assert suffers(fresh, attack) == 422
     monkeypatch.setattr(limits, "check_json", lambda data, depth: None)
-    assert fresh.suffers(attack) == 200
+    assert suffers(fresh, attack) == 200

@@ -7,31 +7,22 @@ import os
 import re
 import time
 import tomllib
-import warnings
 import zipfile
-from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-
-from rocking.app.application import create_app
-from rocking.app.settings import ServerSettings
-
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
+from web_clients import new_application, script_of
 
 pytestmark = pytest.mark.verifies("damage", room="doors")
 
 BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 SINE = {"pulse": "sine:amplitude=3,period=0.8"}
-GOOD: dict[str, Any] = {"body": BLOCK, "motion": SINE, "restitution": {"models": ["ked"]}}
+GOOD = {"body": BLOCK, "motion": SINE, "restitution": {"models": ["ked"]}}
 REFUSED = range(400, 500)
 
 
 @pytest.fixture(scope="module")
-def secret(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def secret(tmp_path_factory):
     """Return a file that nobody may read through the application; it would be a body, a record or a model."""
     path = tmp_path_factory.mktemp("secret") / "secret.py"
     marker = path.with_suffix(".ran").as_posix()
@@ -40,19 +31,16 @@ def secret(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> TestClient:
-    settings = ServerSettings(folder=tmp_path_factory.mktemp("data"))
-    app = create_app(settings)
-    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
-    return TestClient(app, base_url=settings.origin, headers=head)
+def client(tmp_path_factory):
+    return script_of(new_application(tmp_path_factory.mktemp("data")))
 
 
-def job(**tables: Any) -> dict[str, Any]:
+def job(**tables):
     campaign = {"name": "attack", "kind": "histories"}
     return {"name": "attack", "job": {"campaign": campaign, "body": BLOCK, "motions": SINE, **tables}}
 
 
-def region(**source: str) -> dict[str, Any]:
+def region(**source):
     return {"units": "m", "section": {"region": [source]}}
 
 
@@ -71,7 +59,7 @@ PLACES = {
     "hash and a line": "a" * 64 + "\n",
     "hash that nobody uploaded": "a" * 64,
 }
-READERS: dict[str, Any] = {
+READERS = {
     "record of a motion": ("/api/motion", lambda word: {"motion": {"record": word}}),
     "record of a response": ("/api/response", lambda word: {**GOOD, "motion": {"record": word}}),
     "record of a picture": ("/api/picture/motion.png", lambda word: {**GOOD, "motion": {"record": word}}),
@@ -95,7 +83,7 @@ READERS: dict[str, Any] = {
 @pytest.mark.verifies(control="test_secret_would_be_opened_elsewhere")
 @pytest.mark.parametrize("reader", READERS)
 @pytest.mark.parametrize("place", PLACES)
-def test_no_word_opens_a_file(client: TestClient, secret: Path, reader: str, place: str) -> None:
+def test_no_word_opens_a_file(client, secret, reader, place):
     """No path, address or module in any place of a document is opened, read, fetched or run."""
     path, document = READERS[reader]
     answer = client.post(path, json=document(PLACES[place].replace("{secret}", str(secret))))
@@ -106,7 +94,7 @@ def test_no_word_opens_a_file(client: TestClient, secret: Path, reader: str, pla
 
 
 @pytest.mark.verifies("negative control", "the command line, which is the user's own")
-def test_secret_would_be_opened_elsewhere(secret: Path, tmp_path: Path) -> None:
+def test_secret_would_be_opened_elsewhere(secret, tmp_path):
     """Negative control: on the command line, which is the user's own, the same words open files."""
     from rocking.bodies.formats import read_body
     from rocking.cli.cor import _model
@@ -120,7 +108,7 @@ def test_secret_would_be_opened_elsewhere(secret: Path, tmp_path: Path) -> None:
     secret.with_suffix(".ran").unlink()
 
 
-NUMBERS: dict[str, tuple[str, Any]] = {
+NUMBERS = {
     "width of infinity": ("/api/body", '{"body": {"units": "m", "width": Infinity, "height": 1}}'),
     "width of 1e999": ("/api/body", '{"body": {"units": "m", "width": 1e999, "height": 1}}'),
     "width of NaN": ("/api/body", '{"body": {"units": "m", "width": NaN, "height": 1}}'),
@@ -167,7 +155,7 @@ NUMBERS: dict[str, tuple[str, Any]] = {
 
 
 @pytest.mark.parametrize("name", NUMBERS)
-def test_senseless_content_is_refused_quickly(client: TestClient, name: str) -> None:
+def test_senseless_content_is_refused_quickly(client, name):
     """Numbers, tables and files that mean no good are refused, within seconds, in one sentence."""
     path, content = NUMBERS[name]
     start = time.perf_counter()
@@ -220,13 +208,13 @@ SLOW = {
 """Tried with the names that could do something there; with ROCKING_CAMPAIGN=1 with all."""
 
 
-def inert_csv(text: str) -> None:
+def inert_csv(text):
     for row in csv.reader(io.StringIO(text.removeprefix("\ufeff"))):
         for cell in row:
             assert not re.match(r"[=+@\t\r]|-(?![\d.])", cell), cell
 
 
-def inert_svg(data: bytes) -> None:
+def inert_svg(data):
     for element in ElementTree.fromstring(data).iter():
         assert element.tag.rpartition("}")[2] not in {"script", "foreignObject", "image", "iframe", "a"}
         for name, value in element.attrib.items():
@@ -235,7 +223,7 @@ def inert_svg(data: bytes) -> None:
                 assert value.startswith("#")
 
 
-def inert(kind: str, data: bytes, name: str) -> None:
+def inert(kind, data, name):
     """Assert that a file does nothing when it is opened."""
     if kind == "csv":
         inert_csv(data.decode("utf-8"))
@@ -261,7 +249,7 @@ def inert(kind: str, data: bytes, name: str) -> None:
 
 @pytest.mark.verifies(control="test_the_judge_sees_what_is_not_inert")
 @pytest.mark.parametrize("export", EXPORTS)
-def test_hostile_names_are_inert(client: TestClient, export: str) -> None:
+def test_hostile_names_are_inert(client, export):
     """No name of a body does anything in any export, nor to the name of the file and its head; or it is refused."""
     made = 0
     every = os.environ.get("ROCKING_CAMPAIGN") == "1"
@@ -281,7 +269,7 @@ def test_hostile_names_are_inert(client: TestClient, export: str) -> None:
 
 @pytest.mark.verifies("negative control", "names pasted as they are")
 @pytest.mark.parametrize("kind", ["csv", "svg", "html", "toml"])
-def test_the_judge_sees_what_is_not_inert(kind: str) -> None:
+def test_the_judge_sees_what_is_not_inert(kind):
     """Negative control: files in which a name was pasted as it is do not pass."""
     pasted = {
         "csv": NAMES["formula"].encode(),
@@ -294,7 +282,7 @@ def test_the_judge_sees_what_is_not_inert(kind: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_hostile_file_names_are_not_kept(client: TestClient, name: str) -> None:
+def test_hostile_file_names_are_not_kept(client, name):
     """A record under a hostile name is kept by its hash, and its name is shown as plain letters."""
     record = b"time [s],acceleration [m/s2]\n" + b"".join(b"%g,%g\n" % (0.01 * i, i % 5) for i in range(200))
     head = {"Content-Type": "application/octet-stream"}
@@ -306,6 +294,6 @@ def test_hostile_file_names_are_not_kept(client: TestClient, name: str) -> None:
 
 
 @pytest.mark.verifies("behaviour")
-def test_there_are_enough() -> None:
+def test_there_are_enough():
     """Places times readers, numbers, names: more than a hundred attacks, each with a name."""
     assert len(PLACES) * len(READERS) + len(NUMBERS) + len(NAMES) >= 250

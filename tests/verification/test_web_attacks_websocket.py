@@ -1,43 +1,20 @@
 """Attacks on the websocket by its handshake: a foreign page, name or person hears nothing."""
 
-import math
-import warnings
-from pathlib import Path
-
 import pytest
 from starlette.websockets import WebSocketDisconnect
+from web_clients import Page
 
-from rocking.app.application import create_app
 from rocking.app.security import gate
-from rocking.app.settings import ServerSettings
-
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
 
 pytestmark = pytest.mark.verifies(room="doors")
 
-OWN = "http://127.0.0.1:8765"
-
-
-class Page:
-    """Our own page in a browser that is signed in, and what an attacker may know of it."""
-
-    def __init__(self, folder: Path) -> None:
-        self.app = create_app(ServerSettings(folder=folder))
-        self.client = TestClient(self.app, base_url=OWN)
-        sessions = self.app.state.rocking.sessions
-        value = sessions.sign_in(sessions.new_link(math.inf))
-        self.known = {"token": sessions.new_link(math.inf), "key": sessions.key}
-        self.head = {"host": "127.0.0.1:8765", "origin": OWN, "cookie": f"rocking-8765={value}"}
-
 
 @pytest.fixture
-def page(tmp_path: Path) -> Page:
+def page(tmp_path):
     return Page(tmp_path)
 
 
-SOCKETS: dict[str, dict[str, str | None]] = {
+SOCKETS = {
     "foreign origin": {"origin": "http://evil.example"},
     "no origin": {"origin": None},
     "null origin": {"origin": "null"},
@@ -51,7 +28,7 @@ SOCKETS: dict[str, dict[str, str | None]] = {
 }
 
 
-def shakes_hands(page: Page, changed: dict[str, str | None]) -> bool:
+def shakes_hands(page, changed):
     head = {**page.head, **changed}
     query = (head.pop("query", None) or "").format(**page.known)
     told = {name: value.format(**page.known) for name, value in head.items() if value is not None}
@@ -64,13 +41,13 @@ def shakes_hands(page: Page, changed: dict[str, str | None]) -> bool:
 
 @pytest.mark.verifies("damage", control="test_without_the_checks_the_websocket_is_hijacked")
 @pytest.mark.parametrize("name", SOCKETS)
-def test_websocket_is_not_hijacked(page: Page, name: str) -> None:
+def test_websocket_is_not_hijacked(page, name):
     """A handshake from another page, name or person is refused before anything is said."""
     assert not shakes_hands(page, SOCKETS[name])
 
 
 @pytest.mark.verifies("negative control", "the check of Origin switched off")
-def test_without_the_checks_the_websocket_is_hijacked(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_checks_the_websocket_is_hijacked(page, monkeypatch):
     """Negative control: our own page shakes hands, and without the check of Origin a foreign one does."""
     assert shakes_hands(page, {})
     monkeypatch.delitem(gate.CHECKS, "origin")

@@ -2,23 +2,14 @@
 
 import json
 import os
-import warnings
 from collections import Counter
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-
-from rocking.app.application import create_app
-from rocking.app.settings import Limits, ServerSettings
+from web_clients import new_application, script_of
 
 schemathesis = pytest.importorskip("schemathesis")
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
 
 pytestmark = pytest.mark.verifies("damage", control="test_a_server_that_fails_is_seen", room="doors")
 
@@ -26,7 +17,7 @@ REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "200"))
 """Requests of each of the two kinds; `make fuzz-web` sends 6,500 of each."""
 
 HEAVY = ("report.pdf", "animation", "picture", "table", "inputs.zip", "export")
-INPUTS: dict[str, Any] = {
+INPUTS = {
     "body": {"units": "cm", "width": 50, "height": 200},
     "motion": {"pulse": "sine:amplitude=3.2,period=0.8", "scale": 1.0},
     "restitution": {"models": ["ked", "housner"]},
@@ -54,16 +45,14 @@ ODD = [
 
 
 @pytest.fixture
-def script(tmp_path: Path) -> Iterator[TestClient]:
+def script(tmp_path):
     """Return a script with the key, and an application with small limits."""
-    told = ServerSettings(folder=tmp_path, limits=Limits(histories=2000, studies_waiting=2, upload_bytes=1 << 20))
-    app = create_app(told)
-    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": told.origin}
-    with TestClient(app, base_url=told.origin, headers=head, raise_server_exceptions=False) as client:
+    app = new_application(tmp_path, {"histories": 2000, "studies_waiting": 2, "upload_bytes": 1 << 20})
+    with script_of(app, raise_server_exceptions=False) as client:
         yield client
 
 
-def damaged(draw: Any, document: Any) -> Any:
+def damaged(draw, document):
     """Return a document with one place replaced, added or removed."""
     if isinstance(document, dict) and document and draw(st.integers(0, 4)):
         key = draw(st.sampled_from(sorted(document)))
@@ -81,7 +70,7 @@ def damaged(draw: Any, document: Any) -> Any:
     return draw(st.sampled_from(ODD))
 
 
-def run(examples: int, test: Any, *strategies: Any) -> None:
+def run(examples, test, *strategies):
     """Run a property without shrinking: what it found is in its words."""
     quiet = settings(
         max_examples=examples,
@@ -93,7 +82,7 @@ def run(examples: int, test: Any, *strategies: Any) -> None:
     quiet(given(*strategies)(test))()
 
 
-def judged(answer: Any, sent: str, seen: Counter[int]) -> None:
+def judged(answer, sent, seen):
     """Refuse an answer of the 500 range, a traceback, and a number that is none."""
     seen[answer.status_code] += 1
     assert answer.status_code < 500, f"{sent}: {answer.status_code} {answer.text[:300]}"
@@ -102,7 +91,7 @@ def judged(answer: Any, sent: str, seen: Counter[int]) -> None:
         json.loads(answer.content, parse_constant=lambda word: pytest.fail(f"{sent}: {word} in the answer"))
 
 
-def sent(script: TestClient, case: Any) -> Any:
+def sent(script, case):
     """Send what schemathesis made, past its own transport, so that the gate sees our headers."""
     body = case.body if isinstance(case.body, bytes) else b""
     if case.media_type == "application/json":
@@ -111,18 +100,18 @@ def sent(script: TestClient, case: Any) -> Any:
     return script.request(case.method, case.formatted_path, params=dict(case.query or {}), content=body, headers=head)
 
 
-def test_requests_from_the_schema(script: TestClient) -> None:
+def test_requests_from_the_schema(script):
     """Requests that schemathesis makes from the API's own schema never get a 5xx."""
     schema = schemathesis.openapi.from_dict(script.get("/api/openapi.json").json())
     found = [each.ok() for each in schema.get_all_operations()]
     assert len(found) >= 25
-    seen: Counter[int] = Counter()
+    seen = Counter()
     light = [each for each in found if not any(word in each.path for word in HEAVY)]
     rest = [each for each in found if each not in light]
     share = {id(each): max(8, REQUESTS // len(light)) for each in light} | {id(each): 8 for each in rest}
     for operation in found:
 
-        def ask(case: Any) -> None:
+        def ask(case):
             judged(sent(script, case), f"{case.method} {case.formatted_path}", seen)
 
         run(share[id(operation)], ask, operation.as_strategy())
@@ -130,15 +119,15 @@ def test_requests_from_the_schema(script: TestClient) -> None:
     assert sum(seen.values()) >= 0.7 * REQUESTS  # an operation without parameters has few different requests
 
 
-def test_damaged_documents(script: TestClient) -> None:
+def test_damaged_documents(script):
     """Valid inputs with damage are answered or refused, never with a 5xx, and both happen."""
-    seen: Counter[int] = Counter()
+    seen = Counter()
     light = {
         "body": ("body", "settings"), "impact": ("body", "settings"), "motion": ("motion", "settings"),
         "response": tuple(INPUTS), "inputs.toml": tuple(INPUTS),
     }  # fmt: skip
 
-    def ask(data: Any) -> None:
+    def ask(data):
         path = data.draw(st.sampled_from(sorted(light)))
         document = {key: INPUTS[key] for key in light[path]}
         for _ in range(data.draw(st.sampled_from([0, 1, 1, 1, 2]))):
@@ -153,11 +142,11 @@ def test_damaged_documents(script: TestClient) -> None:
 
 
 @pytest.mark.verifies("negative control", "an endpoint that raises")
-def test_a_server_that_fails_is_seen(script: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_server_that_fails_is_seen(script, monkeypatch):
     """Negative control: an endpoint that raises is reported by the same judgement, and shows no traceback."""
     from rocking.app.api import response
 
-    def broken(*_: Any) -> None:
+    def broken(*_):
         raise RuntimeError("secret place")
 
     monkeypatch.setattr(response, "problem_from", broken)

@@ -160,10 +160,9 @@ def test_mass_points_have_stages_too(client):
 def test_info_names_everything_that_can_be_chosen(client):
     """Every pulse parameter has a unit, every list is there, and the numbers are the library's."""
     from rocking.app.api.info import PARAMETERS
-    from rocking.motions.pulses import catalogue
 
     info = client.get("/api/info").json()
-    assert set(info["pulses"]) == set(catalogue())
+    assert set(info["pulses"]) == set(rk.pulses.catalogue())
     assert {name for one in info["pulses"].values() for name in one["parameters"]} <= set(PARAMETERS)
     assert info["pulses"]["harmonic"]["parameters"]["phase"]["default"] == 0.0
     assert info["pulses"]["sine"]["parameters"]["period"] == {"unit": "s", "words": "period", "default": None}

@@ -11,18 +11,16 @@ import zipfile
 
 import numpy as np
 import pytest
-from fastapi.testclient import TestClient
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
+from web_clients import new_application, script_of
 
-from rocking.app.application import create_app
 from rocking.app.downloads.archive import Archive
 from rocking.app.downloads.inputs_file import commands, fingerprint, inputs_as_toml, inputs_from_toml
 from rocking.app.errors import Refused
 from rocking.app.inputs import Inputs
 from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
-from rocking.app.settings import Limits, ServerSettings
 from rocking.cli.application import application
 from rocking.errors import InvalidValueError
 from rocking.spec.document import ResponseDocument
@@ -240,12 +238,8 @@ def read(client, data):
 @pytest.fixture
 def other(tmp_path):
     """Return a script of another server, which has no record yet."""
-    settings = ServerSettings(folder=tmp_path / "other", limits=Limits(upload_bytes=200_000))
-    settings.folder.mkdir()
-    app = create_app(settings)
-    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
-    with TestClient(app, base_url=settings.origin, headers=head) as script:
-        yield script
+    with script_of(new_application(tmp_path / "other", {"upload_bytes": 200_000})) as asking:
+        yield asking
 
 
 def test_a_bundle_gives_the_same_answer_on_another_server(client, other):

@@ -12,8 +12,8 @@ from zipfile import ZipFile
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies
+from web_clients import new_application
 
-from rocking.app.application import create_app
 from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
 from rocking.app.projects import store as module
 from rocking.app.projects.one_file import project_file, project_from_file
@@ -229,7 +229,7 @@ def test_over_the_api(client, stranger):
     assert client.post(where, json={"version": 1, "document": {}, "more": 1}).status_code == 422
 
 
-def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
+def test_one_file_holds_all_of_it(client, tmp_path, monkeypatch):
     """Out as one file, and in on another computer: document, record and study are there, and the same file again."""
     wave = 0.3 * np.sin(2.0 * np.pi * np.arange(400) * 0.01)
     content = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(wave)).encode()
@@ -255,10 +255,7 @@ def test_one_file_holds_all_of_it(client, settings, tmp_path, monkeypatch):
     assert data == again
     assert ZipFile(BytesIO(data)).namelist() == ["project.json", f"{sha[:12]}-a.txt", f"{scan[:12]}-vase.stl"]
 
-    elsewhere = type(settings)(folder=tmp_path / "elsewhere")
-    elsewhere.folder.mkdir()
-    app = create_app(elsewhere)
-    state = app.state.rocking
+    state = new_application(tmp_path / "elsewhere").state.rocking
     other = project_from_file(state, data)
     assert (other.name, state.projects.document(other.id)) == ("Hall 3", document)
     assert (state.records.content(sha), state.files.content(scan)) == (content, b"solid vase")

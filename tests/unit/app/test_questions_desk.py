@@ -12,8 +12,8 @@ from rocking.app.errors import NotFound, Refused, TooLarge
 from rocking.app.questions.desk import OUTPUTS, QuestionDesk, refuse_outside
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
+from rocking.motions import processed
 from rocking.motions.formats import read_motion
-from rocking.motions.pipeline import processed
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 TABLES = {

@@ -1,18 +1,13 @@
 """Every answer of every operation has the shape that the schema of the API declares."""
 
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-
-from rocking.app.application import create_app
-from rocking.app.settings import ServerSettings
-from rocking.app.studies.finished import OpenStudy
+from web_clients import new_application, script_of
 
 jsonschema = pytest.importorskip("jsonschema_rs")
 
@@ -73,14 +68,14 @@ class Asker:
     seen: set[tuple[str, str]] = field(default_factory=set)
     answers: list[tuple[tuple[str, str], Any]] = field(default_factory=list)
 
-    def declared(self, place: tuple[str, str]) -> dict[str, Any]:
+    def declared(self, place):
         """Return what an operation declares of its good answer."""
         method, path = place
         responses = self.schema["paths"][path][method]["responses"]
         (found,) = [told for status, told in responses.items() if status.startswith("2")]
         return found
 
-    def faults(self, place: tuple[str, str], value: Any) -> list[str]:
+    def faults(self, place, value):
         """Return where a value does not have the declared shape, by a validator that is not ours."""
         if place not in self.validators:
             shape = self.declared(place)["content"]["application/json"]["schema"]
@@ -88,7 +83,7 @@ class Asker:
             self.validators[place] = jsonschema.Draft202012Validator(document)
         return [str(fault) for fault in self.validators[place].iter_errors(value)]
 
-    def ask(self, method: str, path: str, *, fill: Tables | None = None, **how: Any) -> Any:
+    def ask(self, method, path, *, fill=None, **how):
         """Return a good answer in JSON, which has the declared shape."""
         answer = self.client.request(method, path.format(**(fill or {})), **how)
         assert answer.status_code < 300, f"{path}: {answer.text[:500]}"
@@ -98,7 +93,7 @@ class Asker:
         self.answers.append((place, value))
         return value
 
-    def take(self, method: str, path: str, *, fill: Tables | None = None, **how: Any) -> bytes:
+    def take(self, method, path, *, fill=None, **how):
         """Return a file, whose type is a declared one."""
         answer = self.client.request(method, path.format(**(fill or {})), **how)
         assert answer.status_code == 200, f"{path}: {answer.text[:500]}"
@@ -109,9 +104,7 @@ class Asker:
 
 
 @pytest.fixture
-def asker(
-    folder: Path, computed: Callable[[Tables], OpenStudy], map_job: Callable[..., Tables]
-) -> Iterator[tuple[Asker, dict[str, str]]]:
+def asker(folder, computed, map_job):
     """Return a script, and the names of finished studies by kind."""
     made = {}
     for kind, tables in STUDIES.items():
@@ -120,14 +113,12 @@ def asker(
     job = map_job(4, restitution={"model": "ked"})
     job["map"]["refine"] = 1
     made["refined"] = computed(job).id
-    settings = ServerSettings(folder=folder, workers=1)
-    app = create_app(settings)
-    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
-    with TestClient(app, base_url=settings.origin, headers=head) as client:
+    app = new_application(folder, workers=1)
+    with script_of(app) as client:
         yield Asker(client, app.openapi()), made
 
 
-def _ask_projects(script: Asker) -> None:
+def _ask_projects(script):
     made = script.ask("POST", "/api/projects", json={"name": "hall", "document": {"inputs": {}}})
     one, version = {"project": made["id"]}, made["version"]
     saved = script.ask(
@@ -147,7 +138,7 @@ def _ask_projects(script: Asker) -> None:
     script.ask("POST", "/api/projects/{project}/back", fill=one)
 
 
-def _ask_questions(script: Asker) -> None:
+def _ask_questions(script):
     octets = {"Content-Type": "application/octet-stream"}
     content = b"name,width_cm,depth_cm,height_cm\nvase,20,20,100\n"
     sent = script.ask("POST", "/api/files", params={"name": "list.csv"}, content=content, headers=octets)
@@ -170,9 +161,7 @@ def _ask_questions(script: Asker) -> None:
     script.ask("DELETE", "/api/questions/{question}", fill=one)
 
 
-def test_every_answer_has_the_declared_shape(
-    asker: tuple[Asker, dict[str, str]], map_job: Callable[..., Tables]
-) -> None:
+def test_every_answer_has_the_declared_shape(asker, map_job):
     """All operations are asked, with every kind of body, motion and study; damaged answers do not have the shape."""
     script, studies = asker
     _ask_session_and_records(script)
@@ -189,7 +178,7 @@ def test_every_answer_has_the_declared_shape(
     assert refused > 200
 
 
-def _ask_session_and_records(script: Asker) -> None:
+def _ask_session_and_records(script):
     link = script.ask("POST", "/api/session/link")["url"]
     script.ask("POST", "/api/session", json={"token": link.partition("#token=")[2]})
     script.ask("GET", "/api/session")
@@ -203,7 +192,7 @@ def _ask_session_and_records(script: Asker) -> None:
     script.ask("DELETE", "/api/records/{record}", fill={"record": kept})
 
 
-def _ask_bodies(script: Asker) -> None:
+def _ask_bodies(script):
     for body in (BLOCK, HOLLOW, POINTS, {"units": "m", "ellipse": {"width": 1, "height": 4, "feet": [-0.02, 0.02]}}):
         script.ask("POST", "/api/body", json={"body": body})
         script.ask("POST", "/api/impact", json={"body": body})
@@ -220,7 +209,7 @@ def _ask_bodies(script: Asker) -> None:
     script.ask("POST", "/api/inputs/read", content=text, headers=OCTETS)
 
 
-def _ask_studies(script: Asker, studies: dict[str, str], job: Tables) -> None:
+def _ask_studies(script, studies, job):
     for study in studies.values():
         script.ask("GET", "/api/studies/{study}/result", fill={"study": study})
         script.ask("GET", "/api/studies/{study}/cell", fill={"study": study}, params={"x": 1, "points": 20})
@@ -232,7 +221,7 @@ def _ask_studies(script: Asker, studies: dict[str, str], job: Tables) -> None:
     script.ask("DELETE", "/api/studies/{study}", fill={"study": made})
 
 
-def _take_files(script: Asker, study: str) -> None:
+def _take_files(script, study):
     for path, endings in ENDINGS.items():
         for what, kind in endings:
             fill = {"what": what, "kind": kind, "study": study}
@@ -242,7 +231,7 @@ def _take_files(script: Asker, study: str) -> None:
                 script.take("POST", path, fill=fill, json=SHORT)
 
 
-def _refused_when_damaged(script: Asker, place: tuple[str, str], value: Any) -> int:
+def _refused_when_damaged(script, place, value):
     """Return how many damages of an answer were noticed: a key that is not declared, a number that is a text."""
     for key in value.keys() - {"document", "answer"}:  # whatever a user or a command puts there
         text_or_none = value[key] is None or isinstance(value[key], str)
@@ -252,11 +241,11 @@ def _refused_when_damaged(script: Asker, place: tuple[str, str], value: Any) -> 
     return len(value) + 1
 
 
-def test_every_number_has_its_unit(client: TestClient) -> None:
+def test_every_number_has_its_unit(client):
     """Each number that is declared says in words what it is measured in."""
     script = Asker(client, client.get("/api/openapi.json").json())
     shapes = script.schema["components"]["schemas"]
-    told: set[str] = set()
+    told = set()
     for path, item in script.schema["paths"].items():
         for method in item:
             content = script.declared((method, path)).get("content", {}).get("application/json", {})
@@ -271,7 +260,7 @@ def test_every_number_has_its_unit(client: TestClient) -> None:
     assert bare == [], " ".join(bare)
 
 
-def _named(shape: Any, shapes: Tables, known: set[str]) -> set[str]:
+def _named(shape, shapes, known):
     """Return the names of all shapes that a shape is made of."""
     if isinstance(shape, list):
         shape = dict(enumerate(shape))
@@ -286,12 +275,12 @@ def _named(shape: Any, shapes: Tables, known: set[str]) -> set[str]:
     return known
 
 
-def _asked(schema: Tables) -> Any:
+def _asked(schema):
     """Return what is sent, whose units depend on what the user says."""
     return [each.get("requestBody") for item in schema["paths"].values() for each in item.values()]
 
 
-def _holds_numbers(shape: Any) -> bool:
+def _holds_numbers(shape):
     if isinstance(shape, list):
         return any(_holds_numbers(one) for one in shape)
     if not isinstance(shape, dict):

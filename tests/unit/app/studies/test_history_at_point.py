@@ -7,9 +7,8 @@ from rocking.app.errors import NotFound
 from rocking.app.inputs import Inputs, problem_from
 from rocking.app.studies.history_at_point import HistoryPlace, cell_of, stretched_words
 from rocking.bodies import Block
-from rocking.motions import GroundMotion
+from rocking.motions import GroundMotion, pulses
 from rocking.motions.formats import write_motion
-from rocking.motions.pulses import catalogue, pulse
 from rocking.outcome import Outcome
 from rocking.studies import axes
 
@@ -182,7 +181,7 @@ def test_points_outside_are_not_there(at, computed, map_job):
         HistoryPlace.of(computed(map_job(4)), *at)
 
 
-@pytest.mark.parametrize("name", sorted(catalogue()))
+@pytest.mark.parametrize("name", sorted(pulses.catalogue()))
 def test_stretched_words_are_the_stretched_pulse(name):
     """Every pulse of the catalogue, stretched in words, has the acceleration of the pulse at stretched times."""
     own = {
@@ -191,6 +190,6 @@ def test_stretched_words_are_the_stretched_pulse(name):
         "harmonic": "amplitude=2,period=0.5,cycles=4",
     }  # fmt: skip
     words = f"{name}:{own.get(name, 'amplitude=2,period=0.5')}"
-    before, after = pulse(words), pulse(stretched_words(words, 1.7))
+    before, after = pulses.pulse(words), pulses.pulse(stretched_words(words, 1.7))
     time = np.linspace(0.0, before.duration, 101)[1:-1]
     assert after.acceleration(1.7 * time) == pytest.approx(before.acceleration(time), abs=1e-9)

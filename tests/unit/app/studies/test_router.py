@@ -1,12 +1,9 @@
 """Studies over HTTP and the websocket."""
 
 import time
-import warnings
-from collections.abc import Callable
 from typing import Any
 
 import pytest
-from fastapi import FastAPI
 from starlette.websockets import WebSocketDisconnect
 
 from rocking.app.settings import ServerSettings
@@ -14,21 +11,18 @@ from rocking.app.studies import router as live
 
 pytestmark = pytest.mark.timed
 
-with warnings.catch_warnings():  # it says that another client than httpx is coming
-    warnings.simplefilter("ignore")
-    from fastapi.testclient import TestClient
 
 Tables = dict[str, Any]
 LIVE = f"{ServerSettings().origin.replace('http', 'ws')}/api/studies/live"
 
 
-def _launched(client: TestClient, job: Tables, name: str | None = None) -> str:
+def _launched(client, job, name=None):
     answer = client.post("/api/studies", json={"name": name, "job": job})
     assert answer.status_code == 202, answer.text
     return str(answer.json()["id"])
 
 
-def _wait(client: TestClient, study: str, state: str) -> Tables:
+def _wait(client, study, state):
     deadline = time.monotonic() + 60.0
     while (facts := client.get(f"/api/studies/{study}").json())["state"] != state:
         assert time.monotonic() < deadline, facts
@@ -36,7 +30,7 @@ def _wait(client: TestClient, study: str, state: str) -> Tables:
     return dict(facts)
 
 
-def test_a_study_from_launch_to_file(client: TestClient, map_job: Callable[..., Tables]) -> None:
+def test_a_study_from_launch_to_file(client, map_job):
     """Launched, listed, done, looked at, a cell gone into by its inputs, taken away, deleted."""
     study = _launched(client, map_job(), "<b>Küste</b>")
     assert [each["id"] for each in client.get("/api/studies").json()["studies"]] == [study]
@@ -61,7 +55,7 @@ def test_a_study_from_launch_to_file(client: TestClient, map_job: Callable[..., 
     assert client.get(f"/api/studies/{study}").status_code == 404
 
 
-def test_a_result_is_quick(client: TestClient, map_job: Callable[..., Tables]) -> None:
+def test_a_result_is_quick(client, map_job):
     """A map of 100 x 100 with two restitutions comes within 100 ms once it was looked at."""
     study = _launched(client, map_job(100))
     _wait(client, study, "done")
@@ -80,13 +74,13 @@ def test_a_result_is_quick(client: TestClient, map_job: Callable[..., Tables]) -
         ({"name": "x" * 300, "job": {}}, 422, "invalid-value"),
     ],
 )  # fmt: skip
-def test_what_is_no_study_is_refused(body: Tables, status: int, kind: str, client: TestClient) -> None:
+def test_what_is_no_study_is_refused(body, status, kind, client):
     """In one sentence and with its kind."""
     answer = client.post("/api/studies", json=body)
     assert (answer.status_code, answer.json()["error"]["kind"]) == (status, kind)
 
 
-def test_refusals_have_their_status(app: FastAPI, client: TestClient, map_job: Callable[..., Tables]) -> None:
+def test_refusals_have_their_status(app, client, map_job):
     """Too large is 413, unknown 404, a file in the job or a result before its time 422."""
     large = map_job(10_000)
     assert client.post("/api/studies", json={"job": large}).status_code == 413
@@ -102,7 +96,7 @@ def test_refusals_have_their_status(app: FastAPI, client: TestClient, map_job: C
     assert client.post(f"/api/studies/{study}/cancel").json()["state"] == "cancelled"
 
 
-def test_a_full_line_is_429(app: FastAPI, client: TestClient, map_job: Callable[..., Tables]) -> None:
+def test_a_full_line_is_429(app, client, map_job):
     """With the time after which to try again."""
     line = app.state.rocking.studies.queue
     line._at_once = 0
@@ -113,13 +107,13 @@ def test_a_full_line_is_429(app: FastAPI, client: TestClient, map_job: Callable[
     assert int(answer.headers["retry-after"]) >= 1
 
 
-def test_progress_is_pushed(client: TestClient, long_job: Tables) -> None:
+def test_progress_is_pushed(client, long_job):
     """The websocket tells the list at once, then every change, at most five times a second, until the study is over."""
     with client.websocket_connect(LIVE) as socket:
         assert socket.receive_json() == {"studies": []}
         study = _launched(client, long_job)
-        seen: list[Tables] = []
-        times: list[float] = []
+        seen = []
+        times = []
         while len(seen) < 8:
             (facts,) = socket.receive_json()["studies"]
             seen.append(facts)
@@ -134,7 +128,7 @@ def test_progress_is_pushed(client: TestClient, long_job: Tables) -> None:
     assert (len(times) - 1) / (times[-1] - times[0]) < 6.0
 
 
-def test_too_many_browsers_are_turned_away(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_browsers_are_turned_away(client, monkeypatch):
     """One more than the server takes is closed; when one leaves there is room again."""
     monkeypatch.setattr(live, "MOST", 1)
     with client.websocket_connect(LIVE) as socket:
@@ -142,20 +136,20 @@ def test_too_many_browsers_are_turned_away(client: TestClient, monkeypatch: pyte
         with pytest.raises(WebSocketDisconnect), client.websocket_connect(LIVE) as other:
             other.receive_json()
     deadline = time.monotonic() + 5.0
-    while client.app.state.rocking.studies.queue.watchers and time.monotonic() < deadline:  # type: ignore[attr-defined]
+    while client.app.state.rocking.studies.queue.watchers and time.monotonic() < deadline:
         time.sleep(0.02)
     with client.websocket_connect(LIVE) as socket:
         assert socket.receive_json() == {"studies": []}
 
 
-def test_strangers_see_nothing(stranger: TestClient, settings: ServerSettings) -> None:
+def test_strangers_see_nothing(stranger, settings):
     """Without a session there is no list, no study and no websocket."""
     assert stranger.get("/api/studies").status_code == 401
     with pytest.raises(WebSocketDisconnect), stranger.websocket_connect(LIVE, headers={"Origin": settings.origin}):
         pass
 
 
-def test_light_answers_stay_light_while_a_study_runs(client: TestClient, long_job: Tables) -> None:
+def test_light_answers_stay_light_while_a_study_runs(client, long_job):
     """The list is answered from what is known: a hundred times in a row, in milliseconds each, while one computes."""
     study = _launched(client, long_job)
     _wait(client, study, "running")
