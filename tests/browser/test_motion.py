@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import PHONE, link, pasted
+from browser_pages import link, pasted
 from playwright.sync_api import expect
 
-from rocking.motions import GroundMotion
+from rocking.motions import GroundMotion, pulses
 from rocking.motions.formats import write_motion
-from rocking.motions.pulses import catalogue, pulse
 
 STEP, COUNT = 0.01, 801
 DROP = """([name, text]) => {
@@ -301,23 +300,15 @@ ARGUMENTS = {
 def test_sketches_show_the_pulses(page: Any) -> None:
     """The small drawing of every pulse has the shape of its acceleration; turned round it would not."""
     places = np.linspace(0.02, 0.98, 97)
-    for name in catalogue():
+    for name in pulses.catalogue():
         drawn = np.array(page.evaluate(SKETCH, [name, places.tolist()]))
-        real = pulse(f"{name}:{ARGUMENTS.get(name, 'amplitude=1,period=1')}")
+        real = pulses.pulse(f"{name}:{ARGUMENTS.get(name, 'amplitude=1,period=1')}")
         # wavelets are drawn without their flat ends
         width, whole = WINDOWS.get(name, (real.duration, real.duration))
         truth = real.acceleration(0.5 * whole + width * (places - 0.5))
         truth = truth / np.abs(truth).max()
         assert np.abs(drawn - truth).max() < 0.05, name
         assert np.abs(drawn + truth).max() > 0.5, name
-
-
-def test_it_fits_a_phone(open_page: Callable[..., Any], shot: Callable[..., Path]) -> None:
-    """At 360 px nothing is wider than the screen."""
-    page = open_page(view="motion", viewport=PHONE)
-    page.get_by_test_id("measures-table").wait_for()
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    shot(page, "motion-phone")
 
 
 @pytest.mark.parametrize(("label", "given"), [("Peak acceleration", ["0", "1e9"]), ("Period", ["0", "-2"])])

@@ -275,20 +275,6 @@ def test_a_question_is_stopped(open_page: Callable[..., Any]) -> None:
     asked(page, "decide")
 
 
-@pytest.mark.parametrize("width", [320, 768, 1024])
-@pytest.mark.parametrize("view", ["decide", "inventory", "measure", "records", "space"])
-def test_no_bar(open_page: Callable[..., Any], view: str, width: int) -> None:
-    """Nothing is wider than the window, and every button can be hit by a finger."""
-    page = open_page(view=view, viewport={"width": width, "height": 800})
-    page.locator(f"#view-{view}").get_by_role("button", name="Ask", exact=True).wait_for()
-    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
-    low = page.evaluate(
-        "[...document.querySelectorAll('button, select, input[type=text]')].filter(e => e.offsetParent)"
-        ".filter(e => e.getBoundingClientRect().height < 39.5).map(e => e.textContent || e.id)"
-    )
-    assert low == []
-
-
 @pytest.mark.parametrize("view", ["inventory", "measure", "records", "space"])
 def test_a_missing_file_is_asked_for_where_it_is_dropped(open_page: Callable[..., Any], view: str) -> None:
     """Asked without a file, the drop place is marked and has the keyboard; a file takes the mark away."""

@@ -140,10 +140,3 @@ def test_a_toml_comes_back(takeaway: Any, tmp_path: Path) -> None:
     before = takeaway.get_by_test_id("permanent-link").input_value()
     takeaway.get_by_test_id("read-toml").set_input_files(path)
     expect(takeaway.get_by_test_id("permanent-link")).not_to_have_value(before)
-
-
-def test_phone(open_page: Callable[..., Any], shot: Any) -> None:
-    """The step fits a phone."""
-    page = open_page(view="takeaway", viewport={"width": 360, "height": 740}, color_scheme="dark")
-    assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    shot(page, "takeaway-phone-dark")
