@@ -165,7 +165,7 @@ def test_paper_into_a_file_is_refused(paper, refuses, tmp_path):
     refuses(("paper", "--out", tmp_path / "file"), "cannot write to")
 
 
-def test_help_is_quick(run):
+def test_help_is_quick():
     """`rocking --help` in a fresh process loads neither numpy nor pydantic: that is what keeps it under 0.5 s."""
     code = (
         "import sys\nfrom rocking.cli import main\n"

@@ -61,11 +61,9 @@ def test_files(run, file, tmp_path):
     assert len(list(csv.DictReader(table.read_text("utf-8").splitlines()))) == 6
 
 
-def test_a_block_is_extruded(run, file):
+def test_a_block_is_extruded(answered, file):
     """Over its depth, under the name of its file; points of mass have no surface."""
-    code, out, _ = run(file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\ndepth = 2.0\n'), "--json")
-    assert code == 0
-    told = json.loads(out)
+    told = answered(file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\ndepth = 2.0\n'))
     assert (len(told["stable"]), told["saddles"], told["summits"]) == (6, 12, 8)
     assert [pose["height_m"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
 

@@ -26,11 +26,10 @@ SINE = rk.pulses.sine(amplitude=3.0, period=0.6)
 RATIOS = (("frequency_ratio", np.linspace(1, 7, 13)), ("amplitude_ratio", np.linspace(1, 10, 19)))
 
 
-def test_json_is_the_python_call(run):
+def test_json_is_the_python_call(answered):
     """Modes, peaks, shares and islands are those of the study, bit by bit."""
-    code, out, err = run(*SIZE, "--motion", PULSE, *AXES, "--restitution", "0.9", "--json")
-    assert (code, err) == (0, "")
-    told, found = json.loads(out), overturning_map(BLOCK, SINE, *RATIOS, 0.9)
+    out = answered(*SIZE, "--motion", PULSE, *AXES, "--restitution", "0.9")
+    told, found = out, overturning_map(BLOCK, SINE, *RATIOS, 0.9)
     assert told["mode"] == found["mode"].values.tolist()
     assert told["peak_ratio"] == found["peak_ratio"].values.tolist()
     assert told["x"]["values"] == found["frequency_ratio"].values.tolist()
@@ -66,7 +65,7 @@ def test_nothing_overturns(run):
     assert [(one["mode"], one["share"]) for one in told["modes"]] == [(-2, 1.0)]
 
 
-def test_several_restitutions(run, tmp_path):
+def test_several_restitutions(run, printed, tmp_path):
     """Flips between every two are those of `map_sensitivity`; files hold every map."""
     models = ("--restitution", "ked", "--restitution", "housner", "--restitution", "0.8")
     words = (*SIZE, PULSE, *AXES, *models)
@@ -80,8 +79,7 @@ def test_several_restitutions(run, tmp_path):
         assert one["count"] == int((falls[0] != falls[1]).sum())
         assert one["share"] == one["count"] / (13 * 19)
     assert pairs["ked", "0.8"]["count"] > 0
-    code, out, _ = run(*words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
-    assert code == 0
+    out = printed(*words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
     assert "The choice between ked and housner changes the verdict" in out
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -93,13 +91,12 @@ def test_several_restitutions(run, tmp_path):
         assert (kept["mode"].sel(restitution="0.8") == found.datasets["0.8"]["mode"]).all()
 
 
-def test_files(run, tmp_path):
+def test_files(printed, tmp_path):
     """Picture, table and netCDF are written and named; the table holds all digits."""
     files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]
     options = [word for name, path in zip(("--out", "--out", "--out"), files, strict=True)
                for word in (name, path)]  # fmt: skip
-    code, out, _ = run(*SIZE, PULSE, *AXES, "--refine", 2, *options)
-    assert code == 0
+    out = printed(*SIZE, PULSE, *AXES, "--refine", 2, *options)
     assert all(f"wrote {path}" in out and path.stat().st_size > 2000 for path in files)
     found = overturning_map(BLOCK, SINE, *RATIOS, refine=2)
     with files[1].open(newline="", encoding="utf-8") as file:

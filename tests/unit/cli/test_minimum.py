@@ -24,11 +24,9 @@ def made(modes, accelerations, *, starts=False):
     return Transitions(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, G, 9.0 * G, G, 0.004, starts, 1, 0)
 
 
-def test_json_is_the_python_call(run):
+def test_json_is_the_python_call(answered):
     """Every crossing is that of the study, bit by bit, in g and in m/s2."""
-    code, out, err = run(*SIZE, PULSE, "--restitution", "0.85", "--highest", "5g", "--json")
-    assert (code, err) == (0, "")
-    told = json.loads(out)
+    told = answered(*SIZE, PULSE, "--restitution", "0.85", "--highest", "5g")
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
     found = minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
     assert [one["acceleration_m_s2"] for one in told["crossings"]] == found.acceleration.tolist()
@@ -43,11 +41,10 @@ def test_json_is_the_python_call(run):
     assert told["uplift_acceleration_m_s2"] == pytest.approx(0.25 * G, rel=1e-14, abs=0.0)
 
 
-def test_page_and_files(run, tmp_path):
+def test_page_and_files(printed, tmp_path):
     """The sentence, a line for each crossing with the modes on both sides, and files with all digits."""
     files = ("--out", tmp_path / "a.png", "--out", tmp_path / "a.csv")
-    code, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", *files)
-    assert code == 0
+    out = printed(*SIZE, PULSE, "--restitution", "0.85", *files)
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [(row["mode below [1]"], row["mode above [1]"]) for row in rows] == [("-1", "1"), ("1", "-1"), ("-1", "0")]

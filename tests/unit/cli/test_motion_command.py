@@ -94,11 +94,10 @@ def test_printed_page(run, tmp_path):
     assert "pulse, known at every instant" in out
 
 
-def test_csv(run, tmp_path, triangle):
+def test_csv(printed, tmp_path, triangle):
     """The CSV holds time, acceleration, velocity, displacement at the samples: those of the triangle, by hand."""
     path = tmp_path / "out.csv"
-    code, out, _ = run(triangle, "--units", "m/s2", "--out", path)
-    assert code == 0
+    out = printed(triangle, "--units", "m/s2", "--out", path)
     assert f"wrote {path}" in out
     with path.open(encoding="utf-8") as file:
         head, *rows = csv.reader(file)

@@ -89,11 +89,10 @@ def test_a_target_chooses_and_scales(run, folder):
     assert "misfit of each" in out
 
 
-def test_other_commands_take_sets(run, folder, tmp_path):
+def test_other_commands_take_sets(run, printed, folder, tmp_path):
     """Predict takes pairs as one motion, fragility each component, doubled by mirrors; a job file says the same."""
     few = ["--set", "predict.count=4", "--set", "predict.shares=false"]
-    code, out, _ = run("predict", *BLOCK, folder, *few, "--json")
-    assert code == 0
+    out = printed("predict", *BLOCK, folder, *few, "--json")
     assert len(json.loads(out)["motions"]) == 3
     pattern = str(folder / "RSN*.AT2")
     words = ["--motion", pattern, "--set", "motion.mirrored=true", "--levels", "2,4"]

@@ -49,11 +49,10 @@ def test_json_is_the_python_call(run):
     assert json.loads(out) == plain(found.as_dict())
 
 
-def test_a_file_says_everything(run, tmp_path):
+def test_a_file_says_everything(printed, tmp_path):
     path = tmp_path / "question.toml"
     path.write_text(FILE, "utf-8")
-    code, out, _ = run(str(path), "--set", "predict.seed=3", "--json")
-    assert code == 0
+    out = printed(str(path), "--set", "predict.seed=3", "--json")
     found = predict(
         rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), friction={"mean": 0.5, "deviation": 0.1},
         restitution=0.9, count=16, seed=3,
@@ -61,12 +60,11 @@ def test_a_file_says_everything(run, tmp_path):
     assert json.loads(out)["probability"] == plain(found.as_dict())["probability"]
 
 
-def test_what_is_printed_and_written(run, tmp_path):
+def test_what_is_printed_and_written(printed, tmp_path):
     picture, table = tmp_path / "found.png", tmp_path / "found.csv"
-    code, out, _ = run(
+    out = printed(
         *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--out", str(picture), "--out", str(table)
     )
-    assert code == 0
     assert out.startswith("It ")
     assert "assumed:      placement" in out
     assert "Sobol" in out
@@ -74,13 +72,12 @@ def test_what_is_printed_and_written(run, tmp_path):
     assert len(table.read_text("utf-8").splitlines()) == 3
 
 
-def test_two_components_have_an_azimuth(run, tmp_path):
+def test_two_components_have_an_azimuth(printed, tmp_path):
     for name in ("ns", "ew"):
         text = "\n".join(f"{0.01 * k:.2f} {(4.0 if name == 'ns' else 1.0) * (-1) ** (k // 40):.1f}" for k in range(160))
         (tmp_path / f"{name}.txt").write_text(text, "utf-8")
     along = [f"--motion={axis}={tmp_path / name}.txt" for axis, name in (("x", "ns"), ("y", "ew"))]
-    code, out, _ = run(*SIZE, *along, "--units", "m/s2", *FEW, "--json")
-    assert code == 0
+    out = printed(*SIZE, *along, "--units", "m/s2", *FEW, "--json")
     assert "azimuth" in json.loads(out)["inputs"]
 
 
@@ -126,11 +123,10 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     assert (tmp_path / "statue.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_reports_say_what_was_said(run, tmp_path):
+def test_reports_say_what_was_said(printed, tmp_path):
     """The page has the verdict, what was assumed and the numbers; an ending that is none is refused."""
     page = tmp_path / "found.html"
-    code, out, _ = run(*SIZE, PULSE, *FEW, "--out", str(page))
-    assert code == 0
+    out = printed(*SIZE, PULSE, *FEW, "--out", str(page))
     text = page.read_text("utf-8")
     assert out.splitlines()[0] in text
     assert "placement" in text

@@ -198,11 +198,10 @@ def test_a_model_that_does_not_fit_says_why(capsys):
     assert plain(answer.facts())["other_models"]["odd"] == {"error": "the impact would create energy"}
 
 
-def test_files(run, tmp_path):
+def test_files(run, printed, tmp_path):
     """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
     paths = {ending: tmp_path / f"a.{ending}" for ending in ("svg", "html", "csv", "mat")}
-    code, out, _ = run(*SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
-    assert code == 0
+    out = printed(*SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
     assert out.splitlines()[-4:] == [f"wrote {path}" for path in paths.values()]
     expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
     with paths["csv"].open(encoding="utf-8") as file:

@@ -1,7 +1,6 @@
 """`rocking spectrum`: numbers equal the study, slenderness and periods in words, refusals."""
 
 import csv
-import json
 import math
 
 import numpy as np
@@ -19,11 +18,9 @@ SINE, COSINE = "sine:amplitude=3,period=0.8", "cosine:amplitude=3,period=0.8"
 FEW = ("--slenderness", "4,6", "--periods", "1:8:9")
 
 
-def test_json_is_the_python_call(run):
+def test_json_is_the_python_call(answered):
     """Modes and peaks of both motions are those of the study, bit by bit; counts add up to the blocks."""
-    code, out, err = run(SINE, "--motion", COSINE, *FEW, "--scale", "1.5", "--json")
-    assert (code, err) == (0, "")
-    told = json.loads(out)
+    told = answered(SINE, "--motion", COSINE, *FEW, "--scale", "1.5")
     motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
     found = rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), np.geomspace(1, 8, 9), scale=1.5)
     assert told["mode"] == found["mode"].values.tolist()
@@ -38,12 +35,11 @@ def test_json_is_the_python_call(run):
         assert one["not_lifted"] + one["rocked"] + one["overturned"] + one["failed"] == 9
 
 
-def test_page_and_files(run, tmp_path):
+def test_page_and_files(printed, tmp_path):
     """A heading for every motion, a line for every slenderness; files are named and hold all digits."""
     files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc")]
     options = [word for pair in zip(("--out", "--out", "--out"), files, strict=True) for word in pair]
-    code, out, _ = run(SINE, COSINE, *FEW, *options)
-    assert code == 0
+    out = printed(SINE, COSINE, *FEW, *options)
     lines = out.splitlines()
     for name in ("sine pulse, 3 m/s2, 0.8 s", "cosine pulse, 3 m/s2, 0.8 s"):
         place = lines.index(name)

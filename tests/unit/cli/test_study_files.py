@@ -30,7 +30,7 @@ def test_an_inventory_file_runs(run, monkeypatch):
     assert out
 
 
-def test_what_is_set_beside_a_file(run, tmp_path):
+def test_what_is_set_beside_a_file(run, printed, tmp_path):
     """A key of the one [[body]] of a list is changed; of several it is refused."""
     one = 'units = "m"\nheight = 2.0\nwidth = 0.5\n'
     rest = (
@@ -39,8 +39,7 @@ def test_what_is_set_beside_a_file(run, tmp_path):
     )
     file = tmp_path / "map.toml"
     file.write_text(f"[[body]]\n{one}{rest}")
-    code, out, _ = run("map", file, "--set", "body.width=0.8")
-    assert code == 0
+    out = printed("map", file, "--set", "body.width=0.8")
     assert "alpha = 0.3805 rad" in out
     file.write_text(f"[[body]]\n{one}[[body]]\n{one}{rest}")
     code, _, err = run("map", file, "--set", "body.width=0.8")
