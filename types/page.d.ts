@@ -11,7 +11,7 @@ type Point = [number, number];
 type Region = { outline: Point[]; holes?: Point[][] | null; density?: number | null };
 
 /** A refusal as a view sees it: app/api.js, app/main.js. */
-type Refusal = import("/app/api.js").ApiError;
+type Refusal = import("/app/api.js").ApiError & { field?: string | null; place?: ReturnType<typeof import("/app/refusal.js").placeOf> };
 
 /** How a model, or what else is drawn, looks. */
 type Look = { colour: string; dash?: number[] };
@@ -123,6 +123,11 @@ type FieldProps<Value> = {
 };
 type Limits = { min?: number; above?: number; max?: number; whole?: boolean; moves?: boolean; optional?: boolean };
 type NumberProps = FieldProps<number | null> & Limits & { step?: number; aside?: boolean };
+
+/** What of a record may have to be told, what was, and what a file leaves open: views/motion-record-needs.js. */
+type Need = Server.RecordFacts["needs"][number];
+type Told = { format?: string; units?: string; time_step?: number; component?: string; vertical?: string };
+type LeftOpen = { needs: Need[]; choices?: Server.RecordFacts["choices"]; components?: Server.ComponentFacts[]; [more: string]: any };
 
 /** A file that was sent: its plain name, and its hash. */
 type SentFile = { name: string; sha: string };

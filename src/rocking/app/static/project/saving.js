@@ -42,7 +42,7 @@ export const createProjects = (app, first) => {
     const forms = app.forms.get();
     return { inputs: aside?.mine ? aside.inputs : app.inputs.get(), ...(Object.keys(forms).length ? { forms } : {}) };
   };
-  /** @param {any} facts */
+  /** @param {Server.ProjectFacts & { document?: any }} facts */
   const known = (facts) => {
     const { document, ...rest } = facts;
     here.value = rest;

@@ -9,7 +9,7 @@ const UNITS = Object.keys(METRES).map((unit) => [unit, unit]);
 const FROM_FILE = [["mass_points", "Mass points (from a file)"]];
 
 /** The fields of a body; the one that the server refused is marked too, until the body changes.
- * @param {{ app: App, body: Server.BodyInput, refusal: any }} props */
+ * @param {{ app: App, body: Server.BodyInput, refusal: Refusal | null }} props */
 export const Form = ({ app, body, refusal }) => {
   const [kept, replaced] = [useRef(new Map()).current, useRef({}).current];
   const shape = shapeOf(body);

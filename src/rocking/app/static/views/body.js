@@ -35,7 +35,7 @@ export const mount = (section, app) => {
   return { shown: editor.tell };
 };
 
-/** @param {{ app: App, editor: Editor, body: Signal<Server.BodyInput>, others: Signal<number>, facts: Signal<Server.DescribedBody>, refusal: Signal<any>, faulty: Signal<string> }} props */
+/** @param {{ app: App, editor: Editor, body: Signal<Server.BodyInput>, others: Signal<number>, facts: Signal<Server.DescribedBody>, refusal: Signal<Refusal | null>, faulty: Signal<string> }} props */
 const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
   useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields came and went
   return html`
@@ -51,7 +51,7 @@ const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
     </div>`;
 };
 
-/** @param {{ app: App, facts: Signal<Server.DescribedBody>, refusal: Signal<any>, faulty: Signal<string> }} props */
+/** @param {{ app: App, facts: Signal<Server.DescribedBody>, refusal: Signal<Refusal | null>, faulty: Signal<string> }} props */
 const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, faulty: { value: faulty } }) => {
   const kind = refused || faulty ? "stale" : "";
   return html`

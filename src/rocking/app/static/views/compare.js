@@ -142,7 +142,7 @@ const sentencesOf = (found, there) => {
 /** @type {Words} */
 const SHORT = { no_uplift: "is not lifted", rocked: "stands", overturned: "overturns" };
 
-/** @param {{ answers: any[], hidden: Set<string>, opened: Signal<string | null>, toggle: (label: string) => unknown, margins: Margins }} props */
+/** @param {{ answers: Server.ResponseAnswered["answers"], hidden: Set<string>, opened: Signal<string | null>, toggle: (label: string) => unknown, margins: Margins }} props */
 const Models = ({ answers, hidden, opened, toggle, margins }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label="Table of the models">
     <table data-testid="compare-models">

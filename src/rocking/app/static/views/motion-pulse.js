@@ -50,10 +50,9 @@ const aboutOf = ({ summary }) => {
 };
 
 // amplitude and period stay when one goes from pulse to pulse
-/** @param {any} pulse @param {{ [key: string]: number }} before */
-const borrowed = (pulse, before) =>
-  Object.fromEntries(pulse.parameters.filter((/** @type {any} */ one) => one.needed || one.name in before)
-    .map((/** @type {any} */ one) => [one.name, before[one.name] ?? one.usual]));
+/** @param {ReturnType<ReturnType<typeof pulsesOf>["get"]>} pulse @param {{ [key: string]: number }} before */
+const borrowed = (pulse, before) => Object.fromEntries((pulse?.parameters ?? [])
+  .filter(({ needed, name }) => needed || name in before).map(({ name, usual }) => [name, before[name] ?? usual]));
 
 /** @param {any} props */
 const Parameter = ({ label, unit, low, high, whole, log, limits, value, error, on }) => html`

@@ -29,25 +29,12 @@ const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.lengt
 /** @param {string} name */
 const titleOf = (name) => TITLES[name] || name.replaceAll("-", " ");
 
-/** @param {any} given @returns {any[]} */
-const listed = (given) =>
-  Array.isArray(given) ? given : Object.entries(given).map(([name, one]) => ({ name, ...one }));
-
-/** @param {any} parameter */
-const parameterOf = ({ name, unit, default: usual, ...more }) => {
-  const range = RANGES[name] || { label: more.words || name, low: 0.01, high: 100, log: true, usual: 1 };
-  const needed = usual === undefined || usual === null;
-  const shown = unit === "-" ? "" : unit || "";
-  return { name, unit: shown, needed, ...range, usual: needed ? range.usual : usual };
+/** @param {[string, Server.ParameterFacts]} parameter */
+const parameterOf = ([name, { unit, words, default: usual }]) => {
+  const range = RANGES[name] || { label: words || name, low: 0.01, high: 100, log: true, usual: 1 };
+  return { name, unit: unit === "-" ? "" : unit, needed: usual === null, ...range, usual: typeof usual === "number" ? usual : range.usual };
 };
 
-/** Returns the pulses by name: {title, summary, parameters: [{name, label, unit, usual, low, high, ...}]}.
- * @param {{ pulses: Server.Info["pulses"] }} info @returns {Map<string, { title: string, summary: string, parameters: any[] }>} */
-export const pulsesOf = ({ pulses }) => {
-  const ordered = listed(pulses).sort((one, other) => rank(one.name) - rank(other.name));
-  /** @param {any} pulse @returns {[string, any]} */
-  const told = ({ name, summary = "", parameters = {} }) => {
-    return [name, { title: titleOf(name), summary, parameters: listed(parameters).map(parameterOf) }];
-  };
-  return new Map(ordered.map(told));
-};
+/** The pulses by name: {title, summary, parameters: [{name, label, unit, usual, low, high, ...}]}. @param {Pick<Server.Info, "pulses">} info */
+export const pulsesOf = ({ pulses }) => new Map(Object.entries(pulses).sort(([one], [other]) => rank(one) - rank(other))
+  .map(([name, { summary, parameters }]) => [name, { title: titleOf(name), summary, parameters: Object.entries(parameters).map(parameterOf) }]));

@@ -29,37 +29,27 @@ const SIGNS = {
   component: /component/i, format: /format/i,
 };
 
-/** The name of a need. @param {any} one @returns {string} */
-export const nameOf = (one) => one.name || one;
-
-/** @param {any} one @param {any} answer @param {any} info @returns {string[]} */
-const choicesOf = (one, answer, info) => {
-  const name = nameOf(one);
-  const own = one.choices || answer.choices?.[name];
-  if (own) return own.map((/** @type {any} */ choice) => choice.name ?? choice);
-  if (name === "units") return namesOf(info.units?.acceleration ?? info.acceleration_units ?? info.units);
-  if (name === "format") return namesOf(info.formats);
-  return (answer.components || []).map((/** @type {any} */ component) => component.name);
+/** @param {Need} name @param {LeftOpen} answer @param {Server.Info} info */
+const choicesOf = (name, { choices = {}, components = [] }, info) => {
+  if (choices[name]) return choices[name];
+  if (name === "units") return info.units.acceleration;
+  return (name === "format" ? info.formats : components).map((one) => one.name);
 };
 
-/** @param {any} given @returns {string[]} */
-const namesOf = (given) =>
-  Array.isArray(given) ? given.map((one) => one.name ?? one.label ?? one) : Object.keys(given || {});
-
 /** What of some needs a refusal of the server is about: {name, words}; null if about none of them.
- * @param {any[]} needs @param {string} words */
+ * @param {Need[]} needs @param {string} words */
 export const blamedOf = (needs, words) => {
-  const name = needs.map(nameOf).find((one) => SIGNS[one]?.test(words));
+  const name = needs.find((one) => SIGNS[one]?.test(words));
   return name ? { name, words } : null;
 };
 
 /** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong.
- * @param {{ answer: any, info: Server.Info, given: any, blamed?: any, take: (given: any) => unknown, button?: any, [more: string]: any }} props */
+ * @param {{ answer: LeftOpen, info: Server.Info, given: Told, blamed?: ReturnType<typeof blamedOf>, take: (given: Told) => unknown, button?: object, [more: string]: any }} props */
 export const Needs = ({ answer, info, given, blamed, take, button, ...more }) => {
   const place = useRef(null);
   const [answers, wrong, pressed] = [useSignal(given), useSignal({}), useSignal(0)];
-  /** @type {[any, string, string[]][]} */
-  const fields = answer.needs.map((/** @type {any} */ one) => [one, nameOf(one), choicesOf(one, answer, info)]);
+  /** @type {[Need, string[]][]} */
+  const fields = answer.needs.map((name) => [name, choicesOf(name, answer, info)]);
   useLayoutEffect(() => {
     wrong.value = blamed ? { [blamed.name]: blamed.words } : {};
     if (blamed) toWrong(place.current);
@@ -71,8 +61,8 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
     else take(answers.value);
   }, [pressed.value]);
   const press = () => {
-    const open = fields.filter(([, name, choices]) => (name === "time_step" || choices.length) && !answers.value[name]);
-    wrong.value = Object.fromEntries(open.map(([, name]) => [name, MISSING[name] ?? "Choose one."]));
+    const open = fields.filter(([name, choices]) => (name === "time_step" || choices.length) && !answers.value[name]);
+    wrong.value = Object.fromEntries(open.map(([name]) => [name, MISSING[name] ?? "Choose one."]));
     pressed.value += 1;
   };
   /** @param {any} event */
@@ -81,10 +71,10 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
     event.preventDefault();
     press();
   };
-  /** @param {any} need */
-  const field = ([one, name, choices]) => {
+  /** @param {typeof fields[number]} need */
+  const field = ([name, choices]) => {
     const about = {
-      label: LABELS[name] || name, help: one.message || HELP[name], error: wrong.value[name], value: answers.value[name],
+      label: LABELS[name] || name, help: HELP[name], error: wrong.value[name], value: answers.value[name],
       /** @param {number} value */
       on: (value) => {
         answers.value = { ...answers.value, [name]: value || undefined };

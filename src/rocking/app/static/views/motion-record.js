@@ -6,7 +6,7 @@ import { Drop } from "/parts/drop.js";
 import { Note } from "/parts/fields.js";
 import { sendFile } from "/questions/asking.js";
 import { Components } from "/views/motion-components.js";
-import { Needs, blamedOf, nameOf } from "/views/motion-record-needs.js";
+import { Needs, blamedOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
 
 /** @type {Words} */
@@ -41,11 +41,11 @@ export const createRecord = (app, onChange) => {
     }
   };
   // the components are chosen here, the server is not asked again
-  /** @param {any[]} needs */
-  const enough = (needs) => needs.every((one) => nameOf(one) === "component") && held.given.component !== undefined;
-  /** @param {any} found */
+  /** @param {Need[]} needs */
+  const enough = (needs) => needs.every((one) => one === "component") && held.given.component !== undefined;
+  /** @param {Server.RecordFacts} found */
   const took = (found) => {
-    if (found.needs?.length && !enough(found.needs)) {
+    if (found.needs.length && !enough(found.needs)) {
       said.value = { words: `${found.message.split("; say ")[0]}.`, kind: "warning" };
       return ask(found);
     }
@@ -54,7 +54,7 @@ export const createRecord = (app, onChange) => {
     onChange({ record: found.record, file_name: found.file_name, ...picked(held.given, [...TOLD, "component"]) });
     return app.say(`${found.file_name} is read.`);
   };
-  /** @param {any} found */
+  /** @param {LeftOpen} found */
   const ask = (found) => ([asked.value, blamed.value, waiting.value] = [{ answer: found, given: { ...held.given } }, null, true]);
   /** @param {object} words @param {string} as */
   const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);

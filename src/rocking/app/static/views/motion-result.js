@@ -62,16 +62,16 @@ const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
   return html`<${Figure} shape=${shape} data=${data} part=${part} time=${time} />`;
 };
 
-/** @param {any} answer */
+/** @param {Server.MotionAnswered} answer */
 const factsOf = (answer) => {
-  const peak = answer.peak_acceleration_m_s2 ?? peakOf(answer.series.acceleration);
+  const peak = answer.peak_acceleration_m_s2;
   const found = [
     ["Peak acceleration", `${quantity(peak, "m/s2", 4)} (${quantity(peak / G, "g", 3)})`],
     ["Duration", quantity(answer.duration_s, "s", 5)],
   ];
   if (answer.time_step_s) found.push(["Time step", quantity(answer.time_step_s, "s", 5)]);
   if (answer.samples) found.push(["Samples", String(answer.samples)]);
-  for (const key of ["event", "station", "component", "format", "file_unit"]) {
+  for (const key of /** @type {const} */ (["event", "station", "component", "format", "file_unit"])) {
     if (answer[key]) found.push([titled(key.replace("_", " ")), String(answer[key])]);
   }
   if (answer.peak_vertical_acceleration_m_s2) {
@@ -79,6 +79,3 @@ const factsOf = (answer) => {
   }
   return found;
 };
-
-/** @param {number[]} values */
-const peakOf = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);

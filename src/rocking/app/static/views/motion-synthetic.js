@@ -3,22 +3,23 @@ import { html } from "/parts/preact.js";
 import { Button, Choice, NumberField, Segmented } from "/parts/fields.js";
 
 const LEVELS = [["", "As drawn"], ["pga", "To a PGA"], ["pgv", "To a PGV"]];
-/** @type {{ [key: string]: { label: string, unit: string, usual: number } }} */
+/** @type {{ [key in "pga" | "pgv"]: { label: string, unit: string, usual: number } }} */
 const LEVEL = {
   pga: { label: "Peak ground acceleration", unit: "m/s2", usual: 3 },
   pgv: { label: "Peak ground velocity", unit: "m/s", usual: 0.5 },
 };
+const KINDS = /** @type {const} */ (["pga", "pgv"]);
 
 /** The motion to begin with. */
 export const usualSynthetic = () => ({ synthetic: "pulse-like", seed: 0, member: 0 });
 
 /** The editor of a synthetic motion.
- * @param {{ app: App, motion: any, onChange: (motion: Server.MotionInput) => unknown }} props */
+ * @param {{ app: App, motion: Server.MotionInput | null, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Synthetic = ({ app, motion, onChange }) => {
   if (!motion) return null;
   const { families } = app.info;
   const { pga, pgv, ...drawn } = motion;
-  const kind = Object.keys(LEVEL).find((key) => motion[key] !== undefined) ?? "";
+  const kind = KINDS.find((key) => motion[key] !== undefined) ?? "";
   /** @param {Partial<Server.MotionInput>} changes */
   const change = (changes) => onChange({ ...motion, ...changes });
   /** @param {string} label @param {"seed" | "member"} key @param {string} help */
@@ -33,7 +34,7 @@ export const Synthetic = ({ app, motion, onChange }) => {
         ${whole("Member", "member", "Which motion of the family: 0, 1, 2, ...")}</div>
       <${Button} onClick=${() => change({ member: (motion.member ?? 0) + 1 })}>Another one<//>
       <${Segmented} label="Level" options=${LEVELS} value=${kind}
-        on=${(next) => onChange(next ? { ...drawn, [next]: LEVEL[next].usual } : drawn)} />
+        on=${(/** @type {"" | "pga" | "pgv"} */ next) => onChange(next ? { ...drawn, [next]: LEVEL[next].usual } : drawn)} />
       ${kind && html`<${NumberField} key=${kind} label=${LEVEL[kind].label} unit=${LEVEL[kind].unit} min=${1e-6} step=${0.1}
         value=${motion[kind]} on=${(given) => change({ [kind]: given })} />`}
     </div>`;

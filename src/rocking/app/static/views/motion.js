@@ -18,7 +18,7 @@ const USUAL = { record: () => null, pulse: usualPulse, synthetic: usualSynthetic
 
 const LEAN = "No motion is chosen: the body is let go from a lean. Choose one here to shake it.";
 
-/** Way of a motion; none while nothing shakes the ground. @param {any} motion @returns {"" | keyof typeof EDITORS} */
+/** Way of a motion; none while nothing shakes the ground. @param {Server.MotionInput | null | undefined} motion @returns {"" | keyof typeof EDITORS} */
 const wayOf = (motion) => /** @type {(keyof typeof EDITORS)[]} */ (Object.keys(EDITORS)).find((way) => motion?.[way] !== undefined) || "";
 
 /** Shows the view of the motion in a section. @param {HTMLElement} section @param {App} app */

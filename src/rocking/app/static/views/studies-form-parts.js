@@ -13,11 +13,11 @@ export const Range = ({ name, unit = "", range }) => {
   </fieldset>`;
 };
 
-/** A range as a job file writes it. @param {any} range */
+/** A range as a job file writes it. @param {{ from: number, to: number, count: number, [more: string]: unknown }} range */
 export const rangeOf = ({ from, to, count, ...more }) => ({ from, to, count: Math.round(count), ...more });
 
-/** The unit that a label has, of none nothing. @param {any} axis */
-export const unitOf = ({ unit }) => (unit === "1" ? "" : unit);
+/** The unit that a label has, of none nothing. @param {{ unit: string }} [axis] */
+export const unitOf = ({ unit } = { unit: "" }) => (unit === "1" ? "" : unit);
 
 /** Motions of a job from the motion of the inputs. @param {Server.Inputs} inputs */
 export const motionsOf = (inputs) => {

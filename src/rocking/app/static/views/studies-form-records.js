@@ -2,7 +2,7 @@
 import { html, useEffect, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 import { quantity } from "/app/format.js";
-import { Needs, nameOf } from "/views/motion-record-needs.js";
+import { Needs } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
@@ -16,7 +16,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     const told = toldOf(record);
     const { format, units, time_step } = told;
     const seen = await app.call(`records/${record}`, { query: { format, units, time_step } }).then(
-      (found) => ({ found, told, missing: (found.needs ?? []).filter((one) => told[nameOf(one)] === undefined) }),
+      (found) => ({ found, told, missing: found.needs.filter((one) => told[one] === undefined) }),
       (error) => ({ refused: error.message }),
     );
     looked.value = { ...looked.value, [record]: seen };
@@ -84,7 +84,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
     answered.current = false;
   }, [seen]);
-  /** @param {any} given */
+  /** @param {Told} given */
   const take = (given) => {
     rememberTold({ record, ...told, ...given });
     answered.current = true;
@@ -112,9 +112,9 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     </li>`;
 };
 
-/** @param {any} found @param {any} told */
-const factsOf = ({ components = [] }, { units, component, vertical }) => {
-  const chosen = components.find((/** @type {any} */ { name }) => name === component) ?? components[0];
+/** @param {Server.RecordFacts} found @param {Told} told */
+const factsOf = ({ components }, { units, component, vertical }) => {
+  const chosen = components.find(({ name }) => name === component) ?? components[0];
   const step = chosen?.time_step_s;
   return [
     component,

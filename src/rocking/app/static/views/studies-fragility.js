@@ -60,7 +60,7 @@ const withUnit = (sentence, unit) =>
     .replace(LEVEL, `$1 $2${unit && `\u00a0${pretty(unit)}`}`)
     .replace(/\b(between \S+ and \S*[0-9])/g, `$1${unit && `\u00a0${pretty(unit)}`}`);
 
-/** @param {{ state: string, curve: any, points: Server.PointsOfState, index: number, x: ChartAxis }} props */
+/** @param {{ state: string, curve: Server.CurveOfState, points: Server.PointsOfState, index: number, x: ChartAxis }} props */
 const Curve = ({ state, curve, points, index, x }) => {
   const { colour } = seriesStyle(index);
   const band = Boolean(curve.low && curve.high);
@@ -85,24 +85,26 @@ const Curve = ({ state, curve, points, index, x }) => {
 };
 
 /** One abscissa for the curve and its points: null where one of them has no value.
- * @param {any} curve @param {Server.PointsOfState} points */
+ * @param {Server.CurveOfState} curve @param {Server.PointsOfState} points */
 const joined = (curve, points) => {
-  const onCurve = curve.x.map((/** @type {number} */ at, /** @type {number} */ k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
+  /** @type {(number | null)[][]} */
+  const onCurve = curve.x.map((at, k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
   const onPoints = points.x.map((at, k) => [at, ...between(curve, at), points.share[k]]);
-  const all = [...onCurve, ...onPoints].sort((a, b) => a[0] - b[0]);
+  const all = [...onCurve, ...onPoints].sort(([a], [b]) => Number(a) - Number(b));
   return [0, 1, 2, 3, 4].map((column) => all.map((row) => row[column]));
 };
 
-const NAMES = ["probability", "low", "high"];
+const NAMES = /** @type {const} */ (["probability", "low", "high"]);
 
-/** @param {any} curve @param {number} at */
+/** @param {Server.CurveOfState} curve @param {number} at */
 const between = (curve, at) => {
-  const k = curve.x.findIndex((/** @type {number} */ value) => value >= at);
+  const k = curve.x.findIndex((value) => value >= at);
   if (k < 1) return [null, null, null];
   const share = (at - curve.x[k - 1]) / (curve.x[k] - curve.x[k - 1]);
-  return NAMES.map((name) =>
-    curve[name] ? curve[name][k - 1] + share * (curve[name][k] - curve[name][k - 1]) : null,
-  );
+  return NAMES.map((name) => {
+    const values = curve[name];
+    return values && values[k - 1] + share * (values[k] - values[k - 1]);
+  });
 };
 
 /** @param {string} unit */
@@ -116,7 +118,7 @@ const columnsOf = (unit) => [
 
 /** @param {string} state @param {Server.FitFacts} fit */
 const rowOf = (state, fit) => {
-  /** @param {any} pair */
+  /** @param {(number | null)[]} pair */
   const pair = ([low, high]) =>
     low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`;
   return [

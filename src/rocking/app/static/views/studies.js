@@ -74,7 +74,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
           taken=${() => new Set(studies.value.map((/** @type {Server.StudyFacts} */ { name }) => name))} /></section>
       <section class="card" aria-labelledby="studies-there"><h2 id="studies-there">Studies</h2>
         <${Switch} label="Studies of all projects" value=${every} />
-        <${StudyList} studies=${studies.value} onShow=${(/** @type {any} */ study) => show(study, document.activeElement)} acts=${acts} /></section>
+        <${StudyList} studies=${studies.value} onShow=${(/** @type {Server.StudyFacts} */ study) => show(study, document.activeElement)} acts=${acts} /></section>
     </div>
     ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}
   </div>`;
