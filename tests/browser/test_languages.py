@@ -162,7 +162,8 @@ def sentences_of_the_server() -> list[str]:
         "Its base is round: it is tipped in four directions.",
         "The file a.mseed: the samples are counts of the instrument, whose response lies in a StationXML file of its"
         " own; drop both together, or give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d "
-        "there and choose the StationXML; the record that is taken away can be dropped here. The motion stays as it was.",
+        "there and choose the StationXML; the record that is taken away can be dropped here. "
+        "The motion stays as it was.",
     ]
 
 
