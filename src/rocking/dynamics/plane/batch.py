@@ -92,55 +92,48 @@ class Batch:
         taken = thread_count(self.threads if threads is None else threads)
         if self.law.per_history:
             return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
-        if self.settings.friction is not None:
-            return self._run_with_contact(count, rows, progress, taken)
-        library = self._library if fast_engine.chosen(self.engine, self.law) == "fast" else None
+        rocks = self.settings.friction is None
+        library = self._library if rocks and fast_engine.chosen(self.engine, self.law) == "fast" else None
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
         for first in range(0, count, PIECE):
-            last = min(first + PIECE, count)
-            out = {name: values[first:last] for name, values in results.items()}
-            piece = rows(first, last)
-            if not np.isnan(piece.values["friction"]).all():
-                raise InvalidValueError("rows with a friction are of bodies that slide: their settings need one too")
-            if library is None:
-                for k, (motion, stream) in enumerate(zip(piece.motion.tolist(), piece.stream.tolist(), strict=True)):
-                    row = {name: float(values[k]) for name, values in piece.values.items()}
-                    for name, value in self._one(row, motion, stream).items():
-                        out[name][k] = value
-            else:
-                done = fast_engine.module().run_batch(
-                    library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
-                    order=self.settings.order, threads=taken, chunk=_CHUNK,
-                    **fast_engine.common(self.settings, self.law),
-                )  # fmt: skip
-                total = {name: total.get(name, 0) + value for name, value in done.items()}
+            piece = rows(first, min(first + PIECE, count))
+            out = {name: values[first : first + len(piece)] for name, values in results.items()}
+            done = self._rocking(piece, out, taken, library) if rocks else self._with_friction(piece, out, taken)
+            total = {name: total.get(name, 0) + value for name, value in done.items()}
             if progress is not None:
-                progress(last - first)
+                progress(len(piece))
         return results, total
 
-    def _run_with_contact(
-        self,
-        count: int,
-        rows: Callable[[int, int], Rows],
-        progress: Callable[[int], None] | None,
-        threads: int,
-    ) -> tuple[fast_engine.Arrays, dict[str, int]]:
+    def _rocking(
+        self, piece: Rows, out: fast_engine.Arrays, threads: int, library: fast_engine.Library | None
+    ) -> dict[str, int]:
+        """Write the results of a piece, and return the steps taken."""
+        if not np.isnan(piece.values["friction"]).all():
+            raise InvalidValueError("rows with a friction are of bodies that slide: their settings need one too")
+        if library is not None:
+            done: dict[str, int] = fast_engine.module().run_batch(
+                library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
+                order=self.settings.order, threads=threads, chunk=_CHUNK,
+                **fast_engine.common(self.settings, self.law),
+            )  # fmt: skip
+            return done
+        for k, (motion, stream) in enumerate(zip(piece.motion.tolist(), piece.stream.tolist(), strict=True)):
+            row = {name: float(values[k]) for name, values in piece.values.items()}
+            for name, value in self._one(row, motion, stream).items():
+                out[name][k] = value
+        return {}
+
+    def _with_friction(self, piece: Rows, out: fast_engine.Arrays, threads: int) -> dict[str, int]:
         if not isinstance(self.law, ConstantRestitution):
             raise InvalidValueError(
                 "with friction a history has one coefficient of restitution, or one that is drawn once for it, got "
                 f"{type(self.law).__name__}"
             )
-        results, steps = fast_engine.empty_results(count), 0
-        for first in range(0, count, PIECE):
-            piece = rows(first, min(first + PIECE, count))
-            found = self._with_contact.run(piece.values, piece.motion, threads)
-            steps += int(found["steps"].sum())
-            for name, values in results.items():
-                values[first : first + len(piece)] = found[name]
-            if progress is not None:
-                progress(len(piece))
-        return results, {"steps": steps}
+        found = self._with_contact.run(piece.values, piece.motion, threads)
+        for name, values in out.items():
+            values[:] = found[name]
+        return {"steps": int(found["steps"].sum())}
 
     @cached_property
     def _with_contact(self) -> Any:
