@@ -25,7 +25,7 @@ from rocking.dynamics.hull.history import HullEventKind, HullSettings
 from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, standing, step
 from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.space import SpatialBody
-from rocking.errors import GeometryError, InvalidValueError
+from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome, Status
 
@@ -442,7 +442,7 @@ def test_bad_bodies_and_grounds_are_refused():
         HullBody(np.eye(4, 3), 1.0, (0.2, 0.2, 0.2), -np.eye(3))
     with pytest.raises(InvalidValueError, match="slope"):
         HullGround(slope=2.0)
-    with pytest.raises(InvalidValueError, match="restitution"):
+    with pytest.raises(UnknownModelError, match="no restitution model in space is called 'wrong'"):
         HullEngine(_box(1, 1, 1, 1.0), HullGround(), "wrong").run(standing(_box(1, 1, 1, 1.0)))
 
 

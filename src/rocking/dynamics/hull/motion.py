@@ -78,7 +78,6 @@ class Rates(NamedTuple):
     velocity: Vector
     spin: Vector
     found: Solution | None
-    problem: Problem
 
 
 def problem_of(body: HullBody, state: State, field: Vector, friction: float) -> Problem:
@@ -97,7 +96,7 @@ def rates_of(body: HullBody, state: State, mode: HullMode, field: Vector) -> Rat
     found = solve(problem, mode.contact, {i: back(axes, d) for i, d in directions.items()})
     linear, angular = (problem.linear, problem.angular) if found is None else (found.linear, found.angular)
     turning = quaternion_rate(state.attitude, w)
-    return Rates(state.velocity, turning, applied(axes, linear), angular, found, problem)
+    return Rates(state.velocity, turning, applied(axes, linear), angular, found)
 
 
 def quaternion_rate(q: tuple[float, ...], w: Vector) -> tuple[float, ...]:

@@ -44,7 +44,7 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     if isinstance(law, FixedPosition):
         return _on_base(body, base, lambda _step: law.k)
     if isinstance(law, float):
-        return _on_base(body, base, _Coefficient(body, base, law).at)
+        return _on_base(body, base, _of_coefficient(body, base, law))
     if law == "housner-3d":
         return lambda _old, _new: 1.0
     position = impulse_position(spread_of(body))
@@ -71,23 +71,21 @@ def _on_base(body: HullBody, base: int, position: Callable[[Vector], float]) -> 
     return at
 
 
-class _Coefficient:
-    """The place at which the impulse of a landing of the whole base gives one coefficient r."""
+def _of_coefficient(body: HullBody, base: int, r: float) -> Callable[[Vector], float]:
+    """Return where, in the direction of a step, the impulse of a landing of the whole base gives one coefficient."""
+    corners = [body.points[i] for i in body.hull.corners(base)]
+    up, height = scaled(-1.0, unit(body.facets[base])), float(body.hull.heights[base])
 
-    def __init__(self, body: HullBody, base: int, r: float) -> None:
-        self.body, self.r = body, r
-        self.base = [body.points[i] for i in body.hull.corners(base)]
-        self.up, self.height = scaled(-1.0, unit(body.facets[base])), float(body.hull.heights[base])
-
-    def at(self, step: Vector) -> float:
-        """Return k in the direction of a step."""
-        along = unit(added(step, -dot(step, self.up), self.up))
-        edge = cross(self.up, along)
-        reaches = [dot(along, p) for p in self.base]
+    def at(step: Vector) -> float:
+        along = unit(added(step, -dot(step, up), up))
+        edge = cross(up, along)
+        reaches = [dot(along, p) for p in corners]
         new, old = max(reaches), -min(reaches)
-        over_foot = dot(edge, applied(self.body.tensor, edge)) / self.body.mass + self.height**2
-        ahead = over_foot * (1.0 - self.r) / (self.r * new + old)  # Eq. 4
+        over_foot = dot(edge, applied(body.tensor, edge)) / body.mass + height**2
+        ahead = over_foot * (1.0 - r) / (r * new + old)  # Eq. 4
         return (2.0 * ahead - (new - old)) / (new + old)  # Eq. 104
+
+    return at
 
 
 def place_of(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
