@@ -128,15 +128,14 @@ def finite(
     return result
 
 
-def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArray | None = None) -> None:
+def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
     """Refuse an array that holds anything but finite numbers above zero."""
     # min() and max() carry NaN along, so two reductions settle it
     if not values.size or (values.min() > 0.0 and values.max() < math.inf):
         return
-    whole = values if whole is None else whole
-    bad = tuple(int(i) for i in np.argwhere(~((whole > 0.0) & np.isfinite(whole)))[0])
+    bad = tuple(int(i) for i in np.argwhere(~((values > 0.0) & np.isfinite(values)))[0])
     where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
-    raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {whole[bad]:g}{where}")
+    raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {values[bad]:g}{where}")
 
 
 def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:

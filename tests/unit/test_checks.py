@@ -143,3 +143,23 @@ def test_one_family():
     assert issubclass(InvalidValueError, ValueError)
     assert issubclass(errors.UnknownModelError, LookupError)
     assert not issubclass(KeyError, errors.RockingError)
+
+
+def test_finite_arrays():
+    """Rows and tables of finite numbers of a shape become frozen copies; others are refused with shape or index."""
+    given = np.array([[1, 2, 3], [4, 5, 6]])
+    taken = checks.finite("points", given, "m", (None, 3))
+    assert taken.tolist() == given.tolist()
+    assert not taken.flags.writeable
+    assert not np.shares_memory(taken, given)
+    for values, shape, message in (
+        ([1.0], (None,), r"^x must be a row of at least 2 finite numbers \[m\], got shape \(1,\)$"),
+        ([1.0, 2.0], (3,), r"a row of 3 finite numbers \[m\], got shape \(2,\)"),
+        ([[1.0, 2.0]], (None, 3), r"at least 2 x 3 finite numbers \[m\], got shape \(1, 2\)"),
+        (1.0, (None,), r"got shape \(\)"),
+        ([1.0, np.nan], (None,), r"^x must be finite \[m\], got nan at index 1$"),
+        ([[1.0], [np.inf]], (2, 1), r"got inf at index \[1, 0\]"),
+        (["1", "2"], (2,), "must be numbers"),
+    ):
+        with pytest.raises(InvalidValueError, match=message):
+            checks.finite("x", values, "m", shape, least=2)
