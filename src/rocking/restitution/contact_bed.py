@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 from functools import lru_cache
 from typing import cast
@@ -127,7 +127,7 @@ class ContactBedModel(InertiaModel):
     @property
     def label(self) -> str:
         """Name with the parameters that are not the usual ones: ``contact-bed:points=5``."""
-        usual = {"points": 41, "damping": 1.0, "hardness": 100.0, "friction": math.inf, "allowed_error": 0.01}
+        usual = {field.name: field.default for field in fields(self)}
         values = ",".join(f"{name}={value:.4g}" for name, value in self.parameters.items() if value != usual[name])
         return f"{self.name}:{values}" if values else self.name
 

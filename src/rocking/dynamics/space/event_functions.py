@@ -106,13 +106,10 @@ def first_contact(
 
 
 def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
-    """Return whether a round base leans so little that a loss of contact is a hop below its own gap.
+    """Return whether a round base leans so little, by up [-], that a loss of contact is a hop below its own gap.
 
-    A spin about its own axis can draw the rim of a body without slip down while it passes by lying flat, as 1 / sin^2
-    of the tilt: faster than gravity, for milliseconds. In truth the rim slips or hops by less than the gap under the
-    base; here it is held down, without work, and the history says for how long.
-
-    up: vertical in body axes [-]. Returns below 1 % of the slenderness angle.
+    A spin about its own axis can draw the rim down faster than gravity, for milliseconds; here it is held down, without
+    work, and the history says for how long.
 
     >>> bottle = SpatialBody.cylinder(0.5, 2.0)
     >>> [nearly_flat(bottle, np.array([sine, 0.0, 1.0])) for sine in (1e-3, 1e-2)]

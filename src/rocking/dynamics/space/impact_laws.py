@@ -67,13 +67,8 @@ PLASTIC = SpatialHousner()
 class FixedSpatial:
     """The direction of the projection, and r of the angular velocity: ``|w+| = r |w-|``, as in the plane.
 
-    It is a ratio of magnitudes in every impact, from an edge to the parallel one as from a corner to any other, and
-    never creates energy: a body that lands on its longer lever keeps at most what it had.
-
-    A vertex that only grazes the ground costs this share as well, which no real impact does: for bodies that turn about
-    edges, not for wobbling ones.
-
-    coefficient: r, from 0 to 1 [-].
+    It never creates energy: a body that lands on its longer lever keeps at most what it had. A vertex that only grazes
+    the ground costs this share as well, which no real impact does: for bodies that turn about edges, not for wobblers.
     """
 
     def __init__(self, coefficient: float) -> None:

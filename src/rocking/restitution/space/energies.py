@@ -37,14 +37,12 @@ class UnitEnergies:
     @property
     def lost(self) -> FloatArray:
         """Energy that each unit loses in stages 1 and 2 [J]."""
-        lost: FloatArray = self.before - self.left
-        return lost
+        return np.asarray(self.before - self.left)
 
     @property
     def density(self) -> FloatArray:
         """Energy that each unit loses over its mass [J/kg]."""
-        density: FloatArray = self.lost / self.units.mass
-        return density
+        return np.asarray(self.lost / self.units.mass)
 
     def layers(self, count: int, height: float | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the energy lost layer by layer.
@@ -120,5 +118,4 @@ def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> Float
     # the body stands upright, and the points are in the user's coordinates
     (solid, origin), _ = impact.standing_solid, impact.placed_solid
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
-    density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))
-    return density
+    return np.asarray(0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1)))

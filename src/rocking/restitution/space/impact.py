@@ -129,8 +129,7 @@ class SpatialImpact:
     @cached_property
     def level(self) -> FloatArray:
         """Projection onto the ground, ``P = 1 - n n^T`` [-]."""
-        projection: FloatArray = np.eye(3) - np.outer(self.up, self.up)
-        return projection
+        return np.asarray(np.eye(3) - np.outer(self.up, self.up))
 
     @cached_property
     def spin(self) -> FloatArray:
@@ -150,8 +149,7 @@ class SpatialImpact:
     @cached_property
     def inertia(self) -> FloatArray:
         """Inertia tensor about the landing point [kg m2]."""
-        tensor: FloatArray = np.trace(self._second) * np.eye(3) - self._second
-        return tensor
+        return np.asarray(np.trace(self._second) * np.eye(3) - self._second)
 
     @property
     def angular_momentum(self) -> FloatArray:

@@ -114,8 +114,7 @@ def distance_to(edge: FloatArray) -> Distance:
 
 def norm(s: FloatArray) -> FloatArray:
     """Return the distances of points from the origin."""
-    norms: FloatArray = np.linalg.norm(s, axis=1)
-    return norms
+    return np.asarray(np.linalg.norm(s, axis=1))
 
 
 def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
@@ -136,8 +135,7 @@ def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Dis
 
 def height_squared(s: FloatArray) -> FloatArray:
     """Return the squared heights of points."""
-    squared: FloatArray = s[:, 2] ** 2
-    return squared
+    return np.asarray(s[:, 2] ** 2)
 
 
 _UP = np.array([0.0, 0.0, 1.0])
@@ -182,8 +180,7 @@ class KeptMoments:
     @cached_property
     def _factors(self) -> FloatArray:
         """B: coefficient of each quadratic feature in ``sum A_i W_ik s_k``, shape (n, 3, 3)."""
-        factors: FloatArray = np.einsum("nqk,qi->nik", self.products, self.directions)
-        return factors
+        return np.asarray(np.einsum("nqk,qi->nik", self.products, self.directions))
 
     def coefficients(self, drift: FloatArray, gradient: FloatArray) -> FloatArray:
         """Return a field of velocities u [m/s] + W s, W [1/s], in the features of the form, quadratic ones first."""

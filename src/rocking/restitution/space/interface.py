@@ -205,8 +205,7 @@ def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatAr
         float(value.sum())
         for value in ((first - start.point) * start.direction, (last - start.point) * start.direction, along)
     )
-    nearest: FloatArray = start.point + min(max(share, low), high) * start.direction
-    return nearest
+    return np.asarray(start.point + min(max(share, low), high) * start.direction)
 
 
 def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:

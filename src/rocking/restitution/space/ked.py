@@ -88,5 +88,4 @@ def stage_velocities(impact: SpatialImpact, points: FloatArray) -> tuple[FloatAr
 
 def _unit(vectors: FloatArray) -> FloatArray:
     sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
-    units: FloatArray = np.divide(vectors, sizes, out=np.zeros_like(vectors), where=sizes > 0.0)
-    return units
+    return np.asarray(np.divide(vectors, sizes, out=np.zeros_like(vectors), where=sizes > 0.0))
