@@ -72,11 +72,7 @@ def separation_of(counts: Counts) -> Separation:
 
 
 def median_interval(counts: Counts, separation: Separation) -> tuple[float | None, float | None]:
-    """Return the largest level survived and the smallest failed, where no single median is likeliest; None where open.
-
-    After quasi-complete separation both are the level where the outcomes are mixed, which is where the likelihood's
-    limit lies and not a certainty.
-    """
+    """Return what `LognormalFit.median_interval` says of outcomes."""
     survived, failed = counts.levels[counts.survivals > 0.0], counts.levels[counts.failures > 0.0]
     if separation is Separation.NONE_FAILED:
         return float(survived[-1]), None

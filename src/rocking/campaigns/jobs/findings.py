@@ -11,12 +11,11 @@ from rocking.campaigns.jobs.folder import JobFolder, job_status
 from rocking.campaigns.jobs.kinds.fragility import MEASURES, columns_of, measures_of
 from rocking.campaigns.jobs.rounds import replayed, resume
 from rocking.campaigns.jobs.study import TYPES, AdaptiveResult, pieces_of
-from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import attributes
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
-from rocking.studies.sensitivity.comparison import Sensitivity
+from rocking.studies.sensitivity.comparison import Sensitivity, drawn_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -150,12 +149,7 @@ def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_rat
     refuse_unfinished(folder)
     restitutions = folder.job.problem.restitutions
     results = datasets(folder, names) if folder.job.study.finish is None else analyses(folder)
-    drawn = [
-        label
-        for label, law in restitutions.items()
-        if isinstance(law, ImpactLaw) and law.kind == RandomRestitution.kind
-    ]
-    return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn)
+    return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn_in(restitutions))
 
 
 def datasets(folder: JobFolder, names: Collection[str] = tuple(TYPES)) -> "dict[str, xr.Dataset]":

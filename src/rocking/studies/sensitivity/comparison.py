@@ -1,6 +1,6 @@
 """Results of one study with several choices of restitution, compared in numbers and words."""
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
@@ -299,9 +299,6 @@ def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:
     return plain
 
 
-_RANDOM = RandomRestitution.kind
-
-
 def sensitivity(
     study: Callable[..., Any], restitutions: Any, baseline: str | None = None, *, repetitions: int = 1000, seed: int = 0
 ) -> Sensitivity:
@@ -348,8 +345,13 @@ def sensitivity(
     choices = named_restitutions(restitutions)
     first = next(iter(choices)) if baseline is None else checks.one_of("baseline", baseline, choices)
     results = {label: study(restitution=choice) for label, choice in choices.items()}
-    drawn = [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == _RANDOM]
-    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, drawn=drawn)
+    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, drawn=drawn_in(choices))
+
+
+def drawn_in(choices: Mapping[str, Any]) -> list[str]:
+    """Return the names of the choices whose coefficients are drawn at every impact."""
+    kind = RandomRestitution.kind
+    return [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == kind]
 
 
 def map_sensitivity(
