@@ -12,7 +12,7 @@ from rocking.errors import extra
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
 from rocking.quantities import HISTORY, attributes
-from rocking.studies.adaptive_grid import Plane, refined
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, refined
 from rocking.studies.axis import Axis
 
 if TYPE_CHECKING:
@@ -137,7 +137,8 @@ def map_arrays(
     shape = (plane.y.values.size, plane.x.values.size)
     variables = {name: results[name].reshape(shape) for name in HISTORY}
     if refine is not None:
-        points = refined(plane, variables["mode"], refine, progress, results["peak_ratio"])
+        grid = AdaptiveGrid(plane, refine, progress)
+        points, _ = refined(grid, variables["mode"], results["peak_ratio"])
         variables |= {
             "refined_x": points.x, "refined_y": points.y, "refined_mode": points.modes,
             "refined_peak_ratio": points.peak_ratio,

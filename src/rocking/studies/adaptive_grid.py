@@ -210,19 +210,11 @@ class RefinedMap:
     base: BoolArray  # whether a point is one of the map before refinement
 
 
-def refined(
-    plane: Plane, modes: IntArray, levels: int, progress: Callable[[int], None] | None = None, peaks: Any = None
-) -> RefinedMap:
-    """Return a map that is known, refined wherever its modes differ between neighbours; the map's own points first."""
-    return refine(AdaptiveGrid(plane, levels, progress), modes, peaks)[0]
-
-
-def refine(grid: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
+def refined(grid: AdaptiveGrid, modes: IntArray, peaks: FloatArray) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
     """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells."""
     # the map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins
     first = grid.base()
-    known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
-    grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
+    grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), np.asarray(peaks, dtype=np.float64).ravel())
     cells = grid.finest(lambda modes: modes)
     own = np.zeros(grid.keys.size, dtype=np.bool_)
     own[np.searchsorted(grid.keys, first)] = True
@@ -269,4 +261,4 @@ def refined_map(
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     results, _ = plane.answers(*plane.mesh(), progress=progress)
-    return refined(plane, results["mode"], levels, progress, results["peak_ratio"])
+    return refined(AdaptiveGrid(plane, levels, progress), results["mode"], results["peak_ratio"])[0]

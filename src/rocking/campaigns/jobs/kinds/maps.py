@@ -19,7 +19,7 @@ from rocking.quantities import QUANTITIES
 from rocking.spec.document import MapTable
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, axes_of
-from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refine
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refined
 from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
@@ -185,7 +185,7 @@ class MapSearch:
         modes, peaks = self._base(compute(self.study.histories))
         plane = Plane(DelegatedQuestion.of(self.plane.question, compute), self.plane.x, self.plane.y)
         lattice = AdaptiveGrid(plane, self.levels)
-        points, cells = refine(lattice, modes, peaks)
+        points, cells = refined(lattice, modes, peaks)
         lines = outlines(lattice, cells, self.by, self.tolerance)
         tables = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
         attributes = {"refine": self.levels, "boundary": self.by, "boundary_tolerance": self.tolerance}
