@@ -13,7 +13,7 @@ import rocking.language
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.plausibility import of_body
-from rocking.studies.inventory.reading import parse_inventory
+from rocking.studies.inventory import parse_inventory
 
 ROWS = list(
     csv.DictReader((Path(rocking.language.__file__).parent / "page.csv").read_text("utf-8").splitlines(keepends=True))

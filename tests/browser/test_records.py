@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from browser_pages import link
 
+from rocking.motions import processed
 from rocking.motions.formats import read_motion
-from rocking.motions.pipeline import processed
 
 expect = pytest.importorskip("playwright.sync_api").expect
 LONG = 90_000

@@ -5,7 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import fit_lognormal
 from rocking.studies import SyntheticSet, fragility_analysis, fragility_sensitivity
 from rocking.studies.fragility import model_of
 
