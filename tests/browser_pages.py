@@ -14,7 +14,7 @@ import pytest
 
 from rocking.bodies import Block
 from rocking.dynamics import Response, simulate
-from rocking.motions.pulses import pulse
+from rocking.motions import pulses
 
 PHONE = {"width": 360, "height": 740}
 BODY = {"units": "m", "width": 0.5, "height": 2.0}
@@ -33,7 +33,7 @@ def link(motion: str | None = GENTLE, **more: Any) -> str:
 
 def response(motion: str, restitution: Any) -> Response:
     """Return the response of the same body in Python."""
-    return simulate(Block(width=0.5, height=2.0), pulse(motion), restitution)
+    return simulate(Block(width=0.5, height=2.0), pulses.pulse(motion), restitution)
 
 
 def card(page: Any, label: str) -> Any:

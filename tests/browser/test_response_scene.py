@@ -17,8 +17,7 @@ from playwright.sync_api import expect
 from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
 from rocking.dynamics import Response, simulate
-from rocking.motions import GroundMotion
-from rocking.motions.pulses import pulse
+from rocking.motions import GroundMotion, pulses
 from rocking.outcome import Outcome
 
 SLIDE = """async ([words, count]) => {
@@ -187,7 +186,7 @@ def test_a_fall_is_shown_as_it_is_computed(open_page: Callable[..., Any], served
     inputs = {"body": {**LEANING, "name": "leaning"}, "motion": {"pulse": "sine:amplitude=6,period=0.8"}}
     answer = served.api("response", json={**inputs, "restitution": {"models": ["ked"]}})["answers"][0]
     body = Section([Region(trapezoid(0.5, 0.3, 1.8, lean=0.1))])
-    found = simulate(body, pulse("sine:amplitude=6,period=0.8"), "ked")
+    found = simulate(body, pulses.pulse("sine:amplitude=6,period=0.8"), "ked")
     assert answer["outcome"] == "overturned"
     text = base64.urlsafe_b64encode(json.dumps({**inputs, "restitution": {"models": ["ked"]}}).encode()).decode()
     page = open_page(f"in={text.rstrip('=')}&view=response")

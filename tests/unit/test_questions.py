@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from rocking.errors import InvalidValueError
+from rocking.motions import pulses
 from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
-from rocking.motions.pulses import catalogue
 from rocking.motions.synthetic import families
 from rocking.spec import construction
 from rocking.spec.document import CampaignDocument, IdentificationDocument, ResponseDocument
@@ -54,7 +54,7 @@ def test_the_files_on_the_page_are_questions():
 def test_names_that_stand_as_values_are_documented():
     """Every axis, measure, synthetic family and pulse is in the documentation, and what is none is not."""
     text = reference().partition("## Names that stand as values")[2].partition("## The keys of body files")[0]
-    names = [f"`{name}`" for name in (*axes(), *MEASURES, *families())] + [f"`{name}:" for name in catalogue()]
+    names = [f"`{name}`" for name in (*axes(), *MEASURES, *families())] + [f"`{name}:" for name in pulses.catalogue()]
     assert [name for name in names if f"| {name}" not in text] == []
     assert "| `amplitude`" not in text
 

@@ -250,7 +250,7 @@ def test_real_records_show_the_same(shared_records):
 
 def interval(found, k):
     """Exact interval of the share of one block that overturns."""
-    from rocking.statistics.counts import share_interval
+    from rocking.statistics import share_interval
 
     called = found.called_safe("italian-linear", k, 0)
     assert called.safe == called.total

@@ -10,7 +10,7 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.campaigns.jobs import Job, JobFolder, analyses
 from rocking.cli import main
 from rocking.errors import InvalidValueError
-from rocking.motions.components import with_vertical
+from rocking.motions import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
 from rocking.studies.inventory import InventoryObject, assess

@@ -7,9 +7,9 @@ from scipy.signal import lsim
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.motions import processed
 from rocking.motions.components import Components
 from rocking.motions.floors import on_floor
-from rocking.motions.pipeline import processed
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 

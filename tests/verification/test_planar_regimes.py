@@ -17,7 +17,6 @@ from rocking.dynamics.contact import (
     regime_map,
 )
 from rocking.motions import GroundMotion
-from rocking.motions.pulses import rectangular, sine
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
@@ -250,7 +249,7 @@ def test_imposed_coefficient_is_kept_while_the_foot_sticks():
 def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
     """A pulse A for T: slid (A - mu g) A T^2 / (2 mu g), back to the left; 1 % more friction is told apart."""
     push, duration, mu = 4.0, 0.5, 0.3
-    response = rk.simulate(Block(width=1.0, height=1.0), rectangular(push, duration), None, friction=mu)
+    response = rk.simulate(Block(width=1.0, height=1.0), rk.pulses.rectangular(push, duration), None, friction=mu)
     grip = mu * G
     expected = (push - grip) * push * duration**2 / (2.0 * grip)
     assert response.sliding_distance == pytest.approx(expected, rel=1e-12, abs=0.0)
@@ -383,7 +382,7 @@ def test_contact_forces_obey_their_laws_at_every_sample():
 def test_tolerance_does_not_change_a_history():
     """A tolerance of 1e-12 instead of 1e-15 moves rotations by less than 1e-8 rad through sliding and rocking."""
     body = Block(width=1.2, height=2.0)
-    pulse = sine(amplitude=9.0, period=0.9)
+    pulse = rk.pulses.sine(amplitude=9.0, period=0.9)
     fine, coarse = (rk.simulate(body, pulse, None, friction=0.65, tolerance=t, duration=2.5) for t in (1e-15, 1e-12))
     assert fine.regimes["regime"].tolist() == coarse.regimes["regime"].tolist()
     assert "SLIDE_ROCK" in fine.regimes["regime"]
@@ -440,7 +439,7 @@ def _peer(width, height, mu, push, duration, total):
 def test_a_general_purpose_engine_agrees(width, height, mu, push, duration, total, regime):
     """MuJoCo (0.1 ms, soft contacts) agrees to 2e-5 of the distance slid, to 2e-3 in sliding and rocking."""
     response = rk.simulate(
-        Block(width=width, height=height), rectangular(push, duration), None, friction=mu, duration=total
+        Block(width=width, height=height), rk.pulses.rectangular(push, duration), None, friction=mu, duration=total
     )
     assert regime in response.regimes["regime"]
     x, _, rotation = response.at(total)

@@ -11,16 +11,15 @@ import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.conventions import g
-from rocking.dynamics import SpatialBody, SpatialStart
+from rocking.dynamics import RockingParameters, Settings, SpatialBody, SpatialStart
 from rocking.dynamics.hull.restitution import RestitutionOnHull
-from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import NEVER_SLIDES, Settings, settings_of
+from rocking.dynamics.settings import NEVER_SLIDES, settings_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED, Outcome, Status
-from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
+from rocking.studies import MotionList, Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
-from rocking.studies.motion_sets import MotionList
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 

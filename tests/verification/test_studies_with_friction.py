@@ -9,16 +9,14 @@ from random_cases import noise_motion, section
 import rocking as rk
 from rocking.cli import main
 from rocking.conventions import g
-from rocking.dynamics.impact_laws import RandomRestitution
-from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics import RandomRestitution, RockingParameters, Settings
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
-from rocking.studies import Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
+from rocking.studies import MotionList, Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
 from rocking.studies.histories import results_of
-from rocking.studies.motion_sets import MotionList
 from rocking.studies.sensitivity import SampledRestitution
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")

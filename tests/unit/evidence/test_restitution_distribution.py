@@ -11,7 +11,7 @@ from rocking import Block, Region, Section, simulate
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate_hierarchy, restitution_distribution
 from rocking.evidence.likelihood import scatter
-from rocking.motions.pulses import sine
+from rocking.motions import pulses
 from rocking.restitution import ShiftedImpulse
 
 # one false alarm in a million: the draws never change, so a failure is no accident
@@ -74,10 +74,10 @@ def test_laws_are_made_of_it():
     found, block = restitution_distribution(4.0), Block(width=0.25, height=1.0)
     once, each = found.per_history(seed=3), found.per_impact(seed=3)
     assert once.factors.tolist() == each.factors.tolist() == found.quantiles.tolist()
-    response = simulate(block, sine(4.0, 0.4), restitution=once)
+    response = simulate(block, pulses.sine(4.0, 0.4), restitution=once)
     assert len(response.impacts) > 2
     assert response.impacts["coefficient"] == pytest.approx(once.factor(1.0, 0, 0), rel=1e-12, abs=0.0)
-    varied = simulate(block, sine(4.0, 0.4), restitution=each).impacts["coefficient"]
+    varied = simulate(block, pulses.sine(4.0, 0.4), restitution=each).impacts["coefficient"]
     assert len(set(varied.tolist())) > 2
 
 

@@ -14,8 +14,7 @@ from PIL import Image
 from rocking.bodies import Block, MassPoints, Region, Section, shapes
 from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, RockingError
-from rocking.motions import GroundMotion
-from rocking.motions.pulses import rectangular, sine
+from rocking.motions import GroundMotion, pulses
 from rocking.plots import animate_comparison, animate_gif, animate_html
 from rocking.plots.animation import page, page_data, slowest_speed
 from rocking.plots.animation_scene import DrawnShape, fall_of, scene_of
@@ -55,7 +54,7 @@ class _Page(HTMLParser):
 @pytest.fixture(scope="module")
 def rocked():
     """A block that rocks under a sine pulse and stays standing."""
-    return simulate(BLOCK, sine(3.2, 0.8), 0.9)
+    return simulate(BLOCK, pulses.sine(3.2, 0.8), 0.9)
 
 
 def _unpacked(words):
@@ -149,13 +148,13 @@ def test_ground_moves_as_the_formulas_say(rocked):
 
 def test_overturning_and_rest_are_told():
     """A fall names its instant and side and ends lying down; a body never lifted shows the motion, and no impact."""
-    fell = simulate(BLOCK, sine(6.0, 0.8), 0.9)
+    fell = simulate(BLOCK, pulses.sine(6.0, 0.8), 0.9)
     data = page_data(fell)
     assert data["fall"] == fell.overturning_time
     assert data["overturnedTo"] == 1
     # as far as the samples go, and they go until it lies
     assert _unpacked(data["rotation"])[-1] == pytest.approx(math.pi / 2.0, abs=0.1)
-    still = page_data(simulate(BLOCK, sine(2.0, 0.8)))
+    still = page_data(simulate(BLOCK, pulses.sine(2.0, 0.8)))
     assert (still["end"], still["impacts"]) == (pytest.approx(0.8), [])
     assert not _unpacked(still["rotation"]).any()
 
@@ -190,7 +189,7 @@ def test_body_turns_about_the_foot_it_stands_on(theta):
 
 def test_window_holds_the_body_all_the_time(rocked):
     """Every corner at every instant lies inside the window; where the ground runs away the window goes with it."""
-    others = simulate(BLOCK, sine(6.0, 0.8), 0.9), free_rocking(HOLLOW, 0.2), free_rocking(LOLLIPOP, 0.1)
+    others = simulate(BLOCK, pulses.sine(6.0, 0.8), 0.9), free_rocking(HOLLOW, 0.2), free_rocking(LOLLIPOP, 0.1)
     for response in (rocked, *others):
         scene = scene_of(response)
         x0, y0, x1, y1 = scene.window
@@ -202,7 +201,7 @@ def test_window_holds_the_body_all_the_time(rocked):
             assert y0 < low[1] < high[1] < y1
         assert not scene.follows
     # half a metre a second for many seconds is far
-    assert scene_of(simulate(BLOCK, rectangular(2.6, 0.5), 0.9)).follows
+    assert scene_of(simulate(BLOCK, pulses.rectangular(2.6, 0.5), 0.9)).follows
 
 
 @pytest.mark.parametrize("body", [HOLLOW, LOLLIPOP], ids=["hollow", "points"])
@@ -226,7 +225,7 @@ def test_gif_has_its_frames(body, tmp_path):
 
 def test_gif_moves_and_ends_at_the_end(tmp_path):
     """The first frames of a falling block differ from the last; 30 frames a second are frames of 30 ms."""
-    response = simulate(BLOCK, sine(6.0, 0.8), 0.9)
+    response = simulate(BLOCK, pulses.sine(6.0, 0.8), 0.9)
     path = animate_gif(response, tmp_path / "fall.gif", fps=30, speed=5.0)
     with Image.open(path) as film:
         assert film.info["duration"] == 30
@@ -240,7 +239,7 @@ def test_gif_moves_and_ends_at_the_end(tmp_path):
 
 def test_gif_follows_a_ground_that_runs_away(tmp_path):
     """Where the ground ends 4 m away, the body stays within the frame: its middle third is never empty."""
-    response = simulate(BLOCK, rectangular(2.6, 0.5), 0.9)
+    response = simulate(BLOCK, pulses.rectangular(2.6, 0.5), 0.9)
     path = animate_gif(response, tmp_path / "far.gif", fps=10, speed=3.0)
     with Image.open(path) as film:
         for k in range(film.n_frames):
@@ -324,7 +323,7 @@ def test_the_body_falls_to_the_ground_with_its_energy(name, side):
 def test_a_fall_that_was_cut_is_that_of_the_longer_history():
     """Cut in the middle of a fall, under a ground that has stopped, it goes on as the history that was not cut."""
     body = BODIES["leaning"]
-    motion = sine(6.0, 0.8)
+    motion = pulses.sine(6.0, 0.8)
     whole = simulate(body, motion, "ked")
     cut = simulate(body, motion, "ked", duration=motion.duration)
     assert cut.time[-1] < whole.time[-1]
@@ -378,7 +377,7 @@ def test_where_bodies_lie(rocked):
 
 def test_a_comparison_shows_each_response_to_its_end(rocked, tmp_path):
     """Equal responses look the same side by side; where one falls, its panel alone is another at the end."""
-    fallen = simulate(BLOCK, sine(5.0, 0.8), 0.9)
+    fallen = simulate(BLOCK, pulses.sine(5.0, 0.8), 0.9)
     assert fallen.outcome.name == "OVERTURNED"
     sizes, ends = [], []
     for second in (rocked, fallen):

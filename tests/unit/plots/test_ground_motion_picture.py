@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from rocking.motions import GroundMotion, peak_ground_displacement, peak_ground_velocity
-from rocking.motions.pulses import cosine, rectangular, ricker, sine
+from rocking.motions import GroundMotion, peak_ground_displacement, peak_ground_velocity, pulses
 from rocking.plots import ground_motion_picture
 from rocking.plots.labels import fine_samples, traces
 
@@ -33,7 +32,7 @@ def test_pulse_is_drawn_from_its_formulas():
         (lambda t: AMPLITUDE / W * (t - np.sin(W * t) / W), PERIOD, AMPLITUDE * PERIOD / W, "PGD 0.306 m at 0.8 s"),
     )
     for axes, (curve, at, peak, title) in zip(
-        ground_motion_picture(sine(AMPLITUDE, PERIOD)).axes[:3], rows, strict=True
+        ground_motion_picture(pulses.sine(AMPLITUDE, PERIOD)).axes[:3], rows, strict=True
     ):
         x, y = max((line.get_data() for line in axes.lines), key=lambda pair: len(pair[0]))
         np.testing.assert_allclose(y, curve(np.asarray(x)), rtol=0.0, atol=1e-12)
@@ -73,18 +72,20 @@ def test_peaks_are_those_of_the_intensity_measures(values, step):
 
 def test_spectrum_ends_in_the_peak_acceleration():
     """PSA in g at the shortest period is within 2 % of the PGA of a smooth pulse, and the dashed line is the PGA."""
-    axes = ground_motion_picture(ricker(2.0, 0.5)).axes[3]
+    axes = ground_motion_picture(pulses.ricker(2.0, 0.5)).axes[3]
     dashed, curve = axes.lines
     assert dashed.get_ydata()[0] == pytest.approx(2.0 / G)
     # at T = 0.02 s the oscillator still adds (T/T_p)^2-sized dynamics to a pulse of 0.5 s
     assert curve.get_ydata()[0] == pytest.approx(2.0 / G, rel=0.02)
     assert axes.get_xscale() == "log"
     # negative control: a jump is felt by the stiffest oscillator with almost twice its size
-    jump = ground_motion_picture(rectangular(2.0, 0.5)).axes[3].lines[1].get_ydata()[0]
+    jump = ground_motion_picture(pulses.rectangular(2.0, 0.5)).axes[3].lines[1].get_ydata()[0]
     assert jump == pytest.approx(2.0 / G * (1.0 + math.exp(-0.05 * math.pi / math.sqrt(1.0 - 0.05**2))), rel=1e-3)
 
 
-@pytest.mark.parametrize("motion", [_made_up(), _made_up(30, vertical=False), cosine(1.0, 0.5), ricker(1e-3, 40.0)])
+@pytest.mark.parametrize(
+    "motion", [_made_up(), _made_up(30, vertical=False), pulses.cosine(1.0, 0.5), pulses.ricker(1e-3, 40.0)]
+)
 @pytest.mark.parametrize("spectrum", [True, False])
 def test_labels_have_units_and_nothing_overlaps(motion, spectrum):
     """Every label ends in a unit, and no two titles, labels or legends of the drawn figure touch."""
@@ -115,7 +116,7 @@ def test_vertical_part_is_drawn_with_a_legend():
 
 def test_fine_samples_of_a_pulse():
     """Cut finely, a cosine keeps its jumps at both ends and its integral; a record stays what it is."""
-    fine = fine_samples(cosine(1.0, 0.5))
+    fine = fine_samples(pulses.cosine(1.0, 0.5))
     assert fine.acceleration[[0, -1]].tolist() == pytest.approx([1.0, 1.0])
     assert fine.duration == pytest.approx(0.5)
     record = _made_up()

@@ -15,7 +15,6 @@ from rocking.dynamics.contact import Regime, friction_demand
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions import GroundMotion
-from rocking.motions.pulses import rectangular, sine
 from rocking.plots import (
     ground_motion_picture,
     overturning_map_picture,
@@ -117,7 +116,7 @@ def test_energy_is_drawn_in_joules():
 
 def test_ground_and_friction_of_a_body_at_rest():
     """Under a sine too weak to lift it the ground is a sin(wt), and the body takes |a| / g of friction at samples."""
-    response = simulate(BLOCK, sine(2.0, 0.8))
+    response = simulate(BLOCK, rk.pulses.sine(2.0, 0.8))
     axes = response_picture(response, friction=0.3).axes
     time, ground = _line(axes[0])
     w = 2.0 * math.pi / 0.8
@@ -132,7 +131,7 @@ def test_ground_and_friction_of_a_body_at_rest():
 
 def test_titles_tell_outcome_restitution_and_engine():
     """Outcome in words, motion with its scale, label of the model and engine stand above the panels."""
-    response = simulate(BLOCK, sine(1.6, 0.8), "housner", scale=2.0, engine="reference")
+    response = simulate(BLOCK, rk.pulses.sine(1.6, 0.8), "housner", scale=2.0, engine="reference")
     figure = response_picture(response)
     assert figure.get_suptitle().replace("\n", " ").lower() == response.summary
     small = figure.axes[0].get_title(loc="left")
@@ -144,7 +143,7 @@ def test_titles_tell_outcome_restitution_and_engine():
 
 def test_overturning_is_marked_in_every_panel():
     """Pushed over by a constant a, -theta = (a/g - alpha) (cosh(pt) - 1): the mark is where that is alpha."""
-    response = simulate(BLOCK, rectangular(6.0, 1.5), R, linear=True)
+    response = simulate(BLOCK, rk.pulses.rectangular(6.0, 1.5), R, linear=True)
     figure = response_picture(response)
     fall = math.acosh(1.0 + ALPHA / (6.0 / G - ALPHA)) / P
     for panel in figure.axes:
@@ -183,9 +182,9 @@ def test_impossible_friction_is_refused(friction):
 def _cases():
     long_name = "a record $_{x}$ whose name goes on " * 8
     return {
-        "rocked": lambda: simulate(BLOCK, sine(3.2, 0.8)),
-        "no uplift": lambda: simulate(BLOCK, sine(2.0, 0.8)),
-        "overturned": lambda: simulate(BLOCK, sine(6.0, 0.8), R),
+        "rocked": lambda: simulate(BLOCK, rk.pulses.sine(3.2, 0.8)),
+        "no uplift": lambda: simulate(BLOCK, rk.pulses.sine(2.0, 0.8)),
+        "overturned": lambda: simulate(BLOCK, rk.pulses.sine(6.0, 0.8), R),
         "free": lambda: free_rocking(BLOCK, SHARE * ALPHA),
         "record": lambda: simulate(BLOCK, _noise(long_name, vertical=True), scale=-1.25),
         "small": lambda: free_rocking(BLOCK, 0.05 * ALPHA, 0.5),
@@ -229,7 +228,7 @@ def _drawn(text, figure, renderer):
 
 def test_curves_between_samples():
     """Velocity at any instant is the closed form; the ground of a sine pulse has moved a T2 / (2 pi) at its end."""
-    response = simulate(BLOCK, sine(2.0, 0.8))
+    response = simulate(BLOCK, rk.pulses.sine(2.0, 0.8))
     assert ground_place(response, np.array([0.8]))[0] == pytest.approx(2.0 * 0.8**2 / (2.0 * math.pi), rel=1e-7)
     rocking = free_rocking(BLOCK, SHARE * ALPHA, R, linear=True)
     time = np.linspace(0.0, 0.55, 7)
@@ -278,7 +277,7 @@ def test_map_refuses_what_it_cannot_draw(options, words):
 
 def test_response_is_drawn_over_its_regimes():
     """The curves are the samples, and the bands cover the time axis once."""
-    response = rk.simulate(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), None, friction=0.62)
+    response = rk.simulate(Block(width=1.2, height=2.0), rk.pulses.sine(amplitude=9.0, period=0.9), None, friction=0.62)
     figure = regimes_picture(response)
     time, rotation = max((line.get_data() for line in figure.axes[0].lines), key=lambda pair: len(pair[0]))
     assert np.array_equal(time, response.time)
@@ -307,7 +306,7 @@ def test_the_curves_are_the_response(wobble):
 
 
 def _regimes():
-    return regimes_picture(rk.simulate(Block(width=1.2, height=2.0), sine(9.0, 0.9), None, friction=0.62))
+    return regimes_picture(rk.simulate(Block(width=1.2, height=2.0), rk.pulses.sine(9.0, 0.9), None, friction=0.62))
 
 
 def _overturned_in_space():
@@ -324,12 +323,12 @@ def _rolling():
 
 def _map():
     axes = ("semi_diagonal", np.geomspace(0.3, 5.0, 6)), ("slenderness_angle", np.linspace(0.1, 0.4, 5))
-    return overturning_map_picture(rk.overturning_map(BLOCK, sine(5.0, 0.8), *axes))
+    return overturning_map_picture(rk.overturning_map(BLOCK, rk.pulses.sine(5.0, 0.8), *axes))
 
 
 def _transitions():
-    found = rk.minimum_overturning_acceleration(BLOCK, sine(3.0, 0.8), 0.85)
-    return transitions_picture(found, BLOCK, sine(3.0, 0.8), 0.85, points=50)
+    found = rk.minimum_overturning_acceleration(BLOCK, rk.pulses.sine(3.0, 0.8), 0.85)
+    return transitions_picture(found, BLOCK, rk.pulses.sine(3.0, 0.8), 0.85, points=50)
 
 
 PICTURES = {

@@ -15,8 +15,8 @@ from rocking.prediction import Prediction, predict
 from rocking.prediction._predict import _chance
 from rocking.prediction.mechanics import Uncertain
 from rocking.prediction.plane import PlaneMechanics, whole_settings
-from rocking.statistics.counts import share_interval
-from rocking.studies.motion_sets import SyntheticSet
+from rocking.statistics import share_interval
+from rocking.studies import SyntheticSet
 
 pytestmark = pytest.mark.verifies(room="studies")
 BODY = section(4)

@@ -12,7 +12,7 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import hull_histories
 from rocking.dynamics.hull.restitution import FixedPosition
-from rocking.dynamics.space.attitude import SpatialStart
+from rocking.dynamics.space import SpatialStart
 from rocking.errors import RockingError
 from rocking.prediction import predict
 from rocking.prediction.space import SpaceMechanics

@@ -8,7 +8,6 @@ from rocking.app.studies.results import contours_of
 from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.dynamics.parameters import cut_words
 from rocking.dynamics.space.batch import SpatialBatch
-from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, contact_words, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
 from rocking.reports.response_facts import response_facts
@@ -32,7 +31,7 @@ def test_outcomes_as_numbers():
 
 def test_batches_and_maps_say_so():
     """Two impacts allowed: rows that need more have no result, and the share of falls is that of the others."""
-    pulses = [sine(amplitude=a, period=0.8) for a in (2.0, 3.0, 4.0, 6.0)]
+    pulses = [rk.pulses.sine(amplitude=a, period=0.8) for a in (2.0, 3.0, 4.0, 6.0)]
     found = rk.simulate_many(LEANING, pulses, 0.9, most_events=2)
     failed = (found["status"] == Status.TOO_MANY_EVENTS.code).to_numpy().ravel()
     assert failed.any()
@@ -102,7 +101,7 @@ def test_lines_of_a_map_keep_away_from_what_has_no_result():
 
 def test_spectra_have_no_share_without_results():
     """Periods at which nothing was computed have a gap, not a share of nought."""
-    found = rk.rocking_spectrum([sine(3.0, 0.6), sine(5.0, 0.8)], [0.2], [1.0, 3.0], 0.9)
+    found = rk.rocking_spectrum([rk.pulses.sine(3.0, 0.6), rk.pulses.sine(5.0, 0.8)], [0.2], [1.0, 3.0], 0.9)
     found["mode"].to_numpy()[:, :, 0] = -3
     found["mode"].to_numpy()[:, :, 1] = [[-3], [2]]
     figure = rocking_spectrum_picture(found)

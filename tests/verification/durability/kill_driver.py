@@ -18,14 +18,12 @@ import time
 import traceback
 from collections import Counter
 from pathlib import Path
-from typing import BinaryIO
 
 from workload import histories
 
 from rocking.campaigns import Campaign, CampaignDamagedError, CampaignWorkerError, disk, executors, ledger
 from rocking.campaigns import chunks as shard
 from rocking.campaigns import executors as pace
-from rocking.campaigns.chunks import Chunk, Plan
 
 CHUNK = 500
 PIECE, CUT = 130, "KILL_DRIVER_CUTS"
@@ -38,7 +36,7 @@ RUNS = {
 }
 
 
-def files(folder: Path) -> dict[str, str]:
+def files(folder):
     """SHA-256 of every file that has its final name."""
     return {
         path.name: hashlib.sha256(path.read_bytes()).hexdigest()
@@ -50,7 +48,7 @@ def files(folder: Path) -> dict[str, str]:
 class Kills:
     """Campaigns that are killed, and what was found wrong."""
 
-    def __init__(self, folder: Path, how: str, variant: str, seed: int, pieces: bool) -> None:
+    def __init__(self, folder, how, variant, seed, pieces):
         self.folder, self.how, self.variant = folder, how, variant
         self.random = random.Random(seed)
         self.work = histories()
@@ -58,9 +56,9 @@ class Kills:
         self.wrong: list[str] = []
         whole = Campaign.create(folder / "whole", self.work, CHUNK)
         whole.run("serial", workers=1)
-        self.plan: Plan = whole.plan
+        self.plan = whole.plan
         self.digest, self.files = whole.sha256(), files(whole.folder)
-        self.known: dict[str, Chunk] = {}
+        self.known = {}
         if pieces:
             os.environ[CUT] = "yes"  # for processes that do not inherit what this one does
             cut_in_pieces()
@@ -68,7 +66,7 @@ class Kills:
         os.waitpid(self.start(folder / "timed", os.open(os.devnull, os.O_WRONLY)), 0)
         self.duration = time.perf_counter() - start
 
-    def start(self, folder: Path, told: int) -> int:
+    def start(self, folder, told):
         """Begin or go on with a campaign in a process group of its own, which says what it has acknowledged."""
         process = os.fork()
         if process:
@@ -90,9 +88,9 @@ class Kills:
             sys.stderr.flush()
             os._exit(code)
 
-    def campaign(self, folder: Path, wanted: int) -> None:
+    def campaign(self, folder, wanted):
         """Kill one campaign again and again until it is finished, or there are enough kills."""
-        acknowledged: dict[str, str] = {}
+        acknowledged = {}
         while self.counts["kills"] < wanted:
             reading, writing = os.pipe()
             process = self.start(folder, writing)
@@ -109,7 +107,7 @@ class Kills:
                 self.finish(folder)
                 return
 
-    def kill_later(self, process: int, told: BinaryIO) -> tuple[bool, bytes]:
+    def kill_later(self, process, told):
         """Wait for a random number of records, then a random time, and kill the group; was it at work, what it told."""
         wanted, records = self.random.choice((0, 1, 1, 2)), b""
         while records.count(b"\n") < wanted and (more := told.read(4096)):
@@ -135,7 +133,7 @@ class Kills:
         self.counts["kills"] += 1
         return True, records
 
-    def compare(self, folder: Path, acknowledged: dict[str, str]) -> None:
+    def compare(self, folder, acknowledged):
         """What was acknowledged is in the ledger and on disk, and what is on disk under its name is whole."""
         recorded = self.recorded(folder)
         whole = {chunk.name for chunk, _ in recorded.values() if not chunk.of}
@@ -165,7 +163,7 @@ class Kills:
         self.counts["killed between shard and record"] += len(there) > len(recorded)
         self.counts["killed before the first record"] += not recorded
 
-    def recorded(self, folder: Path) -> dict[str, tuple[Chunk, str]]:
+    def recorded(self, folder):
         """What the ledger has, read from a copy by plain SQL."""
         if not (folder / "ledger.sqlite").exists():
             return {}
@@ -181,7 +179,7 @@ class Kills:
         found = [(self.plan.chunk(number).piece(first, last), seal) for number, first, last, seal in rows]
         return {chunk.name: (chunk, seal) for chunk, seal in found}
 
-    def finish(self, folder: Path) -> None:
+    def finish(self, folder):
         """A campaign that is through equals the one that nobody killed, byte by byte."""
         self.counts["campaigns finished"] += 1
         if files(folder) != self.files:
@@ -190,7 +188,7 @@ class Kills:
             self.wrong.append("the results differ from those of an uninterrupted campaign")
         shutil.rmtree(folder)
 
-    def kill_workers(self, folder: Path, wanted: int) -> None:
+    def kill_workers(self, folder, wanted):
         """Kill single workers of one campaign while it runs; it finishes by itself, or says that it gave up."""
         status = GAVE_UP
         while status == GAVE_UP:
@@ -203,7 +201,7 @@ class Kills:
         else:
             self.finish(folder)
 
-    def kill_workers_once(self, folder: Path, wanted: int) -> int:
+    def kill_workers_once(self, folder, wanted):
         """Run a campaign, kill its workers; its status."""
         told = os.open(os.devnull, os.O_WRONLY)
         process = self.start(folder, told)
@@ -218,38 +216,36 @@ class Kills:
         return os.waitstatus_to_exitcode(ended[1])
 
 
-def cut_in_pieces() -> None:
+def cut_in_pieces():
     """Have pieces end after some histories, rather than after a second."""
     pace.PIECE = 0.0
     pace.Pace.until = lambda self, first, last: min(first + PIECE, last)
 
 
-def tell_records(told: int) -> None:
+def tell_records(told):
     """Have every record told right after its commit."""
     for name in ("record", "record_piece"):
 
-        def record(self: ledger.Ledger, row: ledger.LedgerEntry, commit: object = getattr(ledger.Ledger, name)) -> None:
+        def record(self, row, commit: object = getattr(ledger.Ledger, name)):
             commit(self, row)
             os.write(told, f"{row.number} {row.first} {row.last} {row.seal}\n".encode())
 
         setattr(ledger.Ledger, name, record)
 
 
-def break_on_purpose(variant: str) -> None:
+def break_on_purpose(variant):
     """Make the campaign careless: the checks must see it."""
     if variant == "in-place":
         disk.write_new = write_in_place
     if variant == "record-first":
-        kept: list[tuple[Path, bytes]] = []
+        kept = []
         commit = ledger.Ledger.record
 
-        def keep(
-            self: executors.WorkerTask, chunk: object, data: bytes, seconds: float, worker: str = ""
-        ) -> executors.Done:
+        def keep(self, chunk, data, seconds, worker=""):
             kept.append((self.folder / f"{chunk.name}.shard", data))
             return executors.Done(chunk, shard.seal(data), len(data), seconds, "careless")
 
-        def record(self: ledger.Ledger, row: ledger.LedgerEntry) -> None:
+        def record(self, row):
             commit(self, row)
             for path, data in kept:
                 path.write_bytes(data)
@@ -258,14 +254,14 @@ def break_on_purpose(variant: str) -> None:
         executors.WorkerTask.keep, ledger.Ledger.record = keep, record
 
 
-def write_in_place(path: Path, data: bytes) -> None:
+def write_in_place(path, data):
     """Write under the final name, as most programs do."""
     with path.open("wb", buffering=0) as file:
         for first in range(0, len(data), 512):
             file.write(data[first : first + 512])
 
 
-def main() -> None:
+def main():
     """Kill, and say what was found."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)

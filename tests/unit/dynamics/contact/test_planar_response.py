@@ -23,7 +23,6 @@ from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.history import History
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion, Segments
-from rocking.motions.pulses import rectangular, sine
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
@@ -35,7 +34,7 @@ BODY = Block(width=1.0, height=2.0)
 @pytest.fixture(scope="module")
 def rocked():
     """Sliding, rocking and impacts under a sine pulse."""
-    return rk.simulate(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), None, friction=0.62)
+    return rk.simulate(Block(width=1.2, height=2.0), rk.pulses.sine(amplitude=9.0, period=0.9), None, friction=0.62)
 
 
 def test_of_two_changes_at_one_time_the_last_counts():
@@ -48,11 +47,11 @@ def test_of_two_changes_at_one_time_the_last_counts():
 
 def test_outcomes_of_five_bodies(rocked):
     """Rest, sliding, rocking, both, overturning: each has its sentence, with "overturned" only where it did."""
-    pulse = rectangular(4.0, 0.5)
+    pulse = rk.pulses.rectangular(4.0, 0.5)
     found = [
-        rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5),
+        rk.simulate(BODY, rk.pulses.rectangular(1.0, 0.5), None, friction=0.5),
         rk.simulate(BODY, pulse, None, friction=0.3),
-        rk.simulate(BODY, rectangular(6.0, 0.1), None, friction=1.0),
+        rk.simulate(BODY, rk.pulses.rectangular(6.0, 0.1), None, friction=1.0),
         rocked,
         rk.simulate(Block(width=0.2, height=2.0), pulse, None, friction=0.6),
     ]
@@ -123,7 +122,7 @@ def test_impacts_have_impulses_that_press(rocked):
 )
 def test_bad_input_is_refused(options, words):
     """Each refusal names the value and its range."""
-    given = {"body": BODY, "motion": rectangular(4.0, 0.5), "friction": 0.3, "restitution": None, **options}
+    given = {"body": BODY, "motion": rk.pulses.rectangular(4.0, 0.5), "friction": 0.3, "restitution": None, **options}
     with pytest.raises(InvalidValueError, match=words):
         rk.simulate(**given)
 
@@ -163,8 +162,8 @@ def test_start_with_a_foot_that_hits_the_ground():
 
 def test_scale_is_a_factor_on_the_motion():
     """Half of 8 m/s2 is 4 m/s2, bitwise."""
-    one = rk.simulate(BODY, rectangular(8.0, 0.2), None, friction=0.3, scale=0.5)
-    other = rk.simulate(BODY, rectangular(4.0, 0.2), None, friction=0.3)
+    one = rk.simulate(BODY, rk.pulses.rectangular(8.0, 0.2), None, friction=0.3, scale=0.5)
+    other = rk.simulate(BODY, rk.pulses.rectangular(4.0, 0.2), None, friction=0.3)
     assert np.array_equal(one.displacement, other.displacement)
 
 
@@ -226,7 +225,7 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
 ):
     """Random bodies and pulses: a result, energy closed to 1e-10, feet never under the ground, forces that press."""
     body = Block(width=width, height=2.0)
-    pulse = sine(amplitude=amplitude, period=period)
+    pulse = rk.pulses.sine(amplitude=amplitude, period=period)
     response = rk.simulate(body, pulse, restitution, friction=friction, bounce=bounce, duration=period + 1.0)
     assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
@@ -241,14 +240,14 @@ def test_summary_tells_the_largest_rotation_in_degrees(rocked):
     told = re.search(r"largest rotation (\S+) degrees, slid (\S+) m in all", rocked.summary)
     largest = math.degrees(np.abs(rocked.rotation).max())
     assert [float(each) for each in told.groups()] == pytest.approx([largest, rocked.sliding_distance], rel=5e-3)
-    assert "rotation" not in rk.simulate(BODY, rectangular(4.0, 0.5), None, friction=0.3).summary
+    assert "rotation" not in rk.simulate(BODY, rk.pulses.rectangular(4.0, 0.5), None, friction=0.3).summary
 
 
 def test_response_goes_on_as_long_as_its_docstring_says():
     """15 sqrt(R / g) after a motion and 60 on ground at rest, to a step of at most a tenth; as long as asked for; and
     a duration far below a step is one step."""
     slow = math.sqrt(math.hypot(0.5, 1.0) / G)
-    after = rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5)
+    after = rk.simulate(BODY, rk.pulses.rectangular(1.0, 0.5), None, friction=0.5)
     alone = rk.free_rocking(BODY, restitution=None, friction=0.5)
     assert 0.0 <= after.time[-1] - (0.5 + 15.0 * slow) < after.time[1] <= 0.1 * slow
     assert alone.time[-1] == pytest.approx(60.0 * slow, rel=1e-12, abs=0.0)
@@ -262,7 +261,7 @@ def test_response_goes_on_as_long_as_its_docstring_says():
 
 def test_a_single_event_is_the_least_limit():
     """A body that rests has none, and may be held to one."""
-    assert rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5, most_events=1).status is Status.GOOD
+    assert rk.simulate(BODY, rk.pulses.rectangular(1.0, 0.5), None, friction=0.5, most_events=1).status is Status.GOOD
 
 
 @pytest.mark.parametrize("push", [1e-16, 1e-13])
@@ -302,6 +301,6 @@ def test_an_asymmetric_body_passes_its_own_feet(side):
 
     The former way, a line between the ends of a step, was .1 and .5 ms off.
     """
-    body, push = Block(width=1.0, height=3.0).with_feet(0.15, 0.8), rectangular(5.0 * side, 1.0)
+    body, push = Block(width=1.0, height=3.0).with_feet(0.15, 0.8), rk.pulses.rectangular(5.0 * side, 1.0)
     found = rk.simulate(body, push, 0.6, friction=20.0)
     assert found.overturning_time == pytest.approx(simulate(body, push, 0.6).overturning_time, abs=1e-11)
