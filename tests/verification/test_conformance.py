@@ -16,6 +16,7 @@ from random_cases import sections
 import rocking as rk
 from rocking.conventions import opposite
 from rocking.restitution import Fixed, Flag, Housner, Interface, Ked, Restitution, RestitutionModel
+from rocking.restitution.space import spatial_models
 
 pytestmark = pytest.mark.verifies("invariant", room="restitution in the plane")
 
@@ -25,6 +26,7 @@ MODELS = [
     for parameters in kind.trials
 ] + [rk.restitution.model("0.9*ked")]
 AT_ONE = [Interface(Housner(), 1.0), Interface(Fixed(1.0), 1.0), Interface(Ked(), 1.0), Fixed(1.0)]
+KINDS = {**rk.restitution.models(), **spatial_models()}
 every_model = pytest.mark.parametrize("model", MODELS, ids=[model.label for model in MODELS])
 few = settings(max_examples=12, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 
@@ -294,7 +296,7 @@ def test_extreme_slenderness_is_a_number_or_a_refusal(model, ratio):
 
 
 @pytest.mark.verifies("behaviour")
-@pytest.mark.parametrize("kind", rk.restitution.models().values(), ids=list(rk.restitution.models()))
+@pytest.mark.parametrize("kind", KINDS.values(), ids=list(KINDS))
 def test_account_of_itself(kind):
     """Every registered model states title, reference, assumptions, domain and known defects, and has a
     docstring."""

@@ -141,16 +141,7 @@ def test_no_width_is_the_constant_in_every_study():
         assert found.flips()["count"].sum() == 0
         assert np.array_equal(first["outcome"], once["outcome"])
         assert all(each[name].values.tobytes() == first[name].values.tobytes() for name in first.data_vars)
-
-
-@pytest.mark.verifies("same bits", "the constant coefficient")
-def test_no_width_is_the_constant_to_the_last_bit_in_stripes():
-    """Rotations of stripes drawn without width equal the constant's bitwise, through the whole analysis."""
-    levels = conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
-    choices = [0.9, SampledRestitution([0.9, 0.9], 4)]
-    found = fragility_sensitivity(BLOCK, synthetic(20, seed=9), levels, choices, repetitions=0)
-    first, second = (result.responses.rotation for result in found.results.values())
-    assert first.tobytes() == second.tobytes()
+    assert len({one.responses.rotation.tobytes() for one in found.results.values()}) == 1
 
 
 def synthetic(count, seed):
@@ -237,12 +228,3 @@ def test_the_size_of_the_change_is_that_of_two_analyses_apart(comparison):
     row = next(row for row in comparison.summary() if row["choice"] == "ked")
     names = [f"overturned: median ratio{end}" for end in ("", " low", " high")]
     assert [row[name] for name in names] == [found.median.value, *found.median.interval]
-
-
-@pytest.mark.verifies("closed form", "cos^2 alpha", within="1e-14")
-def test_cos_squared_is_horizontal_momentum():
-    """For any rectangle cos^2(alpha) is the registered horizontal-momentum, to 1e-14."""
-    for width, height in ((0.4, 1.2), (1.0, 1.0), (0.1, 3.0), (2.0, 0.5)):
-        block = rk.Block(width=width, height=height)
-        r = rk.coefficient_of_restitution(block, "horizontal-momentum")
-        assert r == pytest.approx(np.cos(block.slenderness_angle) ** 2, rel=1e-14, abs=0.0)

@@ -192,21 +192,6 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
 
 
 # theta_0 / alpha: full period of the exact equations
-@pytest.mark.verifies("closed form", "elliptic integral", within="1e-9 s")
-@pytest.mark.parametrize(
-    ("share", "period"),
-    [(0.1, 0.9932837337787516), (0.5, 2.79337281563169), (0.9, 6.340566423733241), (0.999, 16.0963990677361)],
-)
-def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
-    """A quarter of the exact period to the first impact, REF, to 1e-9."""
-    batch = steps_of(
-        TOWER,
-        ground_of(),
-        0.3 * period,
-        start=SpatialStart(share * math.atan(0.25)),
-        settings=Settings(gravity=G, mechanics="space, many"),
-    )
-    assert 4.0 * batch[batch["kind"] == 1]["time"][0] == pytest.approx(period, abs=1e-9)
 
 
 @pytest.mark.verifies("closed form", "59/71", within="1e-11")

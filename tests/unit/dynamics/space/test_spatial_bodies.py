@@ -261,10 +261,3 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
         alone = SpatialState(old.pivot, np.zeros(3), UP, -9.81 * UP)
         assert alone.impact(body, edge(body, (number + 2) % 5)).pivot == pytest.approx(old.pivot, abs=0.0)
     assert inside > 10
-
-
-def test_at_least_one_event_is_allowed():
-    """Both ends of the range of most_events."""
-    assert Settings(most_events=1, mechanics="space").most_events == 1
-    with pytest.raises(InvalidValueError, match="most_events"):
-        Settings(most_events=0, mechanics="space")

@@ -30,11 +30,19 @@ def outcomes(motions=300, seed=2):
     return good, capacity < LEVELS, cluster
 
 
-def by_name(good, reached, cluster):
+def by_name(good, reached, cluster, levels=LEVELS):
     """Return the counts of a list of single histories with the names of their clusters."""
     names = np.broadcast_to(cluster[:, None], good.shape)[good]
-    levels = np.broadcast_to(LEVELS, good.shape)[good]
-    return count_outcomes(levels, reached[good], clusters=names.tolist())
+    return count_outcomes(np.broadcast_to(levels, good.shape)[good], reached[good], clusters=names.tolist())
+
+
+def same(found, wanted):
+    """Return whether two counts have the same numbers and the same clusters."""
+    numbers = ("levels", "failures", "trials")
+    return all(np.array_equal(getattr(found, name), getattr(wanted, name)) for name in numbers) and all(
+        np.array_equal(mine, others)
+        for mine, others in zip(found.distinct_clusters, wanted.distinct_clusters, strict=True)
+    )
 
 
 def test_same_counts_as_one_by_one():
@@ -42,13 +50,9 @@ def test_same_counts_as_one_by_one():
     good, reached, cluster = outcomes()
     (found,) = pooled(np.broadcast_to(LEVELS, good.shape), good, [reached], cluster)
     wanted = by_name(good, reached, cluster)
-    for name in ("levels", "failures", "trials"):
-        assert np.array_equal(getattr(found, name), getattr(wanted, name))
+    assert same(found, wanted)
     assert (found.clusters, found.is_clustered, found.scarcity) == (wanted.clusters, True, "")
-    for mine, others in zip(found.distinct_clusters, wanted.distinct_clusters, strict=True):
-        assert np.array_equal(mine, others)
-    apart = by_name(good, reached, np.arange(cluster.size))
-    assert not np.array_equal(found.distinct_clusters[1], apart.distinct_clusters[1])
+    assert not same(found, by_name(good, reached, np.arange(cluster.size)))
 
 
 def test_levels_of_each_motion_its_own():
@@ -56,14 +60,10 @@ def test_levels_of_each_motion_its_own():
     good, reached, cluster = outcomes(motions=130)
     levels = LEVELS * np.where(np.arange(130) % 3 == 1, 1.5, 1.0)[:, None]
     found = pooled(levels, good, [reached, ~reached], cluster)
-    names = np.repeat(cluster, LEVELS.size)[good.ravel()].tolist()
     for one, state in zip(found, (reached, ~reached), strict=True):
-        wanted = count_outcomes(levels[good], state[good], clusters=names)
+        wanted = by_name(good, state, cluster, levels)
         assert wanted.clusters == 125
-        for name in ("levels", "failures", "trials"):
-            assert np.array_equal(getattr(one, name), getattr(wanted, name))
-        for mine, others in zip(one.distinct_clusters, wanted.distinct_clusters, strict=True):
-            assert np.array_equal(mine, others)
+        assert same(one, wanted)
 
 
 def test_many_motions_in_pieces(monkeypatch):
