@@ -11,6 +11,7 @@ import pytest
 
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.jobs import status_of
+from rocking.cli.campaign_output import _span, executor_of
 
 JOB = """
 [campaign]
@@ -325,6 +326,7 @@ def test_run_on_a_cluster(run, job, tmp_path):
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         there = ("--executor", "dask", "--address", cluster.scheduler_address)
         assert run("run", path, "--out", tmp_path / "a", *there)[0] == 0
+    assert executor_of("dask", None, there[-1])[0].address == there[-1]
     assert run("run", path, "--out", tmp_path / "b")[0] == 0
     for name in "ab":
         assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
@@ -336,8 +338,6 @@ def test_run_on_a_cluster(run, job, tmp_path):
 )
 def test_times_in_words(seconds, words):
     """Times in the unit that people would take."""
-    from rocking.cli.campaign_output import _span
-
     assert _span(seconds) == words
 
 
