@@ -49,6 +49,21 @@ def saved(page: Any, kind: str, what: str) -> Any:
     return waiting.value
 
 
+def finished(served: Any, name: str, kind: str = "stripes", **tables: Any) -> str:
+    """Compute a study, as a script asks for it, and return its name in addresses."""
+    job = {"campaign": {"name": name, "kind": kind}, "body": BODY, **tables}
+    job = {key: table for key, table in job.items() if table is not None}
+    made = served.api("studies", json={"job": job})["id"]
+    until = time.perf_counter() + 60.0
+    while time.perf_counter() < until:
+        found = served.api(f"studies/{made}", method="GET")
+        if found["state"] == "done":
+            return str(made)
+        assert found["state"] in {"waiting", "running"}, found
+        time.sleep(0.1)
+    pytest.fail(f"{name} did not finish")
+
+
 def pasted(page: Any) -> str:
     """Return what a user pastes after copying, once the page says that it has copied."""
     page.get_by_text("paste them into Excel").wait_for()

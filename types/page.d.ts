@@ -73,7 +73,7 @@ type ChartOptions = {
   onZoom?: (part: Point | null) => unknown;
 };
 type Ticks = { colour: string; at: number[] };
-type Marks = { vertical?: number[]; horizontal?: number[]; ticks?: Ticks[] };
+type Marks = { vertical?: number[]; horizontal?: number[]; ticks?: Ticks[]; words?: string };
 type Chart = ReturnType<typeof import("/charts/line.js").lineChart>;
 type Time = { add: (chart: Chart) => Stop; show?: (instant: number) => unknown; onZoom?: ChartOptions["onZoom"] };
 

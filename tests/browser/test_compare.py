@@ -2,12 +2,11 @@
 
 import re
 import statistics
-import time
 from collections.abc import Callable
 from typing import Any
 
 import pytest
-from browser_pages import BODY, DECISIVE, GENTLE, link, response
+from browser_pages import BODY, DECISIVE, GENTLE, finished, link, response, saved
 from playwright.sync_api import expect
 
 from rocking.outcome import Outcome
@@ -125,33 +124,24 @@ def test_margins_are_those_of_the_command_line(open_page: Callable[..., Any], se
     expect(cell).to_have_text("\u2013")
 
 
-def study(served: Any, name: str, **tables: Any) -> None:
-    """Compute a study, as a script asks for it."""
-    made = served.api(
-        "studies", json={"job": {"campaign": {"name": name, **tables.pop("kind")}, "body": BODY, **tables}}
-    )
-    until = time.perf_counter() + 60.0
-    while served.api(f"studies/{made['id']}", method="GET")["state"] != "done":
-        assert time.perf_counter() < until
-        time.sleep(0.1)
-
-
 def test_studies_are_compared(open_page: Callable[..., Any], served: Any) -> None:
     """Fragility under two models is the picture of the library, with its ratios; one model alone is told to be one."""
     pulses = {"pulse": [f"sine:amplitude=1,period={0.5 + 0.1 * k:.1f}" for k in range(6)]}
     stripes = {
         "motions": pulses,
         "fragility": {"levels": [2.0, 3.0, 4.0, 6.0], "states": []},
-        "kind": {"kind": "stripes"},
     }
-    study(served, "one model", restitution={"models": ["ked"]}, **stripes)
-    study(served, "two models", restitution={"models": ["ked", "housner"]}, **stripes)
+    finished(served, "one model", restitution={"models": ["ked"]}, **stripes)
+    finished(served, "two models", restitution={"models": ["ked", "housner"]}, **stripes)
     page = compared(open_page)
     section = page.locator("#view-compare")
     section.get_by_label("Study", exact=True).select_option("two models")
     picture = section.locator("img.drawing")
     expect(section.get_by_text("Being drawn")).to_have_count(0, timeout=60_000)
     assert picture.evaluate("image => image.naturalWidth") > 100
+    sent = page.request.get(picture.evaluate("image => image.src")).body()
+    assert saved(page, "SVG", "picture Models compared: two models").path().read_bytes() == sent
+    assert saved(page, "PNG", "picture Models compared: two models").path().read_bytes().startswith(b"\x89PNG")
     with page.expect_download() as waiting:
         section.get_by_role("button", name="What the choice changes as CSV").click()
     assert "overturned: median ratio" in waiting.value.path().read_text(encoding="utf-8-sig")

@@ -126,14 +126,8 @@ def test_a_squat_body_is_warned_of_in_words(open_page: Callable[..., Any], shot:
     shot(squat, "impact-warned")
 
 
-def test_pictures_and_tables_are_saved(impact: Any) -> None:
-    """PNG, SVG and CSV buttons give files of their kind."""
-    wanted = [("Save the coefficients picture as PNG", b"\x89PNG"), ("Save the stages picture as SVG", b"<?xml")]
-    for label, start in wanted:
-        with impact.expect_download(timeout=60_000) as saved:
-            impact.get_by_role("button", name=label).click()
-        content = saved.value.path().read_bytes()
-        assert content.startswith(start) or content.lstrip().startswith(b"<svg")
+def test_the_table_is_saved(impact: Any) -> None:
+    """The CSV of the table has every digit."""
     with impact.expect_download(timeout=60_000) as saved:
         impact.get_by_role("button", name="as CSV").first.click()
     assert "0.9117647058823529" in saved.value.path().read_text(encoding="utf-8-sig")

@@ -273,15 +273,6 @@ def test_measures_are_copied_with_every_digit(view: Any) -> None:
     assert "peak ground velocity" in Path(waiting.value.path()).read_text(encoding="utf-8-sig").lower()
 
 
-@pytest.mark.parametrize("kind", ["png", "svg"])
-def test_the_picture_is_saved(view: Any, kind: str) -> None:
-    """The picture of the motion comes as a file of the kind asked for."""
-    with view.expect_download() as waiting:
-        view.get_by_test_id("motion-result").get_by_role("button", name=f"Motion as {kind.upper()}").click()
-    starts = Path(waiting.value.path()).read_bytes()[:200]
-    assert starts.startswith(b"\x89PNG") if kind == "png" else b"<svg" in starts or b"<?xml" in starts
-
-
 SKETCH = """async ([name, places]) => {
   const { SHAPES } = await import("/views/motion-sketch.js");
   return places.map((place) => SHAPES[name](place));

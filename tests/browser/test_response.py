@@ -176,7 +176,7 @@ def test_impacts_are_those_of_python(answered: Callable[..., Any]) -> None:
     assert [row[5] for row in rows[1:]] == found["onto"].tolist()
 
 
-@pytest.mark.parametrize("name", ["Picture, PNG", "Picture, SVG", "Curves, CSV", "Animation, page"])
+@pytest.mark.parametrize("name", ["Curves, CSV", "Animation, page"])
 def test_files_are_saved(answered: Callable[..., Any], name: str) -> None:
     """Every button of the part to take away gives a file that is not empty."""
     page = answered()

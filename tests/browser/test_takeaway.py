@@ -17,15 +17,11 @@ INPUTS = {
     "restitution": {"models": ["ked", "housner"]},
 }
 MAGIC = {
-    "png": b"\x89PNG", "svg": b"<?xml", "csv": b"\xef\xbb\xbf", "xlsx": b"PK", "mat": b"MATLAB", "nc": b"\x89HDF",
+    "csv": b"\xef\xbb\xbf", "xlsx": b"PK", "mat": b"MATLAB", "nc": b"\x89HDF",
     "pdf": b"%PDF", "zip": b"PK", "html": b"<!doctype html", "gif": b"GIF8", "toml": b"",
 }  # fmt: skip
-PICTURES, SHEETS = (
-    ["body", "coefficients", "stages", "motion", "response"],
-    ["body", "coefficients", "measures", "spectrum", "impacts"],
-)
+SHEETS = ["body", "coefficients", "measures", "spectrum", "impacts"]
 FILES = [
-    *(f"picture-{what}-{kind}" for what in PICTURES for kind in ("png", "svg")),
     "animation-html", "animation-gif", "take-toml", "take-zip", "take-report",
     *(f"table-{what}-{kind}" for what in SHEETS for kind in ("csv", "xlsx")),
     "table-motion-csv", "table-motion-mat", "table-response-csv", "table-response-mat", "table-response-nc",

@@ -474,7 +474,7 @@ ASKED_OF_PAGE = {
 MOVED = {"body": BODY_TABLES["hollow"], "motion": MOTION_TABLES["pulse"], "restitution": {"models": ["ked", "housner"]}}
 TAKEN = (
     "table/response.csv", "table/response.xlsx", "table/response.mat", "table/response.nc", "table/body.csv",
-    "table/motion.csv", "table/motion.nc", "inputs.toml", "inputs.zip", "report.pdf", "picture/response.svg",
+    "table/motion.csv", "table/motion.nc", "inputs.toml", "inputs.zip", "report.pdf",
 )  # fmt: skip
 
 

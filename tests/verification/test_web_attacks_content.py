@@ -8,7 +8,6 @@ import re
 import time
 import tomllib
 import zipfile
-from xml.etree import ElementTree
 
 import pytest
 from web_clients import new_application, script_of
@@ -62,7 +61,7 @@ PLACES = {
 READERS = {
     "record of a motion": ("/api/motion", lambda word: {"motion": {"record": word}}),
     "record of a response": ("/api/response", lambda word: {**GOOD, "motion": {"record": word}}),
-    "record of a picture": ("/api/picture/motion.png", lambda word: {**GOOD, "motion": {"record": word}}),
+    "record of a table": ("/api/table/motion.csv", lambda word: {**GOOD, "motion": {"record": word}}),
     "record of a bundle": ("/api/inputs.zip", lambda word: {**GOOD, "motion": {"record": word}}),
     "record of a study": ("/api/studies", lambda word: job(motions={"records": [word]})),
     "file of a body": ("/api/body", lambda word: {"body": {"units": "m", "file": word}}),
@@ -195,14 +194,13 @@ NAMES = {
     "very long": "x" * 500,
 }  # fmt: skip
 EXPORTS = [
-    "table/coefficients.csv", "table/body.csv", "table/coefficients.xlsx", "picture/body.svg", "picture/response.svg",
-    "picture/body.png", "inputs.toml", "inputs.zip", "animation.html", "report.pdf",
+    "table/coefficients.csv", "table/body.csv", "table/coefficients.xlsx", "inputs.toml", "inputs.zip",
+    "animation.html", "report.pdf",
 ]  # fmt: skip
 
 
-PICTURES = ("SVG", "mathematics of a picture")
 SLOW = {
-    "picture/response.svg": PICTURES, "picture/body.png": PICTURES, "report.pdf": ("typesetting",),
+    "report.pdf": ("typesetting", "SVG", "mathematics of a picture"),
     "animation.html": ("script", "end of CDATA", "style"),
 }  # fmt: skip
 """Tried with the names that could do something there; with ROCKING_CAMPAIGN=1 with all."""
@@ -214,21 +212,10 @@ def inert_csv(text):
             assert not re.match(r"[=+@\t\r]|-(?![\d.])", cell), cell
 
 
-def inert_svg(data):
-    for element in ElementTree.fromstring(data).iter():
-        assert element.tag.rpartition("}")[2] not in {"script", "foreignObject", "image", "iframe", "a"}
-        for name, value in element.attrib.items():
-            assert not name.rpartition("}")[2].lower().startswith("on")
-            if name.rpartition("}")[2] == "href":
-                assert value.startswith("#")
-
-
 def inert(kind, data, name):
     """Assert that a file does nothing when it is opened."""
     if kind == "csv":
         inert_csv(data.decode("utf-8"))
-    elif kind == "svg":
-        inert_svg(data)
     elif kind == "toml":
         assert "gravity" not in tomllib.loads(data.decode()).get("settings", {})
     elif kind == "zip":
@@ -268,12 +255,11 @@ def test_hostile_names_are_inert(client, export):
 
 
 @pytest.mark.verifies("negative control", "names pasted as they are")
-@pytest.mark.parametrize("kind", ["csv", "svg", "html", "toml"])
+@pytest.mark.parametrize("kind", ["csv", "html", "toml"])
 def test_the_judge_sees_what_is_not_inert(kind):
     """Negative control: files in which a name was pasted as it is do not pass."""
     pasted = {
         "csv": NAMES["formula"].encode(),
-        "svg": b'<svg xmlns="http://www.w3.org/2000/svg"><g onload="alert(1)"/></svg>',
         "html": f"<p>{NAMES['script']}</p>".encode(),
         "toml": f'[body]\nname = "{NAMES["TOML"]}'.encode(),
     }

@@ -23,7 +23,7 @@ from rocking.app.downloads.archive import bundle_of
 from rocking.app.downloads.documents import report_of
 from rocking.app.downloads.evaluation import Evaluation
 from rocking.app.downloads.inputs_file import inputs_as_toml, inputs_from_toml
-from rocking.app.downloads.pictures import drawn, figure_of, named
+from rocking.app.downloads.pictures import drawn, drawn_text, figure_of
 from rocking.app.downloads.tables import as_table, body_table, measures_table, table_of, written
 from rocking.app.errors import Refused
 from rocking.app.inputs import Inputs
@@ -31,6 +31,7 @@ from rocking.app.plain_text import plain_line
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.motions import GroundMotion
+from rocking.plots.style import new_figure
 from rocking.reports import Document
 from rocking.reports.document import Cell, Listing, Pair, Paragraph, Picture, ReportSection, ReportTable, response_pdf
 
@@ -132,9 +133,10 @@ class Tags(HTMLParser):
 
 @names
 def test_pictures_show_a_name_and_nothing_else(name):
-    """A picture with a hostile name has the elements of a drawing alone, and the name as its text."""
-    asked = Evaluation(inputs_named(name), None)
-    text = check_svg(drawn(lambda: named(figure_of("body", asked), "body", asked.name), "svg"))
+    """A picture with a hostile title has the elements of a drawing alone, and the title as its text."""
+    figure = new_figure(4.0, 1.0)[0]
+    figure.suptitle(drawn_text(name, 80))
+    text = check_svg(drawn(lambda: figure))
     assert "".join(plain_line(name, 80).split()) in "".join(text.split())
 
 
@@ -146,9 +148,9 @@ def test_titles_of_motions_and_responses_are_text(name):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rocking.app.downloads.evaluation.motion_from", lambda chosen, records: wave)
         patch.setattr("rocking.app.inputs.motion_from", lambda chosen, records: wave)
-        text = check_svg(drawn(lambda: figure_of("motion", asked), "svg"))
+        text = check_svg(drawn(lambda: figure_of("motion", asked)))
         assert plain_line(name)[:20].replace(" ", "") in text.replace(" ", "")
-        check_svg(drawn(lambda: figure_of("response", asked), "svg"))
+        check_svg(drawn(lambda: figure_of("response", asked)))
         for kind in ("csv", "mat", "nc", "xlsx"):
             assert table_of("response", kind, asked)
 

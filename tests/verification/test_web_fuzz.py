@@ -16,7 +16,7 @@ pytestmark = pytest.mark.verifies("damage", control="test_a_server_that_fails_is
 REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "200"))
 """Requests of each of the two kinds; `make fuzz-web` sends 6,500 of each."""
 
-HEAVY = ("report.pdf", "animation", "picture", "table", "inputs.zip", "export")
+HEAVY = ("report.pdf", "animation", "table", "inputs.zip", "export")
 INPUTS = {
     "body": {"units": "cm", "width": 50, "height": 200},
     "motion": {"pulse": "sine:amplitude=3.2,period=0.8", "scale": 1.0},

@@ -20,7 +20,7 @@ from starlette.staticfiles import StaticFiles
 
 from rocking.app.answers import ERRORS, JsonAnswer, describe_api, error_answer, refusal
 from rocking.app.api import body, contact_bed, impact, info, motion, records, response
-from rocking.app.downloads import documents, pictures, tables
+from rocking.app.downloads import documents, tables
 from rocking.app.errors import kind_of_status
 from rocking.app.projects import router as projects
 from rocking.app.projects.store import ProjectStore
@@ -145,8 +145,8 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _handler(_invalid))
     app.add_exception_handler(ValidationError, _handler(_invalid))
     app.add_exception_handler(HTTPException, _handler(_refused))
-    of_results = (pictures, tables, documents, projects, questions, studies)
-    computed = {impact, response, pictures, tables, documents}
+    of_results = (tables, documents, projects, questions, studies)
+    computed = {impact, response, tables, documents}
     for part in (session, info, body, impact, contact_bed, records, motion, response, *of_results):
         known = [Depends(_own_models if part in computed else _own_models_if_sound)]
         app.include_router(

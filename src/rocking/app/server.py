@@ -126,8 +126,7 @@ def _picture() -> None:
     from rocking.bodies import Block
     from rocking.plots.body import body_picture
 
-    for kind in ("svg", "png"):
-        drawn(lambda: body_picture(Block(width=1.0, height=4.0)), kind)
+    drawn(lambda: body_picture(Block(width=1.0, height=4.0)))
 
 
 class FolderInUseError(InvalidValueError):

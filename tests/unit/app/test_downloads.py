@@ -21,7 +21,9 @@ from PIL import Image, ImageSequence
 
 import rocking as rk
 from rocking.app.downloads import pictures
-from rocking.app.downloads.pictures import _looks, comparison_picture
+from rocking.app.downloads.evaluation import Evaluation
+from rocking.app.downloads.pictures import _looks, comparison_picture, drawn, figure_of
+from rocking.app.inputs import Inputs
 from rocking.evidence._coefficient_table import default_models
 
 INPUTS = {
@@ -50,27 +52,25 @@ def rows_of(data):
     return list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline="")))
 
 
+def pictured(what, document):
+    """Return a picture of the report."""
+    return drawn(lambda: figure_of(what, Evaluation(Inputs.model_validate(document), None)))
+
+
 @pytest.mark.parametrize("what", ["body", "coefficients", "stages", "motion", "response"])
-def test_pictures_are_pictures(client, what):
-    """Every picture opens as SVG and as PNG, and says nothing of anybody's server."""
-    root = ET.fromstring(sent(client, f"picture/{what}.svg"))
-    assert root.tag == "{http://www.w3.org/2000/svg}svg"
-    if what == "body":
-        assert sent(client, "picture/body.png").startswith(b"\x89PNG")
+def test_pictures_are_pictures(what):
+    """Every picture of the report is an SVG file, the same for the same inputs."""
+    picture = pictured(what, INPUTS)
+    assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
+    assert pictured(what, INPUTS) == picture
 
 
-def test_pictures_name_the_body_and_the_verdict(client):
-    """The picture of the body carries its name; that of several responses says whether the model decides."""
-    assert "Vase 3" in "".join(ET.fromstring(sent(client, "picture/body.svg")).itertext())
-    words = "".join(ET.fromstring(sent(client, "picture/response.svg")).itertext())
+def test_the_picture_of_responses_tells_the_verdict():
+    """That of several responses says whether the model decides, that of one with which it was computed."""
+    words = "".join(ET.fromstring(pictured("response", INPUTS)).itertext())
     assert "With every one of these models the body stays standing." in words
-    alone = "".join(ET.fromstring(sent(client, "picture/response.svg", restitution=1)).itertext())
-    assert "restitution: Housner;" in alone
-
-
-def test_the_same_picture_is_the_same_bytes(client):
-    """A picture depends on the inputs alone."""
-    assert sent(client, "picture/body.svg") == sent(client, "picture/body.svg")
+    alone = pictured("response", {**INPUTS, "restitution": {"models": ["housner"]}})
+    assert "restitution: Housner;" in "".join(ET.fromstring(alone).itertext())
 
 
 @pytest.mark.parametrize("what", TABLES)
@@ -205,10 +205,6 @@ def test_inputs_survive_the_file(client):
 @pytest.mark.parametrize(
     ("path", "change", "status"),
     [
-        ("picture/motion.png", {"motion": None}, 422),
-        ("picture/response.png", {"motion": None}, 422),
-        ("picture/body.pdf", {}, 422),
-        ("picture/shadow.png", {}, 422),
         ("table/body.exe", {}, 422),
         ("table/response.csv?restitution=7", {}, 422),
         ("table/response.csv?restitution=-1", {}, 422),
@@ -238,7 +234,7 @@ def test_bytes_that_are_no_text_are_refused(client):
     assert "UTF-8" in answer.json()["error"]["message"]
 
 
-@pytest.mark.parametrize("path", ["inputs.toml", "table/body.csv", "picture/body.svg"])
+@pytest.mark.parametrize("path", ["inputs.toml", "table/body.csv"])
 def test_half_a_character_is_refused(client, path):
     """A name with half of a surrogate pair, which no file can hold, is refused and never an error of the server."""
     content = b'{"body": {"units": "m", "width": 1.0, "height": 2.0, "name": "\\ud800"}}'
@@ -312,7 +308,7 @@ def test_models_are_named(client):
         "restitution": labels,
     }
     for what in ("response", "coefficients"):
-        picture = client.post(f"/api/picture/{what}.svg", json=inputs).content
+        picture = pictured(what, inputs)
         told = [text.strip().replace("\u00a0", " ") for text in ET.fromstring(picture).itertext() if text.strip()]
         assert not any(word in text for text in told for word in ("housner", "ked", "horizontal-momentum"))
         assert any("horizontal momentum (cos\u00b2\u03b1)" in text for text in told)

@@ -47,7 +47,7 @@ def test_own_hosts_are_loopback_and_the_given_address():
 
 
 LINK = {"sec_fetch_mode": "navigate", "sec_fetch_dest": "document"}
-PLAIN = ("/", "/api/info", "/app/main.js", "/vendor/uplot/uPlot.esm.js", "/api/picture/body.png")
+PLAIN = ("/", "/api/info", "/app/main.js", "/vendor/uplot/uPlot.esm.js", "/api/table/body.csv")
 BODIES = ("application/json; charset=utf-8", "Application/JSON", "application/octet-stream")
 GOOD = [
     *((check_host, head(host=host)) for host in ("127.0.0.1:8765", "LOCALHOST:8765", "[::1]:8765")),

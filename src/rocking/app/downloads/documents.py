@@ -96,5 +96,5 @@ def report_of(evaluation: Evaluation, date: str) -> bytes:
         inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)], fingerprint(inputs),
     )  # fmt: skip
     stems = [stem for stem in PICTURES if motion is not None or stem != "motion"]
-    pictures = {stem: drawn(partial(figure_of, stem, evaluation), "svg") for stem in stems}
+    pictures = {stem: drawn(partial(figure_of, stem, evaluation)) for stem in stems}
     return response_pdf(response_document(results), pictures)

@@ -1,4 +1,4 @@
-"""Pictures of what the user sees, POST /api/picture/{what}.{kind}, drawn one at a time."""
+"""Pictures of the report, and of studies compared, drawn one at a time; the page draws and saves its own."""
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -6,19 +6,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import wrap
 from threading import RLock
-from typing import TYPE_CHECKING, Annotated, Literal, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
-from fastapi import APIRouter, Query, Request
-from starlette.responses import Response as Answer
 
-from rocking.app.answers import answered_with_file, attachment
 from rocking.app.api.response import thinned
 from rocking.app.downloads.evaluation import Evaluation
-from rocking.app.inputs import Inputs
 from rocking.app.plain_text import plain_line
-from rocking.app.settings import state_of
-from rocking.app.work import heavy
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response import ground_curve, motion_curves, over_slenderness, shown_until
@@ -29,14 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PictureKind = Literal["png", "svg"]
-
 _ENOUGH = 2700  # runs of a curve whose extremes are drawn: one for each dot of the widest picture
 ONE_AT_A_TIME = RLock()  # held by whoever draws
-
-
-What = Literal["body", "coefficients", "stages", "motion", "response"]
-Onto = Literal["left", "right", "both"]
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
@@ -44,31 +32,8 @@ _BEYOND = 2.2  # how far a falling body is followed, in slenderness angles
 _SMALL = 0.2  # below this share of the slenderness angle the rotations fill their panel and +-1 is left out
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
-router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
-
-@router.post(
-    "/picture/{what}.{kind}", summary="A picture", responses=answered_with_file("The picture.", *get_args(PictureKind))
-)
-async def picture(
-    request: Request,
-    what: What,
-    kind: PictureKind,
-    inputs: Inputs,
-    onto: Annotated[Onto, Query(description="foot on which the body lands")] = "both",
-    restitution: Annotated[
-        int | None, Query(ge=0, description="only this response, counted from 0; all of them if left out")
-    ] = None,
-) -> Answer:
-    """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses."""
-    evaluation = Evaluation(inputs, state_of(request).records, onto)
-    data = await heavy(
-        request, drawn, lambda: named(figure_of(what, evaluation, restitution), what, evaluation.name), kind
-    )
-    return attachment(data, f"{evaluation.label} {what}.{kind}")
-
-
-def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None) -> "Figure":
+def figure_of(what: str, evaluation: Evaluation) -> "Figure":
     """Return a picture."""
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.energy_stages import energy_stages_picture
@@ -80,10 +45,10 @@ def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None)
             figure, scale = ground_motion_picture(evaluation.motion), evaluation.scale
             # the name of a motion speaks of the one that it was before it was scaled
             return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {evaluation.motion.name}")
-        case "response" if restitution is None and len(evaluation.responses) > 1:
+        case "response" if len(evaluation.responses) > 1:
             return comparison_picture(evaluation.responses)
         case "response":
-            chosen = evaluation.chosen(restitution)
+            chosen = evaluation.chosen(None)
             return in_words(response_picture(chosen, evaluation.problem.assumed_friction), [chosen.parameters.label])
         case "coefficients":
             tables = evaluation.impact.tables
@@ -93,20 +58,15 @@ def figure_of(what: str, evaluation: Evaluation, restitution: int | None = None)
     return body_picture(evaluation.body)
 
 
-def named(figure: "Figure", what: str, name: str) -> "Figure":
-    """Write the name of the body over a picture that has no title of its own."""
-    return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
-
-
 def _titled(figure: "Figure", title: str) -> "Figure":
     figure.suptitle(drawn_text(title, 80), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     return figure
 
 
-def drawn(make: "Callable[[], Figure]", kind: PictureKind) -> bytes:
-    """Draw a picture and return its file, the same for the same figure."""
+def drawn(make: "Callable[[], Figure]") -> bytes:
+    """Draw a picture and return its SVG, the same for the same figure."""
     with TemporaryDirectory(prefix="rocking-picture-") as folder:
-        path = Path(folder) / f"picture.{kind}"
+        path = Path(folder) / "picture.svg"
         draw_to(make, path)
         return path.read_bytes()
 

@@ -1,6 +1,5 @@
 """Finished studies: their jobs and results in memory, the latest ones kept, and as files."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +12,6 @@ from rocking.errors import RockingError
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
     from rocking.campaigns.jobs import Job, JobFolder
     from rocking.campaigns.jobs.study import AdaptiveResult
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
 
 Crossing = Literal["refuse", "common-dispersion"]
 
-Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"]
+Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "svg", "xml"]
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class OpenStudy:
         return answer(self.opened)
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
-        """Return the results with one restitution as the pictures take them."""
+        """Return the results with one restitution as the page takes them."""
         import xarray as xr
 
         study = self.job.study
@@ -108,16 +106,19 @@ class OpenStudy:
 def written(
     study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
 ) -> None:
-    """Write a finished study into a file."""
+    """Write a finished study into a file; as a picture it compares its restitutions."""
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
     if kind == "toml":
         target.write_bytes((study.folder.path / JOB).read_bytes())
-    elif kind in {"png", "svg"}:
+    elif kind == "svg":
         from rocking.app.downloads.pictures import draw_to
+        from rocking.plots.campaign import campaign_picture
 
-        draw_to(_picture(study, None if what == "differences" else restitution), target)
+        if len(labels) < 2:
+            raise Refused("there is nothing to compare in a study that was asked with one restitution")
+        draw_to(lambda: campaign_picture(study.opened), target)
     else:
         from rocking.campaigns.jobs import export
 
@@ -129,26 +130,3 @@ def written(
             )
         except RockingError as error:
             raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
-
-
-def _picture(study: OpenStudy, restitution: int | None) -> "Callable[[], Figure]":
-    """Return what draws a study: with one restitution, or all of them compared."""
-    from rocking.plots.campaign import campaign_picture
-    from rocking.plots.fragility import fragility_picture, incremental_dynamic_analysis_picture
-    from rocking.plots.overturning_map import overturning_map_picture
-    from rocking.plots.rocking_spectrum import rocking_spectrum_picture
-
-    if restitution is None:
-        if len(study.job.problem.restitutions) < 2:
-            raise Refused("there is nothing to compare in a study that was asked with one restitution")
-        return lambda: campaign_picture(study.opened)
-    kind = str(study.job.document.campaign.kind)
-    of_data = {"overturning-map": overturning_map_picture, "rocking-spectrum": rocking_spectrum_picture}
-    of_analysis: dict[str, Callable[[Any], Figure]] = {
-        "stripes": fragility_picture, "cloud": fragility_picture, "incremental": incremental_dynamic_analysis_picture,
-    }  # fmt: skip
-    if kind in of_data:
-        return lambda: of_data[kind](study.dataset(restitution))
-    if kind in of_analysis:
-        return lambda: of_analysis[kind](list(study.analyses.values())[restitution])
-    raise Refused(f'a study of kind "{kind}" has no picture; take its table (.csv, .xlsx, .nc)')

@@ -46,14 +46,13 @@ STUDIES = {
     "minimum-acceleration": {"minimum": {"points": 20}},
 }
 ENDINGS = {
-    "/api/picture/{what}.{kind}": [("body", "png"), ("body", "svg")],
     "/api/table/{what}.{kind}": [("body", "csv"), ("body", "xlsx"), ("body", "mat"), ("body", "nc")],
     "/api/animation.{kind}": [("", "html"), ("", "gif")],
     "/api/report.pdf": [("", "")],
     "/api/inputs.toml": [("", "")],
     "/api/inputs.zip": [("", "")],
     "/api/studies/{study}/export.{kind}": [
-        ("", kind) for kind in ("nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml")
+        ("", kind) for kind in ("nc", "csv", "mat", "xlsx", "parquet", "toml", "svg", "xml")
     ],
 }
 

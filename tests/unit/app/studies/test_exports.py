@@ -68,17 +68,13 @@ def test_the_job_file_gives_the_same_study(study, tmp_path):
 
 
 def test_pictures_are_inert(study, stripes, tmp_path):
-    """A picture is one, of the restitution that is asked for; no script, event or address stands in its SVG."""
-    for kind in ("png", "svg"):
-        first, second = (_written(study, kind, tmp_path, restitution=k).read_bytes() for k in (0, 1))
-        assert first != second
-        assert first.startswith(b"\x89PNG") == (kind == "png")
-    for element in ET.fromstring(first).iter():
+    """No script, event or address stands in the SVG of a comparison."""
+    pictures = [_written(each, "svg", tmp_path).read_bytes() for each in (study, stripes)]
+    for element in (each for picture in pictures for each in ET.fromstring(picture).iter()):
         assert element.tag.rpartition("}")[2] not in {"script", "foreignObject", "iframe"}
         assert not [name for name in element.attrib if name.lower().startswith("on")]
         links = [value for name, value in element.attrib.items() if name.endswith("href")]
         assert all(link.startswith(("#", "data:image/png")) for link in links)
-    assert _written(stripes, "png", tmp_path).read_bytes().startswith(b"\x89PNG")
 
 
 def test_fragility_goes_to_openquake_and_into_tables(stripes, tmp_path):
@@ -95,7 +91,7 @@ def test_fragility_goes_to_openquake_and_into_tables(stripes, tmp_path):
     ("kind", "what", "restitution", "error"),
     [
         ("xml", None, 0, Refused), ("csv", "fragility", 0, Refused), ("csv", "../../x", 0, Refused),
-        ("csv", None, 9, NotFound), ("png", None, -1, NotFound),
+        ("csv", None, 9, NotFound), ("svg", None, -1, NotFound),
     ],
 )  # fmt: skip
 def test_what_a_map_does_not_have_is_refused(kind, what, restitution, error, study, tmp_path):
@@ -107,16 +103,14 @@ def test_what_a_map_does_not_have_is_refused(kind, what, restitution, error, stu
 
 def test_every_format_has_a_type():
     """None is sent as a page."""
-    assert set(get_args(Kind)) == {"nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"}
+    assert set(get_args(Kind)) == {"nc", "csv", "mat", "xlsx", "parquet", "toml", "svg", "xml"}
     assert all("html" not in MEDIA_TYPES[kind] for kind in get_args(Kind))
 
 
 def test_a_picture_compares_all_restitutions(computed, map_job, stripes, tmp_path):
-    """What differs is drawn of all choices at once, which one choice alone is not; a study with one is refused."""
-    both = _written(stripes, "svg", tmp_path, "differences").read_bytes()
-    alone = _written(stripes, "svg", tmp_path).read_bytes()
-    assert both != alone
+    """What differs is drawn of all choices at once; a study with one is refused."""
+    both = _written(stripes, "svg", tmp_path).read_bytes()
     assert both.count(b"<path") > 10
     one = computed(map_job(3, restitution={"model": "ked"}))
     with pytest.raises(Refused, match="nothing to compare"):
-        written(one, "svg", tmp_path / "one.svg", "differences", 0)
+        written(one, "svg", tmp_path / "one.svg", None, 0)

@@ -87,7 +87,7 @@ def test_refusals_have_their_status(app, client, map_job):
     hostile = map_job(motions={"records": ["/etc/passwd"]})
     assert client.post("/api/studies", json={"job": hostile}).status_code == 422
     assert client.post("/api/studies", json={"job": map_job(motions={"records": ["0" * 64]})}).status_code == 404
-    for path in ("result", "cell", "export.csv", "export.png"):
+    for path in ("result", "cell", "export.csv", "export.svg"):
         assert client.get(f"/api/studies/{'0' * 16}/{path}").status_code == 404
     assert client.get(f"/api/studies/{'0' * 16}/export.exe").status_code == 422
     study = _launched(client, map_job(1000))

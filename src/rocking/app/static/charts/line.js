@@ -2,7 +2,7 @@
 
 import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";
-import { chartFiles, savePng } from "/charts/save.js";
+import { chartFiles } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
 import { TICK, vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
@@ -29,9 +29,9 @@ export const lineChart = (container, options) => {
   /** @type {Point | null} */
   let zoomed = null;
   const table = chartTable(options, () => data);
-  const vector = () => vectorOf(plot, options, data, marks);
+  const still = () => ({ node: vectorOf(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
   const csv = () => csvOf(options, data);
-  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector, "chart", csv)));
+  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, still, "chart", csv)));
 
   const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
   stage.after(shown);
@@ -110,7 +110,6 @@ export const lineChart = (container, options) => {
       plot.destroy();
       figure.remove();
     },
-    toPng: () => savePng(vector(), title),
   };
 };
 
@@ -151,9 +150,9 @@ const seriesOf = ({ label, colour: paint, dash, width = 1.6, points = false }) =
   label,
   stroke: () => colour(paint),
   width,
-  dash: dash?.length ? dash : undefined,
+  dash: dash?.map((each) => each * devicePixelRatio),
   spanGaps: false,
-  points: { show: points, size: 5 },
+  points: { show: points, size: 5, width: 0, fill: () => colour(paint) },
 });
 
 /** @param {ChartSeries[]} series */

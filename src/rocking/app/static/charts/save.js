@@ -1,17 +1,26 @@
-/** A chart or a picture as a file: SVG, and PNG drawn from it at twice the size. */
+/** A figure as a file: what the page shows of it, in light colours, under its title and what it is of. */
 
 import { saveBlob } from "/app/api.js";
-import { el } from "/app/dom.js";
-import { sayAll } from "/app/words.js";
+import { el, set, svg } from "/app/dom.js";
+import { sayAll, words } from "/app/words.js";
+import { wrapped } from "/charts/letters.js";
+import { colour, inLight } from "/charts/style.js";
 
-const LARGER = 2;
+const LARGER = 2; // dots of a PNG for one of the page
+const [MARGIN, LEAST, ROW] = [14, 360, 17];
+const FONT = "system-ui, sans-serif";
+
+/** @typedef {{ node: SVGSVGElement, title?: string, about?: string, alt?: string | null, note?: string }} Still */
+
+/** Save a file under the title of its figure. @param {Blob} file @param {string} title @param {string} kind */
+export const saveFile = (file, title, kind) => saveBlob(file, `${slug(title)}.${kind}`);
 
 /** Save a picture as SVG. @param {Element} picture @param {string} title */
-export const saveSvg = (picture, title) => saveBlob(blobOf(picture), `${slug(title)}.svg`);
+export const saveSvg = (picture, title) => saveFile(blobOf(picture), title, "svg");
 
-/** Save a picture as PNG. @param {Element} picture @param {string} title */
-export const savePng = async (picture, title) => {
-  const address = URL.createObjectURL(blobOf(picture));
+/** Save a drawing that is a file already as PNG. @param {Blob} drawing @param {string} title */
+export const savePngOf = async (drawing, title) => {
+  const address = URL.createObjectURL(drawing);
   try {
     const image = new Image();
     image.src = address;
@@ -21,18 +30,26 @@ export const savePng = async (picture, title) => {
     sheet.getContext("2d")?.drawImage(image, 0, 0, sheet.width, sheet.height);
     /** @type {Blob | null} */
     const blob = await new Promise((resolve) => sheet.toBlob(resolve));
-    if (blob) saveBlob(blob, `${slug(title)}.png`);
+    if (blob) saveFile(blob, title, "png");
   } finally {
     URL.revokeObjectURL(address);
   }
 };
 
-/** The menu that saves a chart, or what else `what` says: `vector` draws it, `csv` has its numbers.
- * @param {string} title @param {() => Element} vector @param {string} [what] @param {(() => string) | null} [csv] */
-export const chartFiles = (title, vector, what = "chart", csv = null) => {
+/** The menu of a figure: `draw` gives what the page shows of it now, `csv` its numbers. What it is of stands in `data-own`,
+ * as users name it, and `data-about`, a line each, of what is around it.
+ * @param {string} title @param {() => Still} draw @param {string} [what] @param {(() => string) | null} [csv] */
+export const chartFiles = (title, draw, what = "chart", csv = null) => {
+  const sheet = () => inLight(() => sheetOf(title, draw(), menu));
   /** @type {[string, () => unknown][]} */
-  const kinds = [["PNG", () => savePng(vector(), title)], ["SVG", () => saveSvg(vector(), title)]];
-  if (csv) kinds.push(["CSV", () => saveBlob(new Blob([csv()], { type: "text/csv" }), `${slug(title)}.csv`)]);
+  const kinds = [["PNG", () => savePngOf(blobOf(sheet()), title)], ["SVG", () => saveSvg(sheet(), title)]];
+  if (csv) kinds.push(["CSV", () => saveFile(new Blob([csv()], { type: "text/csv" }), title, "csv")]);
+  const menu = menuOf(title, what, kinds);
+  return menu;
+};
+
+/** A menu of the kinds in which a figure is saved. @param {string} title @param {string} what @param {[string, () => unknown][]} kinds */
+export const menuOf = (title, what, kinds) => {
   const items = kinds.map(([kind, save]) => el("button", {
     type: "button", class: "button quiet", "aria-label": `${kind} of the ${what} ${title}`,
     onclick: () => {
@@ -50,6 +67,34 @@ export const chartFiles = (title, vector, what = "chart", csv = null) => {
   for (const kind of ["focusout", "keydown"]) menu.addEventListener(kind, close);
   return menu;
 };
+
+/** A figure on a ground of its own, under its title and what it is of. @param {string} name @param {Still} still @param {HTMLElement} menu */
+const sheetOf = (name, { node, title = name, about: more = "", alt, note = "" }, menu) => {
+  const [width, height] = ["width", "height"].map((side) => Number(node.getAttribute(side)));
+  const wide = Math.ceil(Math.max(LEAST, width)) + 2 * MARGIN;
+  /** @param {string} kind */
+  const around = (kind) => menu.closest(`[data-${kind}]`)?.getAttribute(`data-${kind}`) ?? "";
+  const parts = [around("own").replace(/[\p{Cc}\ufffe\uffff]/gu, " "), ...around("about").split("\n").map(words), words(more)];
+  const about = parts.filter(Boolean).join(" \u00b7 ");
+  const soft = { "font-size": 12, fill: colour("--ink-soft"), translate: "no" };
+  const head = [
+    ...linesOf(words(title), wide, { "font-size": 14, "font-weight": 600, fill: colour("--ink") }), ...linesOf(about, wide, soft),
+  ];
+  const foot = linesOf(words(note), wide, soft);
+  let y = MARGIN - 2;
+  for (const line of head) line.setAttribute("y", String((y += ROW)));
+  set(node, { x: MARGIN, y: (y += MARGIN), overflow: "visible" });
+  y += height;
+  for (const line of foot) line.setAttribute("y", String((y += ROW)));
+  const size = { width: wide, height: y + MARGIN };
+  return svg("svg", { ...size, viewBox: `0 0 ${size.width} ${size.height}`, "font-family": FONT },
+    svg("title", {}, title), svg("desc", {}, alt), svg("rect", { ...size, fill: colour("--surface") }), head, node, foot);
+};
+
+/** @param {string} text @param {number} wide @param {Attributes} look */
+const linesOf = (text, wide, look) =>
+  wrapped(text, wide - 2 * MARGIN, `${look["font-weight"] ?? 400} ${look["font-size"]}px ${FONT}`)
+    .map((line) => svg("text", { x: MARGIN, ...look }, line));
 
 /** @param {Element} picture */
 const blobOf = (picture) => {

@@ -1,30 +1,44 @@
-/** A picture of the page as an SVG of its own: the look that its classes give stands in it. */
+/** What a part of the page shows, as an SVG of its own: its drawings and its words where they stand, with the look that classes give. */
 
 import { set, svg } from "/app/dom.js";
-import { colour } from "/charts/style.js";
+import { fontOf, measured } from "/charts/letters.js";
 
-const [HEAD, MARGIN] = [34, 16];
 const LOOK = [
   "fill", "fill-opacity", "fill-rule", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
   "opacity", "paint-order", "font-family", "font-size", "font-weight", "text-anchor", "color",
 ];
+const OF_THE_PAGE = ["class", "data-testid", "aria-label", "aria-hidden", "role", "focusable"];
+const ABOVE = { overflow: "visible" }; // words may reach over the edge of a drawing
 
-/** A copy of a drawn picture under its title, in the colours of the page as it is now.
- * @param {SVGSVGElement} picture @param {string} title */
-export const stillOf = (picture, title) => {
-  const { width, height } = picture.viewBox.baseVal;
-  const inside = /** @type {SVGSVGElement} */ (picture.cloneNode(true));
-  dress(picture, inside);
-  inside.removeAttribute("aria-label");
-  set(inside, { x: MARGIN, y: HEAD, width, height });
-  const size = { width: width + 2 * MARGIN, height: height + HEAD + MARGIN };
-  const viewBox = `0 0 ${size.width} ${size.height}`;
-  return svg("svg", { ...size, viewBox, "font-family": "system-ui, sans-serif" },
-    svg("title", {}, title),
-    svg("desc", {}, picture.getAttribute("aria-label") ?? ""),
-    svg("rect", { ...size, fill: colour("--surface") }),
-    svg("text", { x: MARGIN, y: 22, "font-size": 14, "font-weight": 600, fill: colour("--ink") }, title),
-    inside);
+/** @typedef {(rect: DOMRect) => { x: number, y: number, width: number, height: number }} Placing */
+
+/** A copy of what an element shows; `canvasOf` draws again what stands on a canvas in it.
+ * @param {Element} place @param {(canvas: HTMLCanvasElement) => SVGElement} [canvasOf] */
+export const stillOf = (place, canvasOf) => {
+  const { left, top, width, height } = place.getBoundingClientRect();
+  /** @type {Placing} */
+  const at = (rect) => ({ x: round(rect.left - left), y: round(rect.top - top), width: round(rect.width), height: round(rect.height) });
+  /** @param {Node} node @returns {Child} */
+  const shown = (node) => {
+    if (node instanceof Text) return linesOf(node, at);
+    if (!(node instanceof Element) || !node.checkVisibility() || node.matches(".visually-hidden, .toolbar")) return null;
+    const where = at(node.getBoundingClientRect());
+    if (node instanceof SVGSVGElement) return svg("svg", { ...where, ...ABOVE, viewBox: node.getAttribute("viewBox") }, [...dressed(node).childNodes]);
+    if (node instanceof HTMLCanvasElement) return canvasOf ? set(canvasOf(node), where) : null;
+    return [node === place ? null : plateOf(getComputedStyle(node), where), ...[...node.childNodes].map(shown)];
+  };
+  const size = { width: Math.ceil(width), height: Math.ceil(height) };
+  return svg("svg", { ...size, ...ABOVE, viewBox: `0 0 ${size.width} ${size.height}` }, [shown(place)]);
+};
+
+/** @param {number} value */
+const round = (value) => Math.round(value * 100) / 100;
+
+/** @param {SVGSVGElement} picture */
+const dressed = (picture) => {
+  const copy = /** @type {SVGSVGElement} */ (picture.cloneNode(true));
+  dress(picture, copy);
+  return copy;
 };
 
 /** @param {Element} from @param {Element} to */
@@ -34,6 +48,39 @@ const dress = (from, to) => {
     const value = style.getPropertyValue(name);
     if (value) to.setAttribute(name, value.replace(/url\("(.*)"\)/, "url($1)"));
   }
-  for (const name of ["class", "data-testid"]) to.removeAttribute(name);
+  for (const name of OF_THE_PAGE) to.removeAttribute(name);
   [...from.children].forEach((child, k) => dress(child, to.children[k]));
+};
+
+// The ground and the edge of a box, if it has any.
+/** @param {CSSStyleDeclaration} style @param {ReturnType<Placing>} where */
+const plateOf = ({ backgroundColor: fill, borderTopWidth: width, borderTopColor: stroke, borderTopStyle: kind, borderRadius: r }, where) => {
+  const [bare, edged] = [/^rgba\(.*, 0\)$/.test(fill), kind === "solid"];
+  if (bare && !edged) return null;
+  const edge = edged ? { stroke, "stroke-width": parseFloat(width) } : {};
+  return svg("rect", { ...where, rx: Math.min(parseFloat(r) || 0, where.height / 2), fill: bare ? "none" : fill, ...edge });
+};
+
+const PIECES = /[\u2e80-\u9fff\uff00-\uffef]|[^\s\u2e80-\u9fff\uff00-\uffef]+/g; // between which a line may end
+
+/** The lines of a text as the page breaks them. @param {Text} node @param {Placing} at */
+const linesOf = (node, at) => {
+  /** @type {{ from: number, to: number, rect: DOMRect }[]} */
+  const lines = [];
+  const range = document.createRange();
+  for (const { index, 0: piece } of node.data.matchAll(PIECES)) {
+    range.setStart(node, index);
+    range.setEnd(node, index + piece.length);
+    const rect = range.getBoundingClientRect();
+    const last = lines.at(-1);
+    if (last && Math.abs(last.rect.top - rect.top) < rect.height / 2) last.to = index + piece.length;
+    else if (rect.width) lines.push({ from: index, to: index + piece.length, rect });
+  }
+  const style = getComputedStyle(/** @type {Element} */ (node.parentElement));
+  const look = { fill: style.color, "font-family": style.fontFamily, "font-size": style.fontSize, "font-weight": style.fontWeight };
+  return lines.map(({ from, to, rect }) => {
+    const { x, y } = at(rect);
+    const words = node.data.slice(from, to).replace(/\s+/g, " ");
+    return svg("text", { x, y: round(y + measured(words, fontOf(style)).fontBoundingBoxAscent), ...look }, words);
+  });
 };

@@ -2,6 +2,7 @@
 
 import { freshId, svg } from "/app/dom.js";
 import { words as inLanguage } from "/app/words.js";
+import { measured } from "/charts/letters.js";
 import { colour } from "/charts/style.js";
 
 /** @typedef {import("/vendor/uplot/uPlot.esm.js").default} uPlot @typedef {ReturnType<typeof frameOf>} Frame */
@@ -9,15 +10,11 @@ import { colour } from "/charts/style.js";
 /** Height of a row of ticks on the axis [px]. */
 export const TICK = 6;
 
-const [TITLE, ROW, MARGIN, LETTER] = [28, 18, 12, 6.4];
-const FONT = { "font-family": "system-ui, sans-serif", "font-size": 12 };
+const [ROW, BELOW, EDGE] = [20, 50, 2]; // of a legend, below the frame, and of curves that lie on its edge [px]
 
-/** The chart as an element, in the colours of the page as it is now.
- * @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
-export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
-  const legend = series.length > 1 ? legendOf(series, plot.width) : { rows: 0, node: null };
-  const head = TITLE + legend.rows * ROW;
-  const height = head + plot.height + MARGIN;
+/** What a chart shows, with its legend. @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
+export const vectorOf = (plot, { series, bands = [] }, data, marks) => {
+  const legend = series.length > 1 ? legendOf(series, plot.width) : null;
   const frame = frameOf(plot);
   const clip = freshId("clip");
   const inside = svg("g", { "clip-path": `url(#${clip})`, fill: "none" },
@@ -26,15 +23,18 @@ export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
     (marks.horizontal ?? []).map((value) => markOf(frame, null, frame.y(value))),
     (marks.ticks ?? []).map((row, k) => ticksOf(frame, row, k)),
     series.map((each, index) => curveOf(frame, each, data[0], data[index + 1] ?? [])));
-  const { left, top, width, height: tall } = frame.box;
-  const size = { width: plot.width, height, viewBox: `0 0 ${plot.width} ${height}` };
-  return svg("svg", { ...size, ...FONT },
-    svg("title", {}, title),
-    svg("rect", { width: plot.width, height, fill: colour("--surface") }),
-    text(MARGIN, 18, title, { "font-weight": 600, "font-size": 13, fill: colour("--ink") }),
-    legend.node,
-    svg("clipPath", { id: clip }, svg("rect", { x: left, y: top, width, height: tall })),
-    svg("g", { transform: `translate(0 ${head})` }, axesOf(plot, frame), inside));
+  const { left, top, width, height } = frame.box;
+  return under(legend, plot.width, Math.min(plot.height, Math.ceil(top + height + BELOW)),
+    svg("clipPath", { id: clip }, svg("rect", { x: left, y: top - EDGE, width, height: height + 2 * EDGE })), axesOf(plot, frame), inside,
+    series.map((each, index) => dotsOf(frame, each, data[0], data[index + 1] ?? [])));
+};
+
+/** A drawing under its legend. @param {SVGElement | null} legend @param {number} width @param {number} height @param {...Child} drawing */
+export const under = (legend, width, height, ...drawing) => {
+  const head = Number(legend?.dataset.height ?? 0);
+  const size = { width, height: head + height, viewBox: `0 0 ${width} ${head + height}` };
+  return svg("svg", { ...size, "font-family": "system-ui, sans-serif", "font-size": 12 },
+    legend, svg("g", { transform: `translate(0 ${head})` }, ...drawing));
 };
 
 /** @param {uPlot} plot */
@@ -61,12 +61,12 @@ const axesOf = (plot, { box, x, y }) => {
   return [
     ticks(across).map(([at, words]) => [
       line({ x1: x(at), x2: x(at), y1: box.top, y2: bottom + 4 }),
-      text(x(at), bottom + 18, words, { "text-anchor": "middle" })]),
+      text(x(at), bottom + 19, words, { "text-anchor": "middle" })]),
     ticks(up).map(([at, words]) => [
       line({ x1: box.left - 4, x2: right, y1: y(at), y2: y(at) }),
-      text(box.left - 8, y(at) + 4, words, { "text-anchor": "end" })]),
-    text(box.left + box.width / 2, bottom + 38, across.label, { "text-anchor": "middle" }),
-    text(0, 0, up.label, { "text-anchor": "middle", transform: `translate(12 ${middle}) rotate(-90)` }),
+      text(box.left - 9, y(at) + 4, words, { "text-anchor": "end" })]),
+    text(box.left + box.width / 2, /** @type {any} */ (across)._lpos + 11, across.label, { "text-anchor": "middle" }),
+    text(0, 0, up.label, { "text-anchor": "middle", transform: `translate(${/** @type {any} */ (up)._lpos - 3} ${middle}) rotate(-90)` }),
   ];
 };
 
@@ -100,15 +100,21 @@ const runsOf = (xs, ...columns) => {
 const placed = ({ x, y }, xs, ys, run) => run.map((k) => `${x(Number(xs[k])).toFixed(2)} ${y(Number(ys[k])).toFixed(2)}`);
 
 /** @param {Frame} frame @param {ChartSeries} series @param {(number | null)[]} xs @param {(number | null)[]} ys */
-const curveOf = (frame, { colour: paint, dash, width = 1.6, points = false }, xs, ys) => {
-  const stroke = colour(paint);
+const curveOf = (frame, { colour: paint, dash, width = 1.6 }, xs, ys) => {
   const runs = runsOf(xs, ys);
-  const dots = points ? runs.flat().map((k) =>
-    svg("circle", { cx: frame.x(Number(xs[k])), cy: frame.y(Number(ys[k])), r: 2.5, fill: stroke })) : [];
-  if (width === 0 || !runs.length) return dots;
+  if (width === 0 || !runs.length) return null;
   const d = runs.map((run) => `M${placed(frame, xs, ys, run).join("L")}`).join("");
-  const look = { stroke, "stroke-width": width, "stroke-linejoin": "round" };
-  return [svg("path", { d, ...look, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), ...dots];
+  const look = { stroke: colour(paint), "stroke-width": width, "stroke-linejoin": "round" };
+  return svg("path", { d, ...look, "stroke-dasharray": dash?.length ? dash.join(" ") : null });
+};
+
+// Whole where they lie on the edge of the frame.
+/** @param {Frame} frame @param {ChartSeries} series @param {(number | null)[]} xs @param {(number | null)[]} ys */
+const dotsOf = (frame, { colour: paint, points = false }, xs, ys) => {
+  const { left, top, width, height } = frame.box;
+  const places = points ? runsOf(xs, ys).flat().map((k) => [frame.x(Number(xs[k])), frame.y(Number(ys[k]))]) : [];
+  return places.filter(([x, y]) => x > left - 1 && x < left + width + 1 && y > top - 1 && y < top + height + 1)
+    .map(([cx, cy]) => svg("circle", { cx, cy, r: 2.5, fill: colour(paint) }));
 };
 
 /** @param {Frame} frame @param {Band} band @param {Columns} data */
@@ -120,15 +126,15 @@ const bandOf = (frame, { series: [high, low], fill }, data) => {
   return d ? svg("path", { d, fill }) : null;
 };
 
-/** Keys and words of several curves in rows: {rows, node}. @param {ChartSeries[]} series @param {number} width */
+/** Keys and words of several curves, in rows. @param {ChartSeries[]} series @param {number} width */
 export const legendOf = (series, width) => {
-  let [x, row] = [MARGIN, 1];
+  let [x, row] = [0, 0];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
     const said = inLanguage(label);
-    const wide = 46 + LETTER * said.length;
-    if (x > MARGIN && x + wide > width) [x, row] = [MARGIN, row + 1];
-    const [at, y] = [x, TITLE + row * ROW - 10];
-    x += wide + 10;
+    const wide = 36 + measured(said).width;
+    if (x > 0 && x + wide > width) [x, row] = [0, row + 1];
+    const [at, y] = [x, row * ROW + 8];
+    x += wide + 18;
     const stroke = colour(paint);
     const key = points && thick === 0
       ? svg("circle", { cx: at + 15, cy: y, r: 2.5, fill: stroke })
@@ -138,5 +144,5 @@ export const legendOf = (series, width) => {
       });
     return [key, text(at + 36, y + 4, said)];
   });
-  return { rows: row, node: svg("g", {}, entries) };
+  return svg("g", { "data-height": (row + 1) * ROW }, entries);
 };

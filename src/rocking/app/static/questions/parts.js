@@ -2,6 +2,7 @@
 
 import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
+import { Fetched } from "/charts/pictured.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
 
@@ -122,7 +123,7 @@ const Waiting = ({ questions, question }) => html`
 
 /** @type {{ [name: string]: string | undefined }} */
 const WORDS = {
-  pdf: "Report (PDF)", html: "Report (web page)", svg: "Picture (SVG)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
+  pdf: "Report (PDF)", html: "Report (web page)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
   "results.json": "All numbers (JSON)",
 };
 /** @param {string} name */
@@ -134,7 +135,7 @@ const wordsOf = (name) => {
 /** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
 const Files = ({ questions, question }) => html`
   <div class="toolbar" role="group" aria-label="Take away">
-    ${question.files.map((name) => html`<${Button} key=${name} onClick=${() => questions.take(name)}>
+    ${question.files.filter((name) => name !== DRAWING).map((name) => html`<${Button} key=${name} onClick=${() => questions.take(name)}>
       ${wordsOf(name)}<//>`)}
   </div>
   <details><summary>The same on the command line</summary>
@@ -144,8 +145,10 @@ const Files = ({ questions, question }) => html`
   </details>`;
 
 /** The picture of an answer, if it has one. @param {{ question: Server.WholeQuestion, alt: string }} props */
-export const Drawing = ({ question, alt }) => question.files.includes("picture.svg")
-  && html`<img class="drawing" src=${`/api/questions/${question.id}/picture.svg`} alt=${alt} />`;
+export const Drawing = ({ question, alt }) => question.files.includes(DRAWING)
+  && html`<${Fetched} title=${question.name} path=${`questions/${question.id}/${DRAWING}`} alt=${alt} />`;
+
+const DRAWING = "picture.svg";
 
 // Earlier questions of the project.
 /** @param {{ questions: Questions }} props */

@@ -128,7 +128,7 @@ export class Player {
 
   /** The instant that is shown as a picture of its own; `names` are the models in words. @param {string[]} names */
   still(names) {
-    return sceneStill(this.stage, this.clock.now, `The body at ${this.clock.now.toFixed(3)} s`, names);
+    return sceneStill(this.stage, this.clock.now, names);
   }
 
   /** Writes instant and rotation in numbers. */

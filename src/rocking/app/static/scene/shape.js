@@ -1,20 +1,10 @@
 /** The body as the scene draws it: paths once, so that a frame only moves them. */
 
 import { highest } from "/app/extremes.js";
+import { pathOf } from "/charts/pen.js";
 
-/** @param {Path2D} path @param {number[][]} ring */
-const ringInto = (path, ring) => {
-  ring.forEach(([x, y], k) => (k ? path.lineTo(x, y) : path.moveTo(x, y)));
-  path.closePath();
-};
-
-/** @param {{ outline: number[][], holes: number[][][] }} region */
-const pathOf = (region) => {
-  const path = new Path2D();
-  ringInto(path, region.outline);
-  for (const hole of region.holes) ringInto(path, hole);
-  return path;
-};
+/** @param {number[][]} ring */
+const ringOf = (ring) => `M${ring.map((point) => point.join(" ")).join("L")}Z`;
 
 /**
  * Returns the shape of a body of the API: regions with their shade, mass points, feet and centre in metres, the
@@ -32,7 +22,7 @@ export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
     shade: densest > 0 ? (density || densest) / densest : 1,
   }));
   return {
-    regions: regions.map((region) => ({ ...region, path: pathOf(region) })),
+    regions: regions.map((region) => ({ ...region, path: pathOf([region.outline, ...region.holes].map(ringOf).join("")) })),
     points: points.map(([x, y, mass]) => [x - middle, y - ground, heaviest > 0 ? mass / heaviest : 1]),
     feet: base.map((x) => x - middle),
     centre: [centre[0] - middle, centre[1] - ground],

@@ -86,12 +86,24 @@ export class Stage {
 
   /** Draws an instant [s]; flashes last as long for the eye at any speed. @param {number} now @param {number} speed */
   draw(now, speed) {
-    if (!this.play || !this.camera.width) return;
     const { pen, camera, colours, play } = this;
-    const moved = this.factor * play.ground.at(now);
-    const ridden = this.rides ? moved : 0;
+    if (!play || !camera.width) return;
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.paint(pen, camera, colours, play, now);
+    if (!calm()) this.flash(play, now, Math.max(FLASH * speed, 0.005));
+  }
+
+  /** How far the ground has moved on the screen at an instant [m]. @param {Play} play @param {number} now */
+  movedAt(play, now) {
+    return this.factor * play.ground.at(now);
+  }
+
+  /** Draws the ground and the bodies at an instant [s], with any pen.
+   * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {Play} play @param {number} now */
+  paint(pen, camera, colours, play, now) {
+    const moved = this.movedAt(play, now);
+    const ridden = this.rides ? moved : 0;
     drawGround(pen, camera, colours, moved, ridden);
     for (let k = 0; k < play.actors.length; k += 1) {
       const actor = play.actors[k];
@@ -99,19 +111,19 @@ export class Stage {
     }
     const lead = play.actors[this.lead];
     drawBody(pen, camera, play.shape, colours, lead.rotation.at(now), moved, ridden, lead.colour);
-    if (!calm()) this.flash(play, now, moved, ridden, Math.max(FLASH * speed, 0.005));
   }
 
   /** Draws the ring of the last impact, if it is recent.
-   * @param {Play} play @param {number} now @param {number} moved @param {number} ridden @param {number} lasts */
-  flash(play, now, moved, ridden, lasts) {
+   * @param {Play} play @param {number} now @param {number} lasts */
+  flash(play, now, lasts) {
     const actor = play.actors[this.lead];
     const times = actor.impactTimes;
     let k = times.length - 1;
     while (k >= 0 && times[k] > now) k -= 1;
     if (k < 0 || now - times[k] > lasts) return;
     const foot = play.shape.feet[actor.impactFeet[k]];
-    const x = pixelOf(this.camera, foot + moved, ridden);
+    const moved = this.movedAt(play, now);
+    const x = pixelOf(this.camera, foot + moved, this.rides ? moved : 0);
     const age = (now - times[k]) / lasts;
     drawFlash(this.pen, this.camera, this.colours, x, age, actor.impactWords[k], this.wide);
   }

@@ -13,7 +13,7 @@ export const Edges = ({ question, answer, children }) => {
     .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
   return html`
     <p class="verdict" data-testid="verdict">What is left of its speed when it falls back from an edge of its base, by model.</p>
-    <${Scene} question=${question} label="The body with the edges of its base numbered" onSpace=${() => {}}
+    <${Scene} question=${question} title="The edges of its base" label="The body with the edges of its base numbered" onSpace=${() => {}}
       onStage=${(stage) => {
         stage.number(stage.model.edges);
         stage.draw();

@@ -95,7 +95,7 @@ export const MotionScene = ({ question, answer }) => {
     kept.chart?.destroy();
   }, []);
   return html`
-    <${Scene} question=${question} words=${words.value} legend=${LEGEND} onStage=${standing} onSpace=${toggle}
+    <${Scene} question=${question} words=${words.value} legend=${LEGEND} title="The body as it moves" onStage=${standing} onSpace=${toggle}
       label=${`The body as it moves: ${answer.summary}`} />
     <div class="scene-row" role="group" aria-label="Play">
       <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>
@@ -111,5 +111,5 @@ export const MotionScene = ({ question, answer }) => {
       <output>${now.value.toFixed(2)} s</output>
     </div>
     <${Choice} label="Speed" value=${speed} options=${SPEEDS} />
-    <div ref=${curve}></div>`;
+    <div ref=${curve} data-own=${question.name}></div>`;
 };

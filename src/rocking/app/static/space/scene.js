@@ -1,12 +1,15 @@
 /** A body in space on the page: the picture, how to turn it, and what it shows in words. */
 
-import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
+import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 import { fetchFile } from "/app/api.js";
 import { freshId } from "/app/dom.js";
+import { Pictured } from "/charts/pictured.js";
 import { onTheme } from "/charts/style.js";
+import { Made } from "/parts/made.js";
 import { readGlb } from "/space/glb.js";
 import { Stage } from "/space/stage.js";
+import { markKey, riseKey } from "/space/textures.js";
 
 const LIBRARY = "/vendor/three/three.module.min.js"; // for this view alone, when there is something to show
 const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
@@ -16,9 +19,12 @@ const VIEWS = [
   ["From above", { turned: -Math.PI / 2, raised: 1.5 }], ["Nearer", null, CLOSER], ["Farther", null, 1 / CLOSER],
 ];
 
-/** The picture of a question's body; `onStage` is told of the stage once it stands, `onSpace` is what that key does.
- * @param {{ question: Server.WholeQuestion, words: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
-export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
+/** @param {{ kind: string }} props */
+const Key = ({ kind }) => html`<${Made} node=${useMemo(() => (kind === "rise" ? riseKey() : markKey(kind)), [kind])} />`;
+
+/** The picture of a question's body, with the `title` of its file; `onStage` is told of the stage once it stands, `onSpace` is what that key does.
+ * @param {{ question: Server.WholeQuestion, words: string, title: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
+export const Scene = ({ question, words, title, label, onStage, onSpace, legend }) => {
   const canvas = useRef(null);
   const stage = useSignal(null);
   const trouble = useSignal("");
@@ -70,8 +76,8 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
   };
   return html`
     ${trouble.value && html`<${Note} kind="warning" words=${trouble.value} />`}
-    <div class="space-picture" hidden=${Boolean(trouble.value)}>
-      <canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
+    <div class="space-picture" hidden=${Boolean(trouble.value)} data-own=${question.name} data-about=${words}>
+      <${Pictured} title=${title} canvasOf=${() => stage.value.photograph()}><canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
         data-testid="space-stage" onKeyDown=${keys}
         onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)}
         onPointerMove=${(event) => event.buttons && turn(-BY_PIXEL * event.movementX, BY_PIXEL * event.movementY)}
@@ -80,14 +86,14 @@ export const Scene = ({ question, words, label, onStage, onSpace, legend }) => {
           event.preventDefault();
           nearer(event.deltaY < 0 ? CLOSER : 1 / CLOSER);
         }}></canvas>
+        <ul class="space-legend" aria-label="What is marked">
+          ${[...(stage.value?.model.mended ? [["mended", "closed by the repair"]] : []), ...legend].map(([kind, text]) => html`
+            <li key=${kind}><${Key} kind=${kind} />${text}</li>`)}
+        </ul><//>
       <div class="toolbar" role="group" aria-label="Look">
         ${VIEWS.map(([name, to, times]) => html`<${Button} kind="quiet" key=${name}
           onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times ?? 1))}>${name}<//>`)}
       </div>
-      <ul class="space-legend" aria-label="What is marked">
-        ${stage.value?.model.mended && html`<li><span class="space-key mended" aria-hidden="true"></span>closed by the repair</li>`}
-        ${legend.map(([kind, text]) => html`<li key=${kind}><span class=${`space-key ${kind}`} aria-hidden="true"></span>${text}</li>`)}
-      </ul>
     </div>
     <p id=${about} class="space-words" data-testid="space-words">${words}</p>`;
 };

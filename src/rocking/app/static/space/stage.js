@@ -1,5 +1,6 @@
 /** A body in space on its ground, drawn by three.js; what it shows and where it is comes from the server. */
 
+import { svg } from "/app/dom.js";
 import { colour } from "/charts/style.js";
 import { labelTexture, markTexture } from "/space/textures.js";
 
@@ -30,6 +31,7 @@ export class Stage {
     this.turned = 0;
     this.raised = 0;
     this.near = 1;
+    this.fine = 0; // dots of the canvas for one of the page; 0: as the screen has them
     this.look(FIRST);
     this.repaint();
   }
@@ -130,7 +132,7 @@ export class Stage {
     const seenThrough = shape === "dot";
     const geometry = new three.BufferGeometry().setFromPoints(places.map((each) => new three.Vector3(...each)));
     const material = new three.PointsMaterial({
-      map: markTexture(three, shape), size: 15 * this.fine, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
+      map: markTexture(three, shape), size: 15, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
       depthTest: !seenThrough,
     });
     const points = new three.Points(geometry, this.painted(material, paint));
@@ -148,7 +150,7 @@ export class Stage {
     geometry.setIndex(new three.BufferAttribute(new Uint32Array(this.model.hull.length / 3), 1));
     geometry.setDrawRange(0, 0);
     const material = new three.PointsMaterial({
-      map: markTexture(three, "dot"), size: 13 * this.fine, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
+      map: markTexture(three, "dot"), size: 13, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
       depthTest: false,
     });
     const points = new three.Points(geometry, this.painted(material, paint));
@@ -157,8 +159,15 @@ export class Stage {
     return points;
   }
 
-  get fine() {
-    return Math.min(window.devicePixelRatio || 1, FINEST);
+  /** What is seen, for a file, as fine as a screen can be. */
+  photograph() {
+    this.fine = FINEST;
+    this.repaint();
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const picture = svg("image", { width, height, href: this.canvas.toDataURL() });
+    this.fine = 0;
+    this.repaint();
+    return svg("svg", { viewBox: `0 0 ${width} ${height}` }, picture);
   }
 
   /** Show which vertices of the hull hold, and which slide. @param {number[]} holding @param {number[]} sliding */
@@ -239,7 +248,8 @@ export class Stage {
   resize() {
     const { clientWidth: wide, clientHeight: high } = this.canvas;
     if (!wide || !high) return;
-    this.renderer.setPixelRatio(this.fine);
+    const fine = this.fine || Math.min(window.devicePixelRatio || 1, FINEST);
+    this.renderer.setPixelRatio(fine);
     this.renderer.setSize(wide, high, false);
     this.camera.aspect = wide / high;
     this.camera.updateProjectionMatrix();

@@ -56,7 +56,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
   const ways = answer.stable.length === 1 ? "one way" : `${answer.stable.length} ways`;
   return html`
     <p class="verdict" data-testid="verdict">It can stand in ${ways}; as it is set down it stands in pose ${answer.stands_in}.</p>
-    <${Scene} question=${question} words=${words} onStage=${built} label="The body on its support polygon, with its equilibria"
+    <${Scene} question=${question} words=${words} onStage=${built} title="Its ways to stand" label="The body on its support polygon, with its equilibria"
       onSpace=${() => {}} legend=${[
         ["stable", `${answer.stable.length} stable: it stands on that side`], ["saddle", `${answer.saddles} saddles: balanced on an edge`],
         ["summit", `${answer.summits} summits: balanced on a corner`], ["plumb", "centre of mass and plumb line"],

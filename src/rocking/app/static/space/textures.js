@@ -1,5 +1,8 @@
 /** Marks and numbers as pictures that three.js puts into a scene. */
 
+import { svg } from "/app/dom.js";
+import { SvgPen } from "/charts/pen.js";
+
 const SIDE = 64;
 
 /** @param {any} three @param {(pen: CanvasRenderingContext2D) => unknown} draw */
@@ -31,6 +34,8 @@ const SHAPES = {
   /** @param {CanvasRenderingContext2D} pen */
   summit: (pen) => path(pen, [[0, -24], [23, 18], [-23, 18]]),
   /** @param {CanvasRenderingContext2D} pen */
+  mended: (pen) => path(pen, [[-20, -20], [20, -20], [20, 20], [-20, 20]]),
+  /** @param {CanvasRenderingContext2D} pen */
   saddle: (pen) => path(pen, [
     [-24, -15], [-15, -24], [0, -9], [15, -24], [24, -15], [9, 0], [24, 15], [15, 24], [0, 9], [-15, 24], [-24, 15], [-9, 0],
   ]),
@@ -45,6 +50,20 @@ export const markTexture = (three, shape) => drawn(three, (pen) => {
   pen.fillStyle = "#ffffff";
   pen.fill();
 });
+
+/** The same mark beside words. @param {string} kind */
+export const markKey = (kind) => {
+  const pen = new SvgPen();
+  const draw = SHAPES[kind] ?? SHAPES.dot;
+  draw(/** @type {any} */ (pen));
+  return svg("svg", { class: `space-key ${kind}`, width: 14, height: 14, viewBox: "-28 -28 56 56", "aria-hidden": "true" }, svg("path", { d: pen.d }));
+};
+
+const RISE = ["#00224e", "#434e6c", "#7d7c78", "#bcaf6f", "#fee838"];
+
+/** The colours of a landscape, from low to high. */
+export const riseKey = () => svg("svg", { class: "space-key", width: 60, height: 12, viewBox: "0 0 60 12", "aria-hidden": "true" },
+  RISE.map((fill, k) => svg("rect", { x: 12 * k, width: 12.5, height: 12, fill })));
 
 /** A number on a plate. @param {any} three @param {string} words */
 export const labelTexture = (three, words) => drawn(three, (pen) => {

@@ -1,10 +1,11 @@
 /** The Body view: choose, type, draw, paste or drop a body, and see at once what it is. */
 
 import { batch, html, render, signal, useLayoutEffect } from "/parts/preact.js";
+import { Pictured } from "/charts/pictured.js";
 import { bodyPicture } from "/drawing/body-picture.js";
-import { PictureTools } from "/drawing/picture-tools.js";
 import { Card, Note } from "/parts/fields.js";
 import { Drawn } from "/parts/made.js";
+import { aboutOf } from "/views/about.js";
 import { Editor, createEditor } from "/views/body-editor.js";
 import { Facts, Warnings } from "/views/body-facts.js";
 import { BodyFile } from "/views/body-file.js";
@@ -59,9 +60,8 @@ const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, fa
       <div class="refusal" role="alert" data-testid="body-refusal">
         ${refused && html`<${Note} kind="error" words=${refused.message} />`}
         ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${OLDER}`} />`}</div>
-      <${Drawn} draw=${drawn} of=${[facts]} />
-      <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div>
-      <${PictureTools} app=${app} what="body" /><//>
+      <div ...${facts && aboutOf(facts)}><${Pictured} title="The body to scale"><${Drawn} draw=${drawn} of=${[facts]} /><//></div>
+      <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div><//>
     <${Card} title="Numbers" kind=${kind}>
       <div class="stack" data-testid="body-facts">${facts && html`<${Facts} app=${app} facts=${facts} />`}</div><//>`;
 };

@@ -1,6 +1,7 @@
 /** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
 
 import { html, useEffect, useSignal } from "/parts/preact.js";
+import { Fetched } from "/charts/pictured.js";
 import { Button, Choice, Note } from "/parts/fields.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
@@ -18,11 +19,8 @@ export const Studies = ({ app, asked }) => {
   };
   useEffect(() => void (refused.value = ""), [chosen.value]);
   const study = all.value.find(({ id }) => id === chosen.value);
-  /** @param {string} kind @param {string} what */
-  const path = (kind, what) => `/api/studies/${study.id}/export.${kind}?what=${what}`;
-  /** @param {string} kind @param {string} what @param {string} words */
-  const save = (kind, what, words) => html`<${Button} aria-label=${`${words} as ${kind.toUpperCase()}`}
-    onClick=${() => app.download(path(kind, what), undefined, `${what}.${kind}`)}>${words}, ${kind.toUpperCase()}<//>`;
+  /** @param {string} kind */
+  const path = (kind) => `studies/${study.id}/export.${kind}`;
   return html`
     <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
@@ -30,10 +28,10 @@ export const Studies = ({ app, asked }) => {
         <${Choice} label="Study" translate=${false} value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value ? html`<${Note} data-testid="not-compared" words=${refused.value} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
-          <img key=${chosen.value} class="drawing" onLoad=${() => (drawn.value = chosen.value)} src=${path("svg", "differences")} alt=${`${study.name}: its models side by side, and what the choice changes`}
+          <${Fetched} key=${chosen.value} title=${`Models compared: ${study.name}`} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${`${study.name}: its models side by side, and what the choice changes`}
             onError=${() => (refused.value = "There is nothing to compare in it: it was asked with one model, or with more than six.")} />
-          <div class="toolbar" role="group" aria-label="Take away the comparison">
-            ${save("svg", "differences", "Picture")}${save("png", "differences", "Picture")}
-            ${study.kind !== "minimum-acceleration" && TABLES.map(([what, words]) => save("csv", what, words))}</div>`}`}
+          ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Take away the comparison">
+            ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${`${words} as CSV`}
+              onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${words}, CSV<//>`)}</div>`}`}`}
     </section>`;
 };

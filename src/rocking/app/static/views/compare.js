@@ -7,6 +7,7 @@ import { number } from "/app/format.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
+import { aboutOf } from "/views/about.js";
 import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { About } from "/views/compare-about.js";
 import { Studies } from "/views/compare-studies.js";
@@ -102,7 +103,7 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
     ${there.length > 0 && html`
       <div class=${`verdict-part ${old}`}>
         <${Banner} kind=${verdictKind(there)} sentences=${found.value && sentencesOf(found.value, there)} testid="compare-verdict" /></div>
-      <div class=${`compare ${old}`}>
+      <div class=${`compare ${old}`} ...${found.value && aboutOf(found.value.body, found.value.motion, shown.length === 1 ? [wordsOf(shown[0].label)] : [])}>
         <div class="compare-models">
           <section class="card" aria-labelledby="compare-models-title"><h2 id="compare-models-title">Models</h2>
             <${Models} answers=${answers} hidden=${hidden.value} opened=${opened} toggle=${toggle} margins=${margins} />

@@ -1,13 +1,12 @@
 /** The Impact view: what an impact costs under every model, against what was measured. */
 
-import { html, render, useMemo, useRef, useSignal } from "/parts/preact.js";
-import { chartFiles } from "/charts/save.js";
-import { stillOf } from "/charts/still.js";
+import { html, render, useSignal } from "/parts/preact.js";
+import { Pictured } from "/charts/pictured.js";
 import { ledgerPicture } from "/drawing/ledger-picture.js";
-import { PictureTools } from "/drawing/picture-tools.js";
 import { stagesPicture } from "/drawing/stages-picture.js";
 import { Card, Note, Segmented, sentence } from "/parts/fields.js";
-import { Drawn, Made } from "/parts/made.js";
+import { Drawn } from "/parts/made.js";
+import { aboutOf } from "/views/about.js";
 import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { Laboratory } from "/views/impact-bed.js";
 import { Evidence, slendernessOf } from "/views/impact-evidence.js";
@@ -45,7 +44,7 @@ const Impact = ({ app, asked, faulty }) => {
     <div class="refusal" role="alert" data-testid="impact-refusal">
       ${wrong && html`<${Note} kind="error" words=${`${sentence(wrong)}${answer ? ` ${OLDER}` : ""}`} />`}</div>
     ${!answer && !wrong && html`<p class="waiting">Computing</p>`}
-    <div class=${`stack results ${wrong ? "stale" : ""}`} data-testid="impact-results" hidden=${!answer}>
+    <div class=${`stack results ${wrong ? "stale" : ""}`} data-testid="impact-results" hidden=${!answer} ...${answer && aboutOf(answer.body)}>
       ${answer && html`<${Results} app=${app} answer=${answer} />`}</div>`;
 };
 
@@ -55,36 +54,28 @@ const Results = ({ app, answer }) => {
   const feet = /** @type {Foot[]} */ (Object.keys(answer.coefficients));
   const foot = feet.find((each) => each === wanted.value) ?? feet[0];
   const of = [answer, foot];
-  /** @param {string} what */
-  const tools = (what) => html`<${PictureTools} app=${app} what=${what} query=${`?onto=${foot}`} />`;
+  const about = `Onto the ${foot} foot`;
+  /** @param {string} title @param {(answer: Server.ImpactAnswered, foot: Foot, width: number) => Child} draw @param {string} [lead] */
+  const pictured = (title, draw, lead = "") => html`<${Pictured} title=${title} about=${about}>
+    ${lead && html`<p class="lead">${lead}</p>`}<${Drawn} draw=${draw} of=${of} /><//>`;
   return html`
     ${feet.length > 1 && html`<${Segmented} label="The body lands on its" options=${FEET} value=${foot}
       on=${(next) => (wanted.value = next)} />`}
     <${Card} title="Coefficient of restitution">
       <${Coefficients} app=${app} answer=${answer} foot=${foot} /><${Warnings} answer=${answer} foot=${foot} /><//>
     <${Card} title="Against the published measurements">
-      <${Evidence} answer=${answer} foot=${foot} />${tools("coefficients")}<//>
+      <${Evidence} answer=${answer} foot=${foot} about=${about} /><//>
     <div class="columns two">
-      <${Pictured} title="Where the impulse acts" draw=${impulseRows} of=${of}
-        lead="Along the base: 0 is below the centre of mass of a block, 1 is the foot." />
-      <${Pictured} title="Where the energy goes, by KED" draw=${ledgerOf} of=${of}
-        lead=${"Kinetic energy kept and lost (hatched), from 100\u202f%."} />
+      <${Card} title="Where the impulse acts">
+        ${pictured("Where the impulse acts", impulseRows, "Along the base: 0 is below the centre of mass of a block, 1 is the foot.")}<//>
+      <${Card} title="Where the energy goes, by KED">
+        ${pictured("Where the energy goes, by KED", ledgerOf, "Kinetic energy kept and lost (hatched), from 100\u202f%.")}<//>
     </div>
-    <${Card} title="The three stages of KED"><${Drawn} draw=${stagesOf} of=${of} />${tools("stages")}<//>
+    <${Card} title="The three stages of KED">${pictured("The three stages of KED", stagesOf)}<//>
     <${Card} title="The contact bed">
       <p class="lead">An impact that takes its time, on springs and dashpots under a block as slender and wide as this body:
         what comes out of it, beside models of one instant.</p>
       <${Laboratory} app=${app} body=${blockLike(answer, foot)} /><//>`;
-};
-
-/** @param {{ title: string, lead: string, draw: (answer: Server.ImpactAnswered, foot: Foot, width: number) => Child, of: any[] }} props */
-const Pictured = ({ title, lead, draw, of }) => {
-  const place = useRef(null);
-  const files = useMemo(
-    () => chartFiles(title, () => stillOf(place.current.querySelector("svg"), `${title}, ${of[1]} foot`), "picture"), of,
-  );
-  return html`<${Card} title=${title}><p class="lead">${lead}</p>
-    <div ref=${place}><${Drawn} draw=${draw} of=${of} /></div><${Made} node=${files} class="chart-foot" /><//>`;
 };
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */

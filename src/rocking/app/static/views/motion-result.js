@@ -5,6 +5,7 @@ import { Figure } from "/charts/figure.js";
 import { detailed } from "/charts/zoom.js";
 import { Button, Card } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
+import { aboutOf } from "/views/about.js";
 import { Spectrum } from "/views/motion-spectrum.js";
 import { plainWords } from "/views/studies-words.js";
 
@@ -33,7 +34,7 @@ export const Result = ({ app, answer, part, time, stale }) => {
   /** @param {string} text @param {string} path @param {string} label */
   const saver = (text, path, label) => html`<${Button} aria-label=${label} onClick=${() => save(path)}>${text}<//>`;
   return html`
-    <div class=${`motion-result ${stale ? "stale" : ""}`} data-testid="motion-result">
+    <div class=${`motion-result ${stale ? "stale" : ""}`} data-testid="motion-result" ...${aboutOf({}, answer)}>
       <${Card} title="In short"><p class="motion-name" data-testid="motion-name">${plainWords(answer.name)}</p>
         <dl class="facts" data-testid="motion-facts">
           ${factsOf(answer).map(([word, text]) => html`<dt key=${word}>${word}</dt><dd>${text}</dd>`)}</dl><//>
@@ -42,8 +43,7 @@ export const Result = ({ app, answer, part, time, stale }) => {
           ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((one) => html`
             <${Trace} key=${one.key} trace=${one} series=${series} part=${part?.window ?? null} time=${time} />`)}</div>
         <p class="field-help">${of > shown && `${shown} of ${of} samples are drawn: the extremes of every dot. ${LOOK}`}</p>
-        <div class="toolbar">${saver("PNG", "picture/motion.png", "Motion as PNG")}
-          ${saver("SVG", "picture/motion.svg", "Motion as SVG")}${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
+        <div class="toolbar">${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
       <${Card} title="Response spectrum"><${Spectrum} spectrum=${answer.spectrum} />
         <div class="toolbar">${saver("CSV", "table/spectrum.csv", "Response spectrum as CSV")}</div><//>
       <${Card} title="Intensity measures"><div data-testid="motion-measures">

@@ -101,11 +101,15 @@ export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) 
   const rows = useMemo(() => ticked.map(({ label, impacts }) =>
     ({ colour: styleOf(label).colour, at: impacts.map(({ time_s: at }) => at) })), [ticked]);
   return kinds.map((kind) => html`<${OneFigure} key=${kind} kind=${kind} answers=${shown} lead=${first} rows=${rows}
+    ticked=${ticked.length === 1 ? wordsOf(ticked[0].label) : "each model in its colour"}
     part=${part?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);
 };
 
-/** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], part: Point | null, friction: number, time: Time, height: number }} props */
-const OneFigure = ({ kind, answers, lead, rows, part, friction, time, height }) => {
+/** @type {Words} */
+const DASHED = { rotation: "Dashed: the slenderness angles.", friction: "Dashed: the friction that is given." };
+
+/** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], ticked: string, part: Point | null, friction: number, time: Time, height: number }} props */
+const OneFigure = ({ kind, answers, lead, rows, ticked, part, friction, time, height }) => {
   const { title, y, series, data } = KINDS[kind];
   // the friction that is given stays in sight
   const held = kind === "friction" && { range: (/** @type {unknown} */ _, /** @type {number} */ low, /** @type {number | null} */ high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
@@ -116,6 +120,7 @@ const OneFigure = ({ kind, answers, lead, rows, part, friction, time, height }) 
   const marks = useMemo(() => ({
     ticks: rows,
     horizontal: kind === "rotation" ? [-1, 1] : kind === "friction" ? [friction] : [],
-  }), [rows, friction]);
+    words: [rows.some(({ at }) => at.length) && `Ticks on the axis: impacts of ${ticked}.`, DASHED[kind]].filter(Boolean).join(" "),
+  }), [rows, friction, ticked]);
   return html`<${Figure} shape=${shape} data=${columns} part=${part} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
 };

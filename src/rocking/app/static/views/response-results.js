@@ -72,22 +72,17 @@ export const Impacts = ({ app, answers, answer }) => {
       csv=${() => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv")} /></div></div><//>`;
 };
 
-/** @type {[string, string, boolean?][]} */
-const FILES = [
-  ["Picture, PNG", "picture/response.png"], ["Picture, SVG", "picture/response.svg"],
-  ["Curves, CSV", "table/response.csv", true], ["Animation, page", "animation.html", true],
-];
+const FILES = [["Curves, CSV", "table/response.csv"], ["Animation, page", "animation.html"]];
 
-/** Files of the response; what holds one model holds the one that is looked at, and says so.
+/** Files of the response, of the model that is looked at, and they say so.
  * @param {{ app: App, restitution?: Server.RestitutionTable }} props */
 export const TakeAway = ({ app, restitution }) => {
-  /** @param {typeof FILES[number]} file */
-  const save = ([, path, chosen]) =>
-    app.download(chosen ? pathOfChosen(path, restitution) : path, app.inputs.get(), path.replaceAll("/", "-"));
+  /** @param {string} path */
+  const save = (path) => app.download(pathOfChosen(path, restitution), app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);
   return html`<${Card} title="Take away">
-    <div class="toolbar">${FILES.map((file) => html`<${Button} key=${file[0]} onClick=${() => save(file)}>${file[0]}<//>`)}
+    <div class="toolbar">${FILES.map(([words, path]) => html`<${Button} key=${path} onClick=${() => save(path)}>${words}<//>`)}
       <${Film} app=${app}>Animation, GIF<//></div>
     <p class="field-help" data-testid="files-model">${labels.length > 1
-      && `Pictures show all models; curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p><//>`;
+      && `Curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p><//>`;
 };

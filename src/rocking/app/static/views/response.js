@@ -4,6 +4,7 @@ import { Button, Note } from "/parts/fields.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Player } from "/scene/player.js";
+import { aboutOf } from "/views/about.js";
 import { OLDER, createAnswer, faultsOf } from "/views/answer.js";
 import { chosenOf } from "/views/response-chosen.js";
 import { Controls, lean } from "/views/response-controls.js";
@@ -91,7 +92,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
     ${found.value && html`<div class=${`verdict-part ${old}`}>
       <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
       <${Cards} answers=${answers} lead=${lead} /></div>`}
-    <div class="response">
+    <div class="response" ...${found.value && aboutOf(found.value.body, found.value.motion, there.length === 1 ? [wordsOf(there[0].label)] : [])}>
       <div class="response-stage">
         <section class="card stage-scene" aria-label="The body on the ground"><h2>The body on the ground</h2>
           <${Scene} player=${player} body=${found.value?.body} answers=${there} lead=${lead} stale=${stale} /></section>

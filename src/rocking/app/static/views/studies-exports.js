@@ -3,13 +3,10 @@ import { html, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 
 const FILES = [
-  ["png", "PNG"], ["svg", "SVG"], ["csv", "CSV"], ["xlsx", "Excel"], ["mat", "MATLAB"], ["nc", "netCDF"],
-  ["parquet", "Parquet"], ["toml", "TOML job"], ["xml", "NRML"],
+  ["csv", "CSV"], ["xlsx", "Excel"], ["mat", "MATLAB"], ["nc", "netCDF"], ["parquet", "Parquet"], ["toml", "TOML job"],
+  ["xml", "NRML"],
 ];
 const FRAGILITIES = new Set(["stripes", "incremental", "cloud"]);
-
-/** What is drawn or written of one restitution alone. */
-const OF_ONE = new Set(["png", "svg", "xml"]);
 
 const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
 const CROSS = "These curves cross, which the file cannot hold. With one dispersion for all states they do not.";
@@ -17,17 +14,16 @@ const CROSS = "These curves cross, which the file cannot hold. With one dispersi
 /** @param {any} found @param {number} k */
 const hasFit = (found, k) => Object.keys(found.analyses?.[k]?.curves ?? {}).length > 0;
 
-/** Buttons that save the result of a study, pictures and curves of the restitution that is `chosen`.
+/** Buttons that save the result of a study, NRML of the restitution that is `chosen`.
  * @param {{ app: App, study: Server.StudyFacts, found: any, chosen: { restitution: number } }} props */
 export const Exports = ({ app, study, found, chosen }) => {
   const said = useSignal("");
   const fragility = FRAGILITIES.has(study.kind);
   const curveless = fragility && found.analyses.every((/** @type {unknown} */ _, /** @type {number} */ k) => !hasFit(found, k));
-  const offered = FILES.filter(([suffix]) => (suffix === "xml" ? fragility
-    : study.kind !== "histories" || !OF_ONE.has(suffix)));
+  const offered = FILES.filter(([suffix]) => suffix !== "xml" || fragility);
   /** @param {string} suffix @param {string} [more] */
   const fetched = (suffix, more = "") => {
-    const place = OF_ONE.has(suffix) ? `?restitution=${chosen.restitution}` : "";
+    const place = suffix === "xml" ? `?restitution=${chosen.restitution}` : "";
     return app.download(`/api/studies/${study.id}/export.${suffix}${place}${more}`, undefined, `study.${suffix}`);
   };
   const nest = async () => {

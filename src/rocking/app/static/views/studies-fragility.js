@@ -15,7 +15,8 @@ export const Fragility = ({ found, chosen }) => {
   const options = found.analyses.map(({ restitution }, value) => [String(value), modelWords(restitution)]);
   return html`
     ${options.length > 1 && html`<${Choice} label="Restitution" options=${options} value=${k} />`}
-    <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />`;
+    <div data-about=${options[chosen.restitution][1]}>
+      <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} /></div>`;
 };
 
 /** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */

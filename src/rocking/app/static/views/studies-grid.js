@@ -1,4 +1,6 @@
 /** A map on a canvas: cells, axes, and which cell is under a point. */
+import { svg } from "/app/dom.js";
+import { SvgPen } from "/charts/pen.js";
 import { colour } from "/charts/style.js";
 import { number, pretty } from "/app/format.js";
 import { words as inLanguage } from "/app/words.js";
@@ -8,6 +10,7 @@ const LEFT = 64;
 const BOTTOM = 52;
 const TOP = 12;
 const RIGHT = 14;
+const FINE = 2; // dots of a file for one of the page
 
 /** @param {number[]} values */
 const isGeometric = (values) => {
@@ -89,7 +92,7 @@ export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
   const up = axisOf(y);
   let size = { width: 300, height: 300 };
-  let dense = 1;
+  let ratio = 1; // dots of the screen for one of the page
   /** @type {{ by?: PaintOf, lines?: Lines }} */
   let painted = {};
   let seen = [WHOLE, WHOLE]; // shares of the axes
@@ -98,12 +101,12 @@ export const createGrid = (canvas, x, y) => {
   const fit = () => {
     const width = Math.max(240, canvas.parentElement?.clientWidth ?? 0);
     size = { width, height: Math.round(Math.min(0.78 * width, 520)) };
-    dense = window.devicePixelRatio || 1;
+    ratio = window.devicePixelRatio || 1;
     painted = {};
     for (const each of [canvas, still]) {
-      each.width = Math.round(size.width * dense);
-      each.height = Math.round(size.height * dense);
-      each.getContext("2d")?.setTransform(dense, 0, 0, dense, 0, 0);
+      each.width = Math.round(size.width * ratio);
+      each.height = Math.round(size.height * ratio);
+      each.getContext("2d")?.setTransform(ratio, 0, 0, ratio, 0, 0);
     }
     canvas.style.height = `${size.height}px`;
   };
@@ -138,8 +141,8 @@ export const createGrid = (canvas, x, y) => {
   };
 
   // Every dot of the screen has the colour of its cell: a map of a million cells costs no more than a small one.
-  /** @param {CanvasRenderingContext2D} pen @param {PaintOf} paintOf */
-  const imageOf = (pen, paintOf) => {
+  /** @param {CanvasRenderingContext2D} pen @param {PaintOf} paintOf @param {number} [dense] */
+  const imageOf = (pen, paintOf, dense = ratio) => {
     /** @param {number} from @param {number} length */
     const dots = (from, length) => Math.floor((from + length) * dense) - Math.ceil(from * dense);
     const [wide, high] = [dots(LEFT, inner().w), dots(TOP, inner().h)];
@@ -161,7 +164,9 @@ export const createGrid = (canvas, x, y) => {
     /** @param {GridAxis} axis @param {number[]} range */
     const ticks = ({ value, log }, [from, to]) => ticksOf({ log, low: value(from), high: value(to) });
     pen.font = "12px system-ui, sans-serif";
-    pen.strokeRect(LEFT, TOP, inner().w, inner().h);
+    pen.beginPath();
+    pen.rect(LEFT, TOP, inner().w, inner().h);
+    pen.stroke();
     pen.textAlign = "center";
     pen.textBaseline = "top";
     for (const value of ticks(across, seen[0])) {
@@ -193,14 +198,31 @@ export const createGrid = (canvas, x, y) => {
     pen.restore();
   };
 
+  /** @param {CanvasRenderingContext2D} pen @param {Lines} lines */
+  const drawOver = (pen, lines) => {
+    within(pen, () => drawLines(pen, lines));
+    drawAxes(pen);
+  };
+
+  /** The part that is seen, without what follows the pointer, for a file. @param {PaintOf} paintOf @param {Lines} lines */
+  const asSvg = (paintOf, lines) => {
+    const cells = Object.assign(document.createElement("canvas"), { width: FINE * inner().w, height: FINE * inner().h });
+    const brush = /** @type {CanvasRenderingContext2D} */ (cells.getContext("2d"));
+    const image = imageOf(brush, paintOf, FINE);
+    if (image) brush.putImageData(image, 0, 0);
+    const pen = new SvgPen();
+    drawOver(/** @type {any} */ (pen), lines);
+    const where = { x: LEFT, y: TOP, width: inner().w, height: inner().h, preserveAspectRatio: "none" };
+    return svg("svg", { viewBox: `0 0 ${size.width} ${size.height}` }, svg("image", { ...where, href: cells.toDataURL() }), pen.node);
+  };
+
   /** @param {PaintOf} paintOf @param {Lines} lines */
   const drawStill = (paintOf, lines) => {
     const pen = /** @type {CanvasRenderingContext2D} */ (still.getContext("2d"));
     pen.clearRect(0, 0, size.width, size.height);
     const image = imageOf(pen, paintOf);
-    if (image) pen.putImageData(image, Math.ceil(LEFT * dense), Math.ceil(TOP * dense));
-    within(pen, () => drawLines(pen, lines));
-    drawAxes(pen);
+    if (image) pen.putImageData(image, Math.ceil(LEFT * ratio), Math.ceil(TOP * ratio));
+    drawOver(pen, lines);
     painted = { by: paintOf, lines };
   };
 
@@ -272,7 +294,7 @@ export const createGrid = (canvas, x, y) => {
     look(...places.map((place, k) => around(place, seen[k][1] - seen[k][0])));
   };
   const isWhole = () => seen.every(([from, to]) => to - from > 1 - 1e-9);
-  return { fit, draw, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
+  return { fit, draw, asSvg, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
 };
 
 /** @param {MapAxis} axis @param {number} room */

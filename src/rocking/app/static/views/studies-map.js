@@ -1,6 +1,7 @@
 /** An overturning map: point at a cell to see what is there, click it or walk to it to keep its history. */
 import { batch, html, useLayoutEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { modelWords } from "/app/palette.js";
+import { Pictured } from "/charts/pictured.js";
 import { onTheme } from "/charts/style.js";
 import { Button, Choice, Segmented } from "/parts/fields.js";
 import { Cell, createCell } from "/views/studies-cell.js";
@@ -35,6 +36,8 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
     found.contours?.[k.value] ?? NONE,
   ], [k.value]);
   const layer = layers.find(({ value }) => value === wanted.value) ?? layers[0];
+  /** @param {Layer} of */
+  const linesOf = (of) => (of.value === "difference" ? NONE : lines);
   /** @param {() => unknown} how */
   const look = (how) => {
     how();
@@ -53,7 +56,7 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
       forget();
     };
   }, []);
-  useLayoutEffect(() => painter.current.draw(layer.paint, [kept.value, aim.value], layer.value === "difference" ? NONE : lines, frame.value));
+  useLayoutEffect(() => painter.current.draw(layer.paint, [kept.value, aim.value], linesOf(layer), frame.value));
 
   /** @param {Cell} at */
   const keep = (at) => batch(() => {
@@ -91,23 +94,25 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
     canvas.current.focus();
     look(painter.current.whole);
   };
+  const looked = kept.value ?? aim.value;
   const leave = () => (aim.value = kept.value ?? aim.value);
   return html`<div class="study-result">
-    <div class="map">
+    <div class="map" data-about=${modelWords(found.restitutions[k.value])}>
       <div class="map-choices">
         ${several && html`<${Choice} label="Restitution" value=${k.value} on=${choose} options=${found.restitutions.map((label, value) => [value, modelWords(label)])} />`}
         <${Segmented} label="Show" value=${layer.value} on=${(value) => (wanted.value = value)} options=${layers.map(({ value, text }) => [value, text])} />
       </div>
-      <div class="map-stage"><canvas ref=${canvas} class="map-canvas" tabindex="0" role="application" data-testid="map-canvas"
-        aria-label=${`Map of ${greek(found.x.words)} and ${greek(found.y.words)}; arrow keys move from cell to cell, `
-          + "Enter opens the history in Response, plus and minus look closer and from further away, 0 shows all"}
-        onKeyDown=${walk} onPointerLeave=${leave} ...${pointer}></canvas></div>
+      <${Pictured} title="Overturning map" more=${`: ${layer.text}`} canvasOf=${() => painter.current.asSvg(layer.paint, linesOf(layer))}>
+        <div class="map-stage"><canvas ref=${canvas} class="map-canvas" tabindex="0" role="application" data-testid="map-canvas"
+          aria-label=${`Map of ${greek(found.x.words)} and ${greek(found.y.words)}; arrow keys move from cell to cell, `
+            + "Enter opens the history in Response, plus and minus look closer and from further away, 0 shows all"}
+          onKeyDown=${walk} onPointerLeave=${leave} ...${pointer}></canvas></div>
+        <ul class="map-legend">${layer.legend.map(({ paint, words }) => html`
+          <li key=${words}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${words}</li>`)}</ul><//>
       <div class="toolbar"><${Button} hidden=${looks.value === 0 || painter.current.isWhole()} onClick=${whole}>Show the whole map<//></div>
-      <ul class="map-legend">${layer.legend.map(({ paint, words }) => html`
-        <li key=${words}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${words}</li>`)}</ul>
       <p class="map-told" aria-live="polite" data-testid="map-told">${aim.value ? cellWords(found, k.value, aim.value) : START}</p>
     </div>
-    <${Cell} cell=${cell} />
+    <div data-about=${looked ? cellWords(found, k.value, looked) : ""}><${Cell} cell=${cell} /></div>
   </div>`;
 };
 

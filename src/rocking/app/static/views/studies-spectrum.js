@@ -14,6 +14,9 @@ export const Spectrum = ({ found }) => {
   const count = found.motions.values.length;
   const share = what.value === "overturned";
   const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (what.value)])], [what.value]);
+  const marks = useMemo(() => ({
+    words: count === 1 ? "A gap is a block that overturns." : `Over ${count} motions; a gap is where they overturn the block.`,
+  }), []);
   const shape = {
     title: share ? "Share of the motions that overturn the block" : "Peak rotation over the slenderness angle",
     height: 340,
@@ -23,9 +26,9 @@ export const Spectrum = ({ found }) => {
   };
   return html`
     ${count > 1 && html`<${Segmented} label="Show" options=${SHOWN} value=${what} />`}
-    <${Figure} shape=${shape} data=${data} testid="spectrum-chart" />
-    <p class="quiet">${count === 1 ? "A gap is a block that overturns."
-      : `Over ${count} motions; a gap is where they overturn the block.`}</p>`;
+    <div data-about=${found.restitutions.map(modelWords).join(", ")}>
+      <${Figure} shape=${shape} data=${data} marks=${marks} testid="spectrum-chart" /></div>
+    <p class="quiet">${marks.words}</p>`;
 };
 
 /** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */

@@ -90,7 +90,7 @@ const Outcome = ({ app, shown, from, found, refused, chosen }) => {
   return html`
     <section class="card study-outcome">
       <h2 ref=${heading} class="study-result-title" tabindex="-1" translate=${false}>${shown.name}</h2>
-      <div class="study-result" data-testid="study-result">
+      <div class="study-result" data-testid="study-result" data-own=${shown.name}>
         ${refused ? html`<p class="error-text">${refused}</p>` : !found ? html`<p class="quiet">Reading the result \u2026</p>` : html`
           ${found.contact && html`<p class="note" data-testid="study-contact">${found.contact}</p>`}
           <${Found} key=${shown.id} app=${app} study=${shown} found=${found} chosen=${chosen} />

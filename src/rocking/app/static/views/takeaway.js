@@ -5,13 +5,6 @@ import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.j
 import { wordsOf } from "/views/response-labels.js";
 import { Film } from "/views/takeaway-film.js";
 
-const PICTURES = [
-  ["body", "Body"],
-  ["coefficients", "Coefficients against the measurements"],
-  ["stages", "KED's three stages"],
-  ["motion", "Motion and spectrum", "motion"],
-  ["response", "Response", "response"],
-];
 /** @type {[string, string, string[], string?][]} */
 const TABLES = [
   ["body", "Body", ["csv", "xlsx"]],
@@ -24,7 +17,7 @@ const TABLES = [
 ];
 /** @type {Words} */
 const NAMES = {
-  csv: "CSV", xlsx: "Excel", mat: "MATLAB", nc: "netCDF", png: "PNG", svg: "SVG", html: "Web page", toml: "TOML",
+  csv: "CSV", xlsx: "Excel", mat: "MATLAB", nc: "netCDF", html: "Web page", toml: "TOML",
   zip: "ZIP with the record", pdf: "PDF",
 };
 
@@ -66,9 +59,9 @@ const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
         <${Card} title="Report">
           <p class="quiet">Body, coefficients against the measurements, motion, response and impacts, with where every number comes from.</p>
           <div class="toolbar">${file("report.pdf", "Report", "response", "take-report")}</div><//>
-        <${Card} title="Pictures"><ul>
-          ${PICTURES.map(([what, name, needs]) => row(name, ["png", "svg"].map((kind) => file(`picture/${what}.${kind}`, name, needs))))}
-          ${row("Animation", file("animation.html", "Animation", "response"), html`<${Film} app=${app} aria-label="Animation as GIF"
+        <${Card} title="Pictures">
+          <p class="quiet">Every figure is saved where it stands: open \u201cSave\u201d below it.</p>
+          <ul>${row("Animation", file("animation.html", "Animation", "response"), html`<${Film} app=${app} aria-label="Animation as GIF"
             data-testid="animation-gif" disabled=${!moves}>GIF<//>`)}</ul><//>
       </div>
       <div class="takeaway-part"><${Card} title="Tables">

@@ -1,0 +1,24 @@
+/** How wide words are, and where lines end. */
+
+const pen = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
+
+/** @param {{ fontWeight: string, fontSize: string, fontFamily: string }} style */
+export const fontOf = ({ fontWeight, fontSize, fontFamily }) => `${fontWeight} ${fontSize} ${fontFamily}`;
+
+/** Words in letters of a font. @param {string} words @param {string} [font] */
+export const measured = (words, font = "12px system-ui, sans-serif") => {
+  pen.font = font;
+  return pen.measureText(words);
+};
+
+/** Words in lines of no more than a width. @param {string} words @param {number} width @param {string} font */
+export const wrapped = (words, width, font) => {
+  /** @type {string[]} */
+  const lines = [];
+  for (const piece of words.match(/[\u2e80-\u9fff]|[^ \u2e80-\u9fff]+ ?/g) ?? []) {
+    const longer = `${lines.at(-1) ?? ""}${piece}`;
+    if (lines.length && measured(longer.trimEnd(), font).width <= width) lines[lines.length - 1] = longer;
+    else lines.push(piece);
+  }
+  return lines.map((line) => line.trimEnd());
+};

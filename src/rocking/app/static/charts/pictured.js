@@ -1,0 +1,33 @@
+/** Figures that are no line charts, with the menus that save them as they are seen. */
+
+import { html, useMemo, useRef } from "/parts/preact.js";
+import { fetchFile } from "/app/api.js";
+import { say } from "/app/say.js";
+import { chartFiles, menuOf, saveFile, savePngOf } from "/charts/save.js";
+import { stillOf } from "/charts/still.js";
+import { Made } from "/parts/made.js";
+
+/** What is in it is one figure; its file says more than its `title`, and `canvasOf` draws again what is on a canvas.
+ * @param {{ title: string, more?: string, about?: string, canvasOf?: (canvas: HTMLCanvasElement) => SVGElement, children?: any }} props */
+export const Pictured = ({ title, more = "", about = "", canvasOf, children }) => {
+  const place = useRef(null);
+  const given = useRef(/** @type {any} */ (null));
+  given.current = { title: title + more, about, canvasOf };
+  const files = useMemo(() => chartFiles(title, () => ({
+    title: given.current.title,
+    about: given.current.about,
+    node: stillOf(place.current, given.current.canvasOf),
+    alt: [...place.current.querySelectorAll("[role=img]")].map((each) => each.getAttribute("aria-label")).join(" "),
+  }), "picture"), [title]);
+  return html`<div ref=${place} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
+};
+
+/** A figure that the server draws: its file is what is shown. @param {{ title: string, path: string, [more: string]: any }} props */
+export const Fetched = ({ title, path, ...more }) => {
+  const files = useMemo(() => {
+    /** @param {(file: Blob, title: string) => unknown} save */
+    const saved = (save) => () => fetchFile(path).then((file) => save(file, title)).catch((error) => say(error.message, "error"));
+    return menuOf(title, "picture", [["PNG", saved(savePngOf)], ["SVG", saved((file) => saveFile(file, title, "svg"))]]);
+  }, [title, path]);
+  return html`<div><img class="drawing" src=${`/api/${path}`} ...${more} /><${Made} node=${files} class="chart-foot" /></div>`;
+};
