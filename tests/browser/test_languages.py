@@ -209,6 +209,8 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
     made += [one.reason for one in parse_inventory(LIST).not_assessed]
     made += ["Choose files", "a.csv: column 'b' states no unit: say it under \u201cUnit\u201d.", "from a file"]
+    made += ["How it can stand: a.stl", "At 0.10 s: tilted 2.00°, on 4 points, 2 sliding; it has overturned."]
+    made += ["400 \u00d7 250 \u00d7 1200 mm, 288 kg, centre 600 mm over the ground.", "3 records for eurocode8:"]
     made += ["Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
     made = [text for text in dict.fromkeys(made) if len(re.findall(r"\b[a-z]{2,}\b", text)) >= 2]
     assert len(made) > 110

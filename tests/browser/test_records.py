@@ -1,5 +1,6 @@
 """The door of records: corrected step by step, before and after; sets of them for a spectrum; all crossings."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,19 @@ def saved(page: Any, button: Any, path: Path) -> Path:
         button.click()
     told.value.save_as(path)
     return path
+
+
+def test_a_spectrum_says_what_it_needs(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Without its acceleration no spectrum is asked for: the field says so, and has the keyboard."""
+    page = open_page(view="records")
+    section = page.locator("#view-records")
+    section.get_by_label(DROP).set_input_files(record(tmp_path / "hall.txt", 1.0))
+    section.get_by_label("What is shown").select_option("target")
+    ground = section.get_by_role("textbox", name=re.compile("^ag "))
+    section.get_by_role("button", name="Ask", exact=True).click()
+    expect(ground).to_be_focused()
+    expect(ground).to_have_accessible_description("A number is needed here.")
+    expect(section.get_by_test_id("outcome")).to_have_count(0)
 
 
 def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any], tmp_path: Path) -> None:

@@ -41,7 +41,8 @@ const Records = ({ app, questions }) => {
     event.preventDefault();
     wrong.value = !records.length ? { key: "files", words: "No record was sent yet." }
       : shown === "target" && form.value.code === "file" && !curve.length
-        ? { key: "curve", words: "The file of the spectrum was not sent yet." } : "";
+        ? { key: "curve", words: "The file of the spectrum was not sent yet." }
+        : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), words: "A number is needed here." } : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
     const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
@@ -78,6 +79,11 @@ const shownOf = ({ shown }, records) => {
   if (["all", "target"].includes(shown) || records.some(({ name }) => name === shown)) return shown;
   return records.length > 1 ? "all" : records[0]?.name ?? "";
 };
+
+/** The first key of the target spectrum that is needed and was not typed.
+ * @param {{ code: string, of: { [code: string]: { [key: string]: string } | undefined } }} form @param {App} app */
+const missingOf = ({ code, of }, app) => Object.entries(app.info.targets[code]?.keys ?? {})
+  .find(([key, { needed }]) => needed && !of[code]?.[key]?.trim())?.[0];
 
 /** The steps as job files and the command line have them. @param {RecordStep[]} steps */
 const chainOf = (steps) => steps.map(({ name, keys }) => {

@@ -169,21 +169,22 @@ const Answer = ({ answer, question, onPose }) => {
   return html`
     <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}.</p>
     <${MotionScene} question=${question} answer=${answer} />
-    <p>Largest tilt ${number((answer.peak_tilt_rad * 180) / Math.PI, 4)}\u00b0, ${answer.impacts.length} impacts;
-      slid ${number(1000 * answer.sliding_distance_m, 3)} mm at most.</p>
+    <p>${`Largest tilt ${number((answer.peak_tilt_rad * 180) / Math.PI, 4)}\u00b0, impacts: ${answer.impacts.length}; slid ${number(1000 * answer.sliding_distance_m, 3)} mm at most.`}</p>
     <${Drawing} question=${question} alt="Tilt, direction and energy over time" />
     ${scan}`;
 };
 
 /** @param {{ body: any, repairs: string[], own: boolean }} props */
-const Taken = ({ body, repairs, own }) => html`
+const Taken = ({ body, repairs, own }) => {
+  const size = body.size_m.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
+  return html`
   <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
-  <p>${body.size_m.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ")} mm, ${number(body.mass_kg, 4)} kg,
-    centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.</p>
+  <p>${`${size} mm, ${number(body.mass_kg, 4)} kg, centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.`}</p>
   <ul class="space-repairs" aria-label="What was mended">
     ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`) : html`<li>Nothing had to be mended.</li>`}
     ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}.</li>`)}
   </ul>`;
+};
 
 /** @param {string} words */
 const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}`;
