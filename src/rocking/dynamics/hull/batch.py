@@ -17,10 +17,9 @@ from rocking.dynamics.hull.histories import HullRows, hull_histories, numbers_of
 from rocking.dynamics.hull.response import settings_on_hull
 from rocking.dynamics.hull.restitution import RestitutionOnHull, law_on_hull
 from rocking.dynamics.parameters import UNIMPOSED
-from rocking.dynamics.response_base import motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.batch import SpatialBatch, made_or_refused
+from rocking.dynamics.space.batch import SpatialBatch, made_or_refused, provenance_of
 from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
@@ -71,14 +70,10 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
         "restitution": [str(law) for law in laws], "friction": frictions.tolist(),
     }  # fmt: skip
     stated = {name: value for name, value in settings.stated.items() if name != "friction"}
-    leans = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in leaning if s.valid]
     facts = [None if b is None else [b.mass, b.centre.tolist(), len(b.points)] for b in made]
-    source = {
-        "duration_s": "until it rests after the motion" if duration is None else float(duration),
-        **{f"setting_{name}": value for name, value in stated.items()},
-        "motions": json.dumps([[motion_provenance(part) for part in motion or ()] for motion in motions]),
-        "starts": json.dumps(leans), "bodies": json.dumps(facts),
-    }  # fmt: skip
+    under = [motion or () for motion in motions]
+    source = provenance_of(stated, under, leaning, duration, "until it rests after the motion")
+    source |= {"bodies": json.dumps(facts)}
     return replace(found, values=values, labels=labels, refused=refused, provenance=source)
 
 

@@ -133,8 +133,8 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     labels: dict[str, list[object]] = {
         "motion": list(names), "scale": factors.tolist(), "restitution": [law.label for law in laws]
     }  # fmt: skip
-    source = _provenance(several, motion_list, starts, settings, duration)
-    return SpatialBatch(shape, values, used, labels, refused, source)
+    source = provenance_of(settings.stated, motion_list, starts, duration, "to the end of the motion")
+    return SpatialBatch(shape, values, used, labels, refused, source | _of_bodies(several))
 
 
 def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | None, gravity: float) -> float:
@@ -231,22 +231,25 @@ def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     return results, [*counts, len(history.impacts), uplifts, len(events), len(history.pieces), int(still)]
 
 
-def _provenance(
-    bodies: Bodies, motions: list[Any], starts: list[SpatialStart], settings: Settings, duration: float | None
+def provenance_of(
+    stated: dict[str, Any], motions: Sequence[Any], starts: Sequence[SpatialStart], duration: float | None, usual: str
 ) -> dict[str, Any]:
-    """Return of what a batch was computed, beside its labels; bodies and starts as JSON, and a digest of all bodies.
-
-    >>> facts = _provenance([SpatialBody.box(1.0, 1.0, 4.0)], [None], [SpatialStart()], Settings(), None)
-    >>> facts["duration_s"], len(json.loads(facts["bodies"]))
-    ('to the end of the motion', 1)
-    """
-    spelled = json.dumps([None if body is None else body.facts for body in bodies])
+    """Return of what a batch was computed, beside its labels and bodies; usual: how long where nobody says."""
     leaning = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in starts if s.valid]
     return {
-        "duration_s": "to the end of the motion" if duration is None else float(duration),
-        **{f"setting_{name}": value for name, value in settings.stated.items()},
+        "duration_s": usual if duration is None else float(duration),
+        **{f"setting_{name}": value for name, value in stated.items()},
         "motions": json.dumps([[motion_provenance(part) for part in _components(motion)] for motion in motions]),
         "starts": json.dumps(leaning),
-        **({"bodies": spelled} if len(bodies) <= _FEW else {}),
-        "bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest(),
     }
+
+
+def _of_bodies(bodies: Bodies) -> dict[str, Any]:
+    """Return bodies as JSON, and a digest of all of them.
+
+    >>> len(json.loads(_of_bodies([SpatialBody.box(1.0, 1.0, 4.0)])["bodies"]))
+    1
+    """
+    spelled = json.dumps([None if body is None else body.facts for body in bodies])
+    digest = {"bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest()}
+    return ({"bodies": spelled} if len(bodies) <= _FEW else {}) | digest
