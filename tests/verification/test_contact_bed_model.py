@@ -37,6 +37,12 @@ def most(cases: FloatArray) -> FloatArray:
     return np.sqrt((gyration + (1.0 + offset) ** 2) / (gyration + (1.0 - offset) ** 2))
 
 
+def coarser(table: BedTable) -> BedTable:
+    """A quarter of the nodes of damping and hardness."""
+    thin = np.ascontiguousarray(table.positions[..., ::4, ::4])
+    return BedTable(table.flatness, table.offset, table.damping[::4], table.hardness[::4], thin)
+
+
 def read(table: BedTable, points: int, cases: FloatArray) -> FloatArray:
     found = []
     for flatness, offset, damping, hardness in cases.tolist():
@@ -58,7 +64,7 @@ def test_stated_error(points: int) -> None:
     stated = stated_error(points, 1.0, cases[:, 0])
     assert (np.abs(read(bed_table(), points, cases) - exact) <= stated).all()
     if points > 2:  # negative control; two points are Housner's impact, the same everywhere in the table
-        assert (np.abs(read(bed_table().coarser(), points, cases) - exact) > stated).any()
+        assert (np.abs(read(coarser(bed_table()), points, cases) - exact) > stated).any()
 
 
 @pytest.mark.verifies("behaviour")

@@ -97,11 +97,6 @@ class BedTable:
         second = (1.0 - along) * plane[i + 1, j, *own] + along * plane[i + 1, j + 1, *own]
         return np.asarray((1.0 - across) * first + across * second)
 
-    def coarser(self) -> "BedTable":
-        """Return the table with a quarter of its nodes of damping and hardness: what its error would be then."""
-        thin = np.ascontiguousarray(self.positions[..., ::4, ::4])
-        return BedTable(self.flatness, self.offset, self.damping[::4], self.hardness[::4], thin)
-
 
 def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the nodes of the table."""

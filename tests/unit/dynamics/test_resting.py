@@ -183,9 +183,6 @@ def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
         slope = (potential[1] - potential[0]) / (2.0 * h)
         found = float(equations.angular_acceleration(at, 1, ALPHA, P, 0.0, linear=linear))
         assert found == pytest.approx(-(P**2) * slope, rel=1e-8)
-        assert float(equations.holding_moment(1, ALPHA, 0.0, linear=linear)) == pytest.approx(
-            ALPHA if linear else math.sin(ALPHA), rel=1e-15, abs=0.0
-        )
 
 
 UNEVEN = RockingParameters(

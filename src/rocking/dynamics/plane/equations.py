@@ -24,13 +24,6 @@ def angular_acceleration(
     return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))  # Eq. 14
 
 
-def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
-    """Return ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)``, over m g R."""
-    # a body at rest lifts where it is < 0
-    sine, cosine = (np.asarray(alpha), 1.0) if linear else (np.sin(alpha), np.cos(alpha))
-    return np.asarray(np.asarray(weight) * sine + np.asarray(side) * np.asarray(push) * cosine)  # Eq. 24
-
-
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
     """Return energy above rest over m g R, ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-]."""
     size, angle = np.abs(rotation), np.asarray(alpha)
