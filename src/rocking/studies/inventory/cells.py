@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from rocking import checks
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory import header_words
-from rocking.studies.inventory.columns import FACTORS, UNITS, plain, side_of, words_of
+from rocking.studies.inventory.columns import FACTORS, UNITS, WORDS, plain, side_of, words_of
 from rocking.studies.inventory.sheets import Cell, Shown
 
 ABOUT = 0.05
@@ -68,9 +67,9 @@ class DecimalMark:
 _LONGEST = 200
 _SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
 _OTHERWISE = 0.5  # two sizes that are no size and what it might be instead [-]
-_ABOUT = "|".join(sorted(words_of(header_words.ABOUT), key=len, reverse=True))
-_WITH = "|".join(words_of(header_words.WITH))
-_UNKNOWN = words_of(header_words.UNKNOWN)
+_ABOUT = "|".join(sorted(words_of(WORDS["about"]), key=len, reverse=True))
+_WITH = "|".join(words_of(WORDS["with"]))
+_UNKNOWN = words_of(WORDS["unknown"])
 _FRACTION = r"[0-9]{1,2}/(?:2|3|4|8|16|32|64)(?![0-9])"  # as of inches: 120/130 is none
 _ONE = rf"{_FRACTION}|[0-9]+(?:[.,][0-9]+)?(?: {_FRACTION})?"
 _UNIT = rf"(?:(?!(?:{_WITH})\b)[^\W\d]{{1,15}}\.?|['\"])"
@@ -285,4 +284,4 @@ def count_of(cell: Cell) -> int | None:
     return int(match[1]) * (2 if match[2] in _PAIRS else 1)
 
 
-_PAIRS = words_of(header_words.PAIRS)
+_PAIRS = words_of(WORDS["pairs"])

@@ -5,13 +5,18 @@
 import csv
 import difflib
 import re
+import tomllib
 import unicodedata
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory import header_words
+
+WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("header_words.toml").read_text("utf-8"))
+"""Words of lists in seven languages: of headers, by what the column holds, and of cells."""
 
 SIZES = ("width", "depth", "height", "length", "diameter")
 LENGTHS = (*SIZES, "base", "base_width", "base_depth", "base_diameter", "pedestal", "centre_of_mass_height")
@@ -49,13 +54,13 @@ def words_of(text: str) -> set[str]:
 
 _HEADERS = {
     language: {word: field for field, text in fields.items() for word in words_of(text)}
-    for language, fields in header_words.HEADERS.items()
+    for language, fields in WORDS["headers"].items()
 }
-UNITS = {word: unit for unit, text in header_words.UNITS.items() for word in words_of(text)}
+UNITS = {word: unit for unit, text in WORDS["units"].items() for word in words_of(text)}
 _MEASURED = {
     word for words in _HEADERS.values() for word, field in words.items() if field in _MEASURES and len(word) > 1
 }
-_TELLING = words_of(header_words.TELLING) | {token for word in _MEASURED for token in word.split() if len(token) > 3}
+_TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token in word.split() if len(token) > 3}
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
 
 
@@ -139,7 +144,7 @@ def side_of(token: str, language: str = "en") -> str:
     """Return which measure a letter or word stands for."""
     if token == "ø":
         return "diameter"
-    found = header_words.SIDES.get(token) or _stem(token, language)[0]
+    found = WORDS["sides"].get(token) or _stem(token, language)[0]
     return found if found in SIZES else ""
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
 from rocking.language import language
-from rocking.studies.inventory import header_words
 from rocking.studies.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
 from rocking.studies.inventory.columns import (
     FACTORS,
@@ -16,6 +15,7 @@ from rocking.studies.inventory.columns import (
     TEXTS,
     UNITS,
     WEIGHTS,
+    WORDS,
     Header,
     InventoryColumn,
     check_header,
@@ -40,7 +40,7 @@ from rocking.studies.inventory.sheets import (
 )  # fmt: skip
 
 _HIGHEST_HEADER = 50  # rows of titles above it
-_TOTALS = words_of(header_words.TOTALS)
+_TOTALS = words_of(WORDS["totals"])
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ def _no_header(source: str, tried: Sequence[tuple[_Found, Sequence[Row]]]) -> In
     first = next((text_of(cell) for _, rows in tried for _, row in rows[:1] for cell in row), "")
     return InvalidValueError(
         f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft; or "
-        f"their words in {', '.join(header_words.HEADERS)}) with commas, semicolons or tabs between, got {first[:99]!r}"
+        f"their words in {', '.join(WORDS['headers'])}) with commas, semicolons or tabs between, got {first[:99]!r}"
     )
 
 

@@ -8,13 +8,12 @@ from typing import Any
 from rocking.bodies import Block, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory import header_words
 from rocking.studies.inventory.cells import CellMeasure, is_missing
-from rocking.studies.inventory.columns import plain, words_of
+from rocking.studies.inventory.columns import WORDS, plain, words_of
 from rocking.studies.inventory.sheets import Cell
 
-_SHAPES = {word: shape for shape, text in header_words.SHAPES.items() for word in words_of(text)}
-_CONSEQUENCES = {word: level for level, text in header_words.CONSEQUENCES.items() for word in words_of(text)}
+_SHAPES = {word: shape for shape, text in WORDS["shapes"].items() for word in words_of(text)}
+_CONSEQUENCES = {word: level for level, text in WORDS["consequences"].items() for word in words_of(text)}
 
 
 class RowValues:

@@ -14,7 +14,7 @@ from unit.studies.inventory.test_lists import open_document
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory import InventoryObject, parse_inventory, read_inventory
 from rocking.studies.inventory.cells import DecimalMark, measure, parts
-from rocking.studies.inventory.header_words import HEADERS
+from rocking.studies.inventory.columns import WORDS
 
 H_B_T = ("height", "width", "depth")
 HEAD = "Objekt;Breite cm;Tiefe cm;Höhe cm"
@@ -136,7 +136,7 @@ def test_risk_is_the_consequence_in_every_language():
         "zh": "风险",
         "tr": "Risk",
     }
-    assert words.keys() == HEADERS.keys()
+    assert words.keys() == WORDS["headers"].keys()
     for word in words.values():
         (one,) = parse_inventory(f"{HEAD};{word}\na;40;30;120;high").objects
         assert one.consequence == "high"

@@ -18,8 +18,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.inventory import InventoryObject, parse_inventory, read_inventory
 from rocking.studies.inventory.cells import ABOUT, DecimalMark, measure, parts
-from rocking.studies.inventory.columns import header_of
-from rocking.studies.inventory.header_words import HEADERS
+from rocking.studies.inventory.columns import WORDS, header_of
 
 HEADS = {
     "en": "object;width (cm);depth (cm);height (cm);weight (kg);note",
@@ -65,12 +64,12 @@ def test_mac_roman_is_told_by_its_header(tmp_path):
     assert (found.objects[0].name, found.source) == ("Kästchen", "list.csv (mac_roman)")
 
 
-@pytest.mark.parametrize("language", HEADERS)
+@pytest.mark.parametrize("language", WORDS["headers"])
 def test_words_of_a_language_do_not_contradict(language):
     """No word of a language means two things, and a header of its first words is understood whole, in that language."""
-    words = [word.strip() for text in HEADERS[language].values() for word in text.split(",")]
+    words = [word.strip() for text in WORDS["headers"][language].values() for word in text.split(",")]
     assert len(words) == len(set(words))
-    first = {field: text.split(",")[0] for field, text in HEADERS[language].items()}
+    first = {field: text.split(",")[0] for field, text in WORDS["headers"][language].items()}
     found = header_of(
         [f"{word} cm" if field in {"width", "depth", "height"} else word for field, word in first.items()]
     )
@@ -374,7 +373,7 @@ CELLS = st.one_of(
 )
 TITLES = st.one_of(
     st.text(max_size=10),
-    st.sampled_from([w for words in HEADERS.values() for t in words.values() for w in t.split(", ")]),
+    st.sampled_from([w for words in WORDS["headers"].values() for t in words.values() for w in t.split(", ")]),
 )
 
 
