@@ -11,7 +11,7 @@ from rocking import checks
 from rocking.campaigns import disk, ledger
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import NAME as LOCK
-from rocking.campaigns.disk import CampaignMismatchError, FolderLock, holder
+from rocking.campaigns.disk import FolderLock, holder
 from rocking.campaigns.executors import Executor
 from rocking.campaigns.forecast import Forecast, forecast
 from rocking.campaigns.identity import NAME, SHARDS, Identity
@@ -75,14 +75,7 @@ class Campaign:
         with disk.guarded(path, lambda: "nothing was written"):
             disk.make_folder(path)
             with FolderLock(path):
-                there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} - {LOCK, SHARDS}
-                if NAME in there:
-                    raise CampaignMismatchError(f"{path}: a campaign is here already: open it, or take a new folder")
-                if there:
-                    first = min(there)
-                    raise CampaignMismatchError(
-                        f"{path}: not empty ({first} ...); a campaign takes a folder of its own"
-                    )
+                disk.refuse_used(path, NAME, {LOCK, SHARDS}, ": open it, or take a new folder")
                 disk.make_folder(path / SHARDS)
                 identity.write(path)
         return cls(path, histories, identity)

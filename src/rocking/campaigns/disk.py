@@ -90,6 +90,15 @@ def make_folder(folder: Path) -> None:
         sync_folder(each.parent)
 
 
+def refuse_used(folder: Path, mark: str, allowed: set[str], how: str) -> None:
+    """Refuse a folder that has the file by which a campaign is known, or any that it is not allowed to begin with."""
+    there = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
+    if mark in there:
+        raise CampaignMismatchError(f"{folder}: a campaign is here already{how}")
+    if odd := sorted(there - allowed):
+        raise CampaignMismatchError(f"{folder}: not empty ({odd[0]} ...); a campaign takes a folder of its own")
+
+
 def remove_unfinished(folder: Path) -> None:
     """Remove files that were being written when their process ended; call it while nobody writes."""
     for path in folder.glob(f".*{_UNFINISHED}"):

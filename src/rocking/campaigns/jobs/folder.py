@@ -85,11 +85,7 @@ class JobFolder:
             if path.exists() and not path.is_dir():
                 raise CampaignMismatchError(f"{path}: a file, not a folder")
             disk.make_folder(path)
-            there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")}
-            if JOB in there:
-                raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: {resume(path)}")
-            if odd := sorted(there - {INPUTS}):
-                raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")
+            disk.refuse_used(path, JOB, {INPUTS}, f"; go on with: {resume(path)}")
             disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
             disk.write_new(path / JOB, job.text.encode())
         begun = cls(path, job)
