@@ -57,6 +57,19 @@ def view(open_page: Callable[..., Any]) -> Any:
     return page
 
 
+@pytest.fixture
+def of_two(view: Any, tmp_path: Path) -> Any:
+    """Read a file of two components, which asks for the horizontal one."""
+    path = tmp_path / "two.csv"
+    write_motion(shaking(), path, "columns")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(path)
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Horizontal component").select_option("horizontal")
+    needs.get_by_role("button", name="Read it so").click()
+    return view
+
+
 def test_a_record_that_says_all_is_read_at_once(view: Any, tmp_path: Path, shot: Callable[..., Path]) -> None:
     """A PEER file names unit and step: chosen, it is measured, and its peak is the one that was written."""
     path = tmp_path / "wave.AT2"
@@ -86,19 +99,12 @@ def test_what_a_file_does_not_say_is_asked_for(view: Any, shot: Callable[..., Pa
     assert inputs(view)["motion"]["units"] == "g"
 
 
-def test_components_are_chosen_and_the_vertical_one_is_drawn(view: Any, tmp_path: Path) -> None:
+def test_components_are_chosen_and_the_vertical_one_is_drawn(of_two: Any) -> None:
     """A file of two components asks which is horizontal; with the other as vertical one a fourth curve stands there."""
-    path = tmp_path / "two.csv"
-    write_motion(shaking(), path, "columns")
-    way(view, "Record file")
-    view.get_by_test_id("record-file").set_input_files(path)
-    needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Horizontal component").select_option("horizontal")
-    needs.get_by_role("button", name="Read it so").click()
-    held = view.get_by_test_id("record-held")
+    held = of_two.get_by_test_id("record-held")
     held.get_by_label("Vertical component").select_option("vertical")
-    view.locator("[data-testid=motion-traces] figcaption", has_text="Vertical acceleration").wait_for()
-    assert inputs(view)["motion"]["vertical"] == "vertical"
+    of_two.locator("[data-testid=motion-traces] figcaption", has_text="Vertical acceleration").wait_for()
+    assert inputs(of_two)["motion"]["vertical"] == "vertical"
 
 
 def test_a_file_that_is_no_record_is_refused_in_words(view: Any) -> None:
@@ -112,47 +118,33 @@ def test_a_file_that_is_no_record_is_refused_in_words(view: Any) -> None:
     assert inputs_or_first(view) == before
 
 
-def test_components_can_be_chosen_after_a_reload(view: Any, tmp_path: Path) -> None:
+def test_components_can_be_chosen_after_a_reload(of_two: Any) -> None:
     """A page loaded again asks the server for the components; neither list offers what the other has taken."""
-    path = tmp_path / "two.csv"
-    write_motion(shaking(), path, "columns")
-    way(view, "Record file")
-    view.get_by_test_id("record-file").set_input_files(path)
-    needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Horizontal component").select_option("horizontal")
-    needs.get_by_role("button", name="Read it so").click()
-    held = view.get_by_test_id("record-held")
+    held = of_two.get_by_test_id("record-held")
     expect(held.locator(".record-name")).to_be_focused()
-    view.reload()
+    of_two.reload()
     vertical = held.get_by_label("Vertical component")
     expect(vertical.locator("option")).to_have_text(["none", "vertical"])
     vertical.focus()
     vertical.select_option("vertical")
     expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["horizontal"])
     expect(held.get_by_label("Vertical component")).to_be_focused()
-    assert inputs(view)["motion"]["vertical"] == "vertical"
+    assert inputs(of_two)["motion"]["vertical"] == "vertical"
 
 
-def test_a_clash_of_components_is_undone_in_the_page(view: Any, tmp_path: Path) -> None:
+def test_a_clash_of_components_is_undone_in_the_page(of_two: Any) -> None:
     """With one component for both, as a link may have it, each list is whole and the refusal goes with a choice."""
-    path = tmp_path / "two.csv"
-    write_motion(shaking(), path, "columns")
-    way(view, "Record file")
-    view.get_by_test_id("record-file").set_input_files(path)
-    needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Horizontal component").select_option("horizontal")
-    needs.get_by_role("button", name="Read it so").click()
-    expect(view.get_by_test_id("record-held").locator(".record-name")).to_be_visible()
-    found = inputs(view)
+    expect(of_two.get_by_test_id("record-held").locator(".record-name")).to_be_visible()
+    found = inputs(of_two)
     found["motion"] |= {"vertical": "horizontal"}
-    view.evaluate("(given) => sessionStorage.setItem('rocking.inputs', JSON.stringify(given))", found)
-    view.reload()
-    expect(view.get_by_test_id("motion-refusal")).not_to_be_empty()
-    held = view.get_by_test_id("record-held")
+    of_two.evaluate("(given) => sessionStorage.setItem('rocking.inputs', JSON.stringify(given))", found)
+    of_two.reload()
+    expect(of_two.get_by_test_id("motion-refusal")).not_to_be_empty()
+    held = of_two.get_by_test_id("record-held")
     expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["horizontal", "vertical"])
     expect(held.get_by_label("Vertical component").locator("option")).to_have_text(["none", "horizontal", "vertical"])
     held.get_by_label("Horizontal component").select_option("vertical")
-    expect(view.get_by_test_id("motion-refusal")).to_be_empty()
+    expect(of_two.get_by_test_id("motion-refusal")).to_be_empty()
 
 
 def test_without_a_motion_each_way_can_be_chosen(open_page: Callable[..., Any]) -> None:
