@@ -211,6 +211,12 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     made += ["Choose files", "a.csv: column 'b' states no unit: say it under \u201cUnit\u201d.", "from a file"]
     made += ["How it can stand: a.stl", "At 0.10 s: tilted 2.00°, on 4 points, 2 sliding; it has overturned."]
     made += ["400 \u00d7 250 \u00d7 1200 mm, 288 kg, centre 600 mm over the ground.", "3 records for eurocode8:"]
+    made += [
+        "0 of 960 histories · measuring the time left",
+        "of Probability: rotation > 0.5 \u03b1",
+        "within the interval",
+    ]
+    made += ["1 times between the impacts are none, 1 of them bounces or echoes."]
     made += ["Save the chart Body", "PNG of the picture Body", "Move bandpass earlier"]
     made = [text for text in dict.fromkeys(made) if len(re.findall(r"\b[a-z]{2,}\b", text)) >= 2]
     assert len(made) > 110

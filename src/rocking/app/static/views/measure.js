@@ -98,6 +98,11 @@ const Published = ({ answer }) => html`
   <${Rows} caption="Claims" head=${["claim", "verdict"]}
     rows=${answer.claims.map((/** @type {any} */ one) => [`${one.section}: ${one.claim}`, [one.verdict, MARK[one.verdict]]])} />`;
 
+/** @type {Words} */
+const HEADS = { within: "within the interval", error: "above what was measured" };
+/** @param {unknown} value */
+const shown = (value) => (typeof value === "number" ? number(value) : value === true ? "yes" : value === false ? "no" : String(value ?? ""));
+
 /** @param {Given} given */
 const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
@@ -105,6 +110,6 @@ const Recording = ({ answer, question }) => {
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
     ${(answer.doubts ?? []).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${ofThePage(words)} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
-    ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0])}
-      rows=${models.map((/** @type {object} */ each) => Object.values(each).map((value) => (typeof value === "number" ? number(value) : String(value ?? ""))))} />`}`;
+    ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
+      rows=${models.map((/** @type {object} */ each) => Object.values(each).map(shown))} />`}`;
 };
