@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import g
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, Library, common, module
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, common, library_of, module
 from rocking.dynamics.settings import Settings
 from rocking.motions import Segments
 
@@ -99,7 +99,7 @@ class Fast:
     """The fast engine on a batch: what counts is a call of it, results made anew each time."""
 
     def __init__(self, batch: Histories, threads: int = 1, **options: Any) -> None:
-        self.library = Library(batch.segments())
+        self.library = library_of(batch.segments())
         self.rows = batch.rows()
         self.count, self.threads, self.settings = len(batch), threads, Settings(**options)
 
@@ -108,7 +108,7 @@ class Fast:
         out: Arrays = {name: np.empty(self.count, dtype) for name, dtype in RESULTS.items()}
         given = {**self.rows.values, "motion": self.rows.motion, "key": self.rows.stream}
         work = module().run_batch(
-            self.library.handle, given, out, order=self.settings.order, threads=self.threads, chunk=CHUNK,
+            self.library, given, out, order=self.settings.order, threads=self.threads, chunk=CHUNK,
             **common(self.settings, ConstantRestitution()),
         )  # fmt: skip
         return out, dict(work)

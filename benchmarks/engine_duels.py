@@ -14,7 +14,7 @@ from benchmarks.engine_batch import Fast, Histories, overturned
 from benchmarks.engine_peers import Verdicts
 from benchmarks.table import Row
 from benchmarks.timing import cpu_seconds
-from rocking.dynamics.plane.fast_engine import Library, instruction_set, instruction_sets
+from rocking.dynamics.plane.fast_engine import instruction_set, instruction_sets, library_of
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def variants(batch: Histories, truth: np.ndarray) -> list[Row]:
 def layout(batch: Histories) -> Row:
     """What it takes to lay out the records for the engine, which the other lines leave out, for peers as well."""
     segments = batch.segments()
-    spent = statistics.median(cpu_seconds(lambda: Library(segments)) for _ in range(3))
+    spent = statistics.median(cpu_seconds(lambda: library_of(segments)) for _ in range(3))
     return Row(
         f"Laying out {len(batch):,} records for the fast engine",
         "-",

@@ -9,7 +9,7 @@ from engines import built, every_engine
 
 from rocking.dynamics import Outcome, Settings, Status
 from rocking.dynamics.plane.batch import ROWS, Batch, Rows, valid_row
-from rocking.dynamics.plane.fast_engine import RESULTS, Library
+from rocking.dynamics.plane.fast_engine import RESULTS, library_of
 from rocking.dynamics.settings import processors
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments, pulses
@@ -189,7 +189,7 @@ def test_a_record_that_ends_in_mid_motion() -> None:
     lines = cut.horizontal.copy()
     lines[5] = 0.0
     with pytest.raises(InvalidValueError, match="records without jumps between their samples, got 3"):
-        Library([Segments(0.05, lines)])
+        library_of([Segments(0.05, lines)])
 
 
 def test_processors(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -211,7 +211,7 @@ def test_libraries() -> None:
         ([Segments(0.1, np.zeros((3, 8)), np.zeros((3, 8)))], "a pulse has no vertical part; sample it"),
     ):
         with pytest.raises(InvalidValueError, match=message):
-            Library(motions)
+            library_of(motions)
     with_vertical = Segments.between_samples(0.05, np.zeros(60), np.zeros(60))
     assert same(run("fast", motions=(MOTION, with_vertical)), run("fast")), "zeros stand for no vertical part"
 

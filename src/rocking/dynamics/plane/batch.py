@@ -105,15 +105,13 @@ class Batch:
                 progress(len(piece))
         return results, total
 
-    def _rocking(
-        self, piece: Rows, out: fast_engine.Arrays, threads: int, library: fast_engine.Library | None
-    ) -> dict[str, int]:
+    def _rocking(self, piece: Rows, out: fast_engine.Arrays, threads: int, library: Any) -> dict[str, int]:
         """Write the results of a piece, and return the steps taken."""
         if not np.isnan(piece.values["friction"]).all():
             raise InvalidValueError("rows with a friction are of bodies that slide: their settings need one too")
         if library is not None:
             done: dict[str, int] = fast_engine.module().run_batch(
-                library.handle, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
+                library, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
                 order=self.settings.order, threads=threads, chunk=_CHUNK,
                 **fast_engine.common(self.settings, self.law),
             )  # fmt: skip
@@ -151,7 +149,7 @@ class Batch:
         return replace(self, law=ConstantRestitution())
 
     @cached_property
-    def _library(self) -> fast_engine.Library:
+    def _library(self) -> Any:
         order, linear = self.settings.order, self.settings.linear
         if order != 8 and (linear or any(motion.vertical is not None for motion in self.motions)):
             which = "the linear equations" if linear else "motions with a vertical part"
@@ -159,7 +157,7 @@ class Batch:
                 f"order must be 8 for {which}, got {order}: "
                 "orders 4 and 6 exist only for nonlinear equations and motions without a vertical part"
             )
-        return fast_engine.Library(list(self.motions))
+        return fast_engine.library_of(self.motions)
 
     def _one(self, row: dict[str, float], motion: int, stream: int) -> dict[str, float]:
         """Results of one history by the reference engine."""

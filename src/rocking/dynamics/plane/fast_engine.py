@@ -1,6 +1,7 @@
 """The fast engine of pure rocking: whether it is there, arrays in and out, and one history with all its samples."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -45,48 +46,47 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     return "reference"
 
 
-class Library:
-    """Motions laid out for the fast engine, all of the same degree, all with or all without a vertical part."""
+def library_of(segments: Sequence[Segments]) -> Any:
+    """Return motions as the engine keeps them, all of the same degree, all with or all without a vertical part."""
+    if not segments:
+        raise InvalidValueError("motions must be at least one, got none")
+    degree = segments[0].degree
+    vertical = any(s.vertical is not None for s in segments)
+    if degree not in {1, 7} or any(s.degree != degree for s in segments):
+        raise InvalidValueError("motions in one batch must be all records or all pulses; sample the pulses")
+    if degree > 1 and vertical:
+        raise InvalidValueError("a pulse has no vertical part; sample it")
+    columns = degree + 1 if degree > 1 else 1 + vertical
+    data = np.empty((sum(s.count + 2 for s in segments), columns))
+    places = np.empty((3, len(segments)), np.int64)
+    used = 0
+    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name
+        for k, motion in enumerate(segments):
+            rows, before, still = _laid(motion, data[used:])
+            places[:, k] = used * columns, before, still
+            used += rows
+    steps = np.array([s.step for s in segments])
+    return module().Library(data[:used].ravel(), degree, vertical, *places, steps)
 
-    def __init__(self, segments: list[Segments]) -> None:
-        if not segments:
-            raise InvalidValueError("motions must be at least one, got none")
-        self.degree = segments[0].degree
-        self.vertical = any(s.vertical is not None for s in segments)
-        if self.degree not in {1, 7} or any(s.degree != self.degree for s in segments):
-            raise InvalidValueError("motions in one batch must be all records or all pulses; sample the pulses")
-        if self.degree > 1 and self.vertical:
-            raise InvalidValueError("a pulse has no vertical part; sample it")
-        columns = self.degree + 1 if self.degree > 1 else 1 + self.vertical
-        data = np.empty((sum(s.count + 2 for s in segments), columns))
-        places = np.empty((3, len(segments)), np.int64)
-        used = 0
-        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name
-            for k, motion in enumerate(segments):
-                rows, before, still = self._lay(motion, data[used:])
-                places[:, k] = used * columns, before, still
-                used += rows
-        steps = np.array([s.step for s in segments])
-        self.handle = module().Library(data[:used].ravel(), self.degree, self.vertical, *places, steps)
 
-    def _lay(self, segments: Segments, room: FloatArray) -> tuple[int, int, int]:
-        """Write a motion into the first rows; their number, stretches up to the jump to rest, and those after it."""
-        count, still = segments.count, 0
-        if self.degree > 1:
-            room[:count] = segments.horizontal
-            if not np.isfinite(room[:count]).all():
-                raise InvalidValueError(_NOT_FINITE)
-            return count, count, 0
-        parts = [segments.horizontal] if segments.vertical is None else [segments.horizontal, segments.vertical]
-        if len(parts) < room.shape[1]:
-            room[: count + 1, 1] = 0.0
-        joined = [_continuous(lines, room[: count + 1, k]) for k, lines in enumerate(parts)]
-        if not all(joined):
-            before = _jump(parts, room[: count + 1], segments.step)
-            still = count - before
-            room[before] = [lines[before - 1].sum() for lines in parts] + [0.0] * (room.shape[1] - len(parts))
-            room[before + 1 : count + 2] = 0.0
-        return count + (2 if still else 1), count - still, still
+def _laid(segments: Segments, room: FloatArray) -> tuple[int, int, int]:
+    """Write a motion into the first rows; their number, stretches up to the jump to rest, and those after it."""
+    count, still = segments.count, 0
+    if segments.degree > 1:
+        room[:count] = segments.horizontal
+        if not np.isfinite(room[:count]).all():
+            raise InvalidValueError(_NOT_FINITE)
+        return count, count, 0
+    parts = [segments.horizontal] if segments.vertical is None else [segments.horizontal, segments.vertical]
+    if len(parts) < room.shape[1]:
+        room[: count + 1, 1] = 0.0
+    joined = [_continuous(lines, room[: count + 1, k]) for k, lines in enumerate(parts)]
+    if not all(joined):
+        before = _jump(parts, room[: count + 1], segments.step)
+        still = count - before
+        room[before] = [lines[before - 1].sum() for lines in parts] + [0.0] * (room.shape[1] - len(parts))
+        room[before + 1 : count + 2] = 0.0
+    return count + (2 if still else 1), count - still, still
 
 
 def _continuous(lines: FloatArray, samples: FloatArray) -> bool:
@@ -165,7 +165,7 @@ def run(
         from rocking.dynamics.plane.reference import Reference
 
         return Reference(parameters, segments, settings, scale=scale, stream=stream).run(rotation, velocity)
-    library, out = Library([segments]), empty_results(1)
+    library, out = library_of([segments]), empty_results(1)
     rows = sides_of([parameters]) | {
         "scale": np.array([scale]), "rotation": np.array([rotation]), "velocity": np.array([velocity]),
         "motion": np.zeros(1, np.int64), "key": np.array([stream], np.int64),
@@ -173,7 +173,7 @@ def run(
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
     arguments = common(settings, parameters.law)
     noted = module().run_single(
-        library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
+        library, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
     results = {name: values[0].item() for name, values in out.items()}
     results |= {"outcome": _OUTCOMES[results["outcome"]], "status": _STATUSES[results["status"]]}
