@@ -42,7 +42,7 @@ interface App {
   say: typeof import("/app/say.js").say;
   call: typeof import("/app/api.js").call;
   latest: typeof import("/app/api.js").latest;
-  download: (path: string, json?: unknown, name?: string) => Promise<unknown>;
+  download: (path: string, json?: unknown, name?: string) => Promise<Refusal | void>;
   link: () => string;
   linkForAnother: () => Promise<unknown>;
   view: () => string;

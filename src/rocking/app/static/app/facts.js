@@ -10,7 +10,7 @@ export const createBodyFacts = (app) => {
   let error = null;
   /** @type {Set<(facts: Server.DescribedBody | null, error: Refusal | null) => unknown>} */
   const watchers = new Set();
-  /** @param {Server.DescribedBody | null} nextFacts @param {any} nextError */
+  /** @param {Server.DescribedBody | null} nextFacts @param {Refusal | null} nextError */
   const tell = (nextFacts, nextError) => {
     [facts, error] = [nextFacts ?? facts, nextError];
     for (const watcher of [...watchers]) watcher(facts, error);

@@ -81,7 +81,7 @@ export const createEditor = (app) => {
     units: () => body().units,
     facts: () => app.body.get(),
     metres: () => METRES[body().units],
-    refusal: () => inUnitsOf(/** @type {any} */ (app.body.error())?.place, METRES[body().units]),
+    refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
     refusalWords: () => app.body.error()?.message ?? "",
     /** @param {Region[]} next @param {Place} [place] */
     change: (next, place = state.place) => {
@@ -144,7 +144,7 @@ export const createEditor = (app) => {
   return editor;
 };
 
-/** @param {any} place @param {number} metres */
+/** @param {Refusal["place"]} place @param {number} metres */
 const inUnitsOf = (place, metres) => place && {
   ...place, x: place.x === undefined ? undefined : place.x / metres, y: place.y === undefined ? undefined : place.y / metres,
 };

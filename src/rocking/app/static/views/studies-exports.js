@@ -34,8 +34,8 @@ export const Exports = ({ app, study, found, chosen }) => {
   const save = async (suffix) => {
     said.value = suffix === "xml" && !hasFit(found, chosen.restitution) ? NO_FIT : "";
     if (said.value) return;
-    const refused = /** @type {any} */ (await fetched(suffix));
-    if (/must not cross/.test(refused?.message)) said.value = CROSS;
+    const refused = await fetched(suffix);
+    if (/must not cross/.test(refused?.message ?? "")) said.value = CROSS;
   };
   return html`
     <div class="study-exports">
