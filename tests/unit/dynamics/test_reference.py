@@ -88,6 +88,19 @@ def test_zeros_of_polynomials() -> None:
     assert turning_points([1.0, 0.0, -1.0, 1.0], 1.0) == pytest.approx([2.0 / 3.0], rel=1e-12, abs=0.0)
 
 
+def time_to_fall(start: float) -> float:
+    return math.acosh(1.0 / (1.0 - start))
+
+
+def test_a_fall_that_ends_with_the_record() -> None:
+    """Falls of acosh(1 / (1 - x)) / p that take all of it, to the last bits, end in an impact or in the ground."""
+    for start in np.linspace(0.05, 0.95, 40):
+        for units in range(-2, 3):
+            found = run(Segments.still(time_to_fall(start) / 2.0 * (1.0 + units * 2.0**-52), 2), ALPHA * start)
+            assert np.abs(found.rotation).max() <= ALPHA * start
+            assert found.outcome is Outcome.ROCKED
+
+
 @pytest.mark.parametrize("linear", [False, True])
 def test_rocking_that_dies_out_ends(linear: bool) -> None:
     """With a rest speed of zero each impact is followed down to 1e-9 p alpha: with r = 0.5 and 1e-5 p alpha that takes
