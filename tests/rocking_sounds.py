@@ -118,13 +118,14 @@ def recorded(rng, direct, peak, decibels):
     return heard
 
 
-def rocking(seed, decibels, count=11):
-    """A rocking body: its recording, and when it struck."""
+def rocking(seed, decibels, count=11, silent=()):
+    """A rocking body: its recording, and when it struck; some impacts may make no sound, and are no times."""
     rng = np.random.default_rng(seed)
     times, speeds = impact_times(rng, count)
     size = int((times[-1] + rng.uniform(0.5, 1.5)) * RATE)
-    direct, peaks = Clicks(rng).at(times, speeds, size)
-    return RockingSound(recorded(rng, direct, peaks.min(), decibels), times)
+    heard = ~np.isin(np.arange(count), silent)
+    direct, peaks = Clicks(rng).at(times, np.where(heard, speeds, 1e-9), size)
+    return RockingSound(recorded(rng, direct, peaks[heard].min(), decibels), times[heard])
 
 
 def clapping(rng):

@@ -32,7 +32,10 @@ _FADING_SCATTER = 1.0
 _INTERVALS = (0.02, 3.0)
 _RATIOS = (0.5, 1.25)
 _SEEDS, _CLICKS, _MOST = 24, 80, 60
-_MISSED = -3.0
+
+MISSED = -3.0
+"""Logarithm of how likely it is that an impact is not heard."""
+
 _FEWEST, _SHRUNK, _SHARE = 7, 0.9, 0.7
 _ECHO = 0.1
 """Power of an echo over that of its impact, at most."""
@@ -158,8 +161,8 @@ class _Beams:
         gain[~later | (surprise > 16.0)] = -np.inf
         pick = gain.argmax(axis=1)
         rows = np.arange(pick.size)
-        hit = going & (gain[rows, pick] > _MISSED)
-        self.score += np.where(hit, gain[rows, pick], _MISSED)
+        hit = going & (gain[rows, pick] > MISSED)
+        self.score += np.where(hit, gain[rows, pick], MISSED)
         self._advance(order, hit, pick, np.where(hit, fall[rows, pick], expected), expected, variance)
         return True
 
@@ -204,21 +207,25 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
     return best
 
 
-def next_interval(times: FloatArray, orders: IntArray, order: int) -> float | None:
-    """Return the interval before an impact, from those before it, by the law at a moderate p; None if it is not known.
+def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
+    """Return when an impact is expected after others, and the interval before it, by the law at a moderate p.
 
-    y falls by what the last falls of both sides were, their median.
+    y falls by what the last falls of both sides were, their median. Nan if too few are known.
     """
-    whole = orders[1:][np.diff(orders) == 1]
-    intervals = dict(zip(whole.tolist(), np.diff(times)[np.diff(orders) == 1].tolist(), strict=True))
-    if order - 2 not in intervals or orders[-1] != order - 1:
-        return None
-    half_p = np.arctanh(_MODERATE) / max(intervals.values())
-    fall = {n: float(half_cycle_fall(np.array(span), half_p)) for n, span in intervals.items()}
+    whole = np.flatnonzero(np.diff(orders) == 1)
+    intervals = np.diff(times)[whole]
+    half_p = np.asarray(np.arctanh(_MODERATE) / intervals.max() if whole.size else np.nan)
+    fall = dict(zip(orders[1:][whole].tolist(), half_cycle_fall(intervals, half_p).tolist(), strict=True))
     falls = [fall[n] - fall[n - 2] for n in fall if n - 2 in fall]
-    if not falls:
-        return None
-    return float(half_cycle(np.array(fall[order - 2] + np.median(falls[-4:])), half_p))
+    at, span = float(times[-1]), np.nan
+    for n in range(int(orders[-2:].min()) + 1, order + 1):
+        if n not in fall:
+            if n - 2 not in fall or not falls:
+                return np.nan, np.nan
+            fall[n] = fall[n - 2] + float(np.median(falls[-4:]))
+            span = float(half_cycle(np.array(fall[n]), half_p))
+            at += span if n > orders[-1] else 0.0
+    return at, span
 
 
 def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> FloatArray:

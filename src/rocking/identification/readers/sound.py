@@ -17,7 +17,14 @@ from rocking.errors import MeasurementError
 from rocking.identification.measurement import ImpactTimes
 from rocking.identification.readers.clicks import causal, find_clicks, spectra
 from rocking.identification.readers.recording import Recording
-from rocking.identification.readers.rocking_sequence import SCATTER, find_sequence, law_misfit, next_interval, why_no_rocking
+from rocking.identification.readers.rocking_sequence import (
+    MISSED,
+    SCATTER,
+    find_sequence,
+    law_misfit,
+    next_impact,
+    why_no_rocking,
+)
 
 _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
@@ -33,21 +40,18 @@ _RISES, _LOUD = (3e-4, 8e-4), np.geomspace(0.5, 500.0, 6)
 _ROUNDS, _PEAKS, _APART, _RIVAL, _FAR = 6, 10, 5e-4, 0.25, 2e-3
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
-_INDEPENDENT, _FAILS, _LOOSE = (
-    25.0,
-    10.0,
-    3e-3,
-)  # independent numbers of a click; how well feet are tied before that is looked at [s]
+_NUMBERS, _MOST_NUMBERS, _FAILS, _LOOSE = 25.0, 60.0, 10.0, 3e-3
+"""Independent numbers of a click, at least and at most; degrees of freedom of how the law fails; how well feet are tied
+before that is looked at [s]."""
+
 _AGREED, _MOST = 30.0, 30.0
 """Weight of modes that agree, with which the right tie of 207 rooms at 8 dB is likeliest; most that the law says."""
 
-_ECHOES, _TURNS = 0.4, 4
-"""How long what an impact sets off is heard [s]; how often that of both feet is told apart."""
-
 _LEAST, _SEARCHED, _AROUND = 5, 0.15, 0.040
 _FADED, _FADES, _TAIL = 0.75, 0.25, 8.0
-"""How loud an impact is over the last one on its foot, the standard deviation of that over it; degrees of freedom of
-what is left of noise and echoes."""
+"""How loud an impact is over the last one on its foot, of 119 rooms, and the deviation of that over it; degrees of
+freedom of noise and echoes."""
+
 _BAND = (150.0, 9_000.0)
 
 
@@ -64,25 +68,23 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
 
 def onsets(
     sharp: FloatArray, white: FloatArray, rate: float, times: FloatArray, orders: IntArray
-) -> tuple[FloatArray, IntArray, float, float]:
-    """Return when impacts at about some times began [s], which are unsure, how alike clicks are, how sure the tie.
+) -> tuple[FloatArray, FloatArray, float, float]:
+    """Return when impacts at about some times began [s], how sure places are, how alike clicks are, how sure the tie.
 
-    Sounds have a row for each of two feet. Alike is the median correlation of a click with the sum of the others on its
-    foot, 1 at most; the tie is the standard deviation of the time between the two feet [s]. A time is unsure where
-    another of the same click is as likely.
+    Places by how much less likely others are, in logarithms; alike is the median correlation of a click with the sum of
+    the others on its foot, 1 at most; the tie is the standard deviation of the time between the two feet [s].
     """
-    feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
-    found, alike, begun, means = times.copy(), np.ones(times.size), [], []
-    all_places, unsure = _chosen(sharp, rate, times, orders, feet)
-    for here in feet:
-        places, own = all_places[here], sharp[orders[here[0]] % 2]
-        alike[here] = _likeness(_cuts(own, rate, places, _BEFORE, _AFTER))
-        after, share = _begun(white[orders[here[0]] % 2], rate, places)
+    found, alike, begun, clicks = times.copy(), np.ones(times.size), [], []
+    all_places, sure = _chosen(sharp, rate, times, orders)
+    for here in _feet(orders):
+        places = all_places[here]
+        alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
+        after, share = _begun(white, rate, places)
         begun.append(share)
-        found[here] = (places + _parts(own, rate, places)) / rate + after @ share
-        means.append(_mean(own, rate, places, _QUIET, _RINGING))
-    if len(feet) < 2:
-        return found, unsure, float(np.median(alike)), 0.0
+        found[here] = (places + _parts(sharp, rate, places)) / rate + after @ share
+        clicks.append(_mean(sharp, rate, places, _QUIET, _RINGING))
+    if len(begun) < 2:
+        return found, sure, float(np.median(alike)), 0.0
     off = np.arange(-_FARTHEST, _FARTHEST, _STEP)
     one, two = begun
     step = after[1] - after[0]
@@ -90,98 +92,71 @@ def onsets(
     ties = np.convolve(two, one[::-1]) / step
     picked = np.interp(off + apart, (np.arange(ties.size) - after.size + 1) * step, ties, left=0.0, right=0.0)
     law = law_misfit(found + np.outer(off, orders % 2), orders)
-    likely = _AGREED * _agreement(means[0], means[1], rate, off + apart) - 0.5 * np.minimum(law - law.min(), _MOST)
+    likely = _AGREED * _agreement(clicks[0], clicks[1], rate, off + apart) - 0.5 * np.minimum(law - law.min(), _MOST)
     likely += np.log(picked + _FAILED)
     share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
     later = float(share @ off)  # the mean has the least square error where several ties are likely
-    found[feet[0]] -= 0.5 * later
-    found[feet[1]] += 0.5 * later
-    return found, unsure, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
+    found += later * (orders % 2 - 0.5)
+    return found, sure, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
 
 
-def told_apart(sound: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> FloatArray:
-    """Return a sound of each of two feet, rows, in which the clicks of the other and all echoes are fainter.
-
-    What an impact sets off, modes and echoes, follows every impact on that foot, so it is their mean, as loud as each.
-    """
-    begin, count = int(_REACH * rate), int((_REACH + _ECHOES) * rate)
-    places = np.rint(times * rate).astype(np.int64)
-    parts = times * rate - places
-    size = next_fast_len(count + 2, real=True)
-    turn = np.exp(2j * np.pi * np.outer(parts, np.arange(size // 2 + 1)) / size)
-    rest, at = np.pad(sound, (begin, count)), places[:, None] + np.arange(count)
-    feet = [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size > 1]
-    loud, means = np.ones(times.size), np.zeros((2, count))
-    made = np.zeros((times.size, count))
-    near = int((_REACH + _LONG) * rate)
-    for _ in range(_TURNS):
-        for here in feet:
-            rows = irfft(rfft(rest[at[here]] + made[here], size) * turn[here], size)[:, :count]
-            if not means[orders[here[0]] % 2].any():
-                loud[here] = np.sqrt((rows[:, :near] ** 2).mean(axis=1))
-            else:
-                mean = means[orders[here[0]] % 2][:near]
-                loud[here] = np.maximum(rows[:, :near] @ mean / (mean @ mean + np.finfo(float).tiny), 0.0)
-            power = loud[here] @ loud[here] + np.finfo(float).tiny
-            mean = loud[here] @ rows / power
-            scatter = _means_of((rows - np.outer(loud[here], mean)) ** 2, rate).sum(axis=0) / (here.size - 1) / power
-            mean *= np.clip(1.0 - scatter / (_means_of(mean[None] ** 2, rate)[0] + np.finfo(float).tiny), 0.0, 1.0)
-            means[orders[here[0]] % 2] = mean
-            again = np.outer(loud[here], mean)
-            again = irfft(rfft(again, size) * np.conj(turn[here]), size)[:, :count]
-            for row, which in enumerate(here):
-                rest[at[which]] += made[which] - again[row]
-            made[here] = again
-    apart = np.repeat(rest[None], 2, axis=0)
-    kept = np.arange(count) < (_REACH + _RINGING) * rate
-    for which in range(times.size):
-        apart[orders[which] % 2, at[which]] += made[which] * kept
-    return apart[:, begin : begin + sound.size]
-
-
-def _means_of(rows: FloatArray, rate: float) -> FloatArray:
-    width = max(1, round(_REACH * rate))
-    return np.array([np.convolve(row, np.full(width, 1.0 / width), "same") for row in rows])
+def _feet(orders: IntArray) -> list[IntArray]:
+    """Return which impacts are on each of two feet, where there are some."""
+    return [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
 
 
 def revised(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return impacts less the last ones that are none, and with those that were missed, whose member is -1.
+    """Return impacts less those that are none, and with those that were missed, whose member is -1.
 
-    An impact is like those before it on the same foot, nearly as loud, and when the last intervals say.
+    An impact is like those before it on the same foot, nearly as loud, and when the law says: see `_impact`.
     """
-    while times.size > _LEAST and _impact(sharp, rate, times[:-1], orders[:-1], int(orders[-1]))[1] <= 0.0:
-        times, orders, members = times[:-1], orders[:-1], members[:-1]
-    order = _LEAST
-    while order <= orders[-1] + 1:
-        if order not in orders:
-            at, sure = _impact(sharp, rate, times, orders, order)
-            if sure > 0.0:
-                place = int(np.searchsorted(orders, order))
-                times, orders = np.insert(times, place, at), np.insert(orders, place, order)
-                members = np.insert(members, place, -1)
-        order += 1
-    return times, orders, members
+    for order in range(_LEAST, int(orders[-1])):
+        times, orders, members = _with(sharp, rate, times, orders, members, order)
+    # what should be heard and is not speaks against all behind it
+    asked = range(int(orders[-1]) + 1)
+    sure = np.nan_to_num([_impact(sharp, rate, times, orders, n)[1] if n >= _LEAST else 0.0 for n in asked])
+    last = asked[-1] - int(np.cumsum(sure)[::-1].argmax())
+    kept = (orders <= last) & (sure[orders] > MISSED)
+    times, orders, members = times[kept], orders[kept], members[kept]
+    # one behind the last, since a second would rest on one that no click told
+    return _with(sharp, rate, times, orders, members, int(orders[-1]) + 1)
+
+
+def _with(
+    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray, order: int
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return impacts with one more, if it was missed and is likelier than none."""
+    at, sure = (np.nan, np.nan) if order in orders else _impact(sharp, rate, times, orders, order)
+    if not sure > 0.0:
+        return times, orders, members
+    place = int(np.searchsorted(orders, order))
+    more = np.insert(times, place, at)
+    if np.any(np.diff(more) <= 0.0):
+        return times, orders, members
+    return more, np.insert(orders, place, order), np.insert(members, place, -1)
 
 
 def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return when an impact of some order came, from those before it, and how much likelier one is than none."""
-    span = next_interval(times[orders < order], orders[orders < order], order)
-    if span is None:
-        return np.nan, -np.inf
-    about, reach = float(times[orders < order][-1]) + span, _SEARCHED * span
+    """Return when an impact of some order came, from those before it, and how much likelier one is than none.
+
+    Nan where that cannot be said.
+    """
+    about, span = next_impact(times[orders < order], orders[orders < order], order)
+    if np.isnan(about):
+        return np.nan, np.nan
+    reach = _SEARCHED * span
     earlier = np.flatnonzero((orders < order) & (orders % 2 == order % 2))
-    own = sharp[order % 2]
     begin, end, around = int(_BEFORE * rate), int(_AFTER * rate), max(_AROUND, reach)
-    first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), own.size - end)
+    first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), sharp.size - end)
     if earlier.size < 2 or last <= first or about - reach >= last / rate:
-        return about, -np.inf
-    places = _arrangements(own, rate, times[earlier])[0]
-    cuts = _cuts(own, rate, places, _BEFORE, _AFTER)
+        return np.nan, np.nan
+    places = _arrangements(sharp, rate, times[earlier])[0]
+    cuts = _cuts(sharp, rate, places, _BEFORE, _AFTER)
     mean = cuts.mean(axis=0)
-    match = np.correlate(own[first - begin : last + end], mean, "valid")
+    match = np.correlate(sharp[first - begin : last + end], mean, "valid")
     noise = 1.4826 * float(np.median(np.abs(match))) + np.finfo(float).tiny
     loud, expected = match / noise, _FADED * float(cuts[-1] @ mean) / noise
     off = (np.arange(first, first + match.size) / rate - about) / span
@@ -223,15 +198,14 @@ def _agreement(one: FloatArray, two: FloatArray, rate: float, lags: FloatArray) 
     return np.asarray(np.cos(phase) @ (weight / max(float(weight.sum()), np.finfo(float).tiny)))
 
 
-def _chosen(
-    sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, feet: list[IntArray]
-) -> tuple[IntArray, IntArray]:
+def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> tuple[IntArray, FloatArray]:
     """Return the samples at which clicks on the same foot match, by the law of rocking where several are as likely.
 
-    Also which clicks have another place, milliseconds away, that is hardly less likely.
+    Also by how much, in logarithms, other places of each, milliseconds away, are less likely.
 
     A mode that rings for long matches a period or two late nearly as well, which the law often tells, loose as it is.
     """
+    feet = _feet(orders)
 
     def law(places: IntArray) -> FloatArray:
         placed = places / rate
@@ -240,27 +214,23 @@ def _chosen(
         misfit = law_misfit(placed, orders, _LOOSE)
         return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 317
 
-    tried, alike = [], []
-    for rows in product(*(_arrangements(sharp[orders[here[0]] % 2], rate, times[here]) for here in feet)):
+    tried, alike, reach = [], [], int(_REACH * rate)
+    for rows in product(*(_arrangements(sharp, rate, times[here]) for here in feet)):
         tried.append(np.empty(times.size, dtype=np.int64))
+        alike.append(0.0)
         for here, row in zip(feet, rows, strict=True):
             tried[-1][here] = row
-        alike.append(
-            sum(
-                float(_clicked(_matches(sharp[orders[here[0]] % 2], rate, row, 0)[1]).sum())
-                for here, row in zip(feet, rows, strict=True)
-            )
-        )
+            alike[-1] += float(_clicked(_matches(sharp, rate, row, 0)[1], _NUMBERS).sum())
     places = tried[int(np.argmax(np.array(alike) + law(np.array(tried))))]
-    reach = int(_REACH * rate)
     for _ in range(_ROUNDS):
         moves: list[tuple[int, int, float]] = [(0, 0, 0.0)]
         for here in feet:
-            correlations = _matches(sharp[orders[here[0]] % 2], rate, places[here], reach)[1]
-            for which, row in zip(here, correlations, strict=True):
+            correlations = _matches(sharp, rate, places[here], reach)[1]
+            clicks = _clicked(correlations, _numbers(correlations))
+            for which, row, clicked in zip(here, correlations, clicks, strict=True):
                 peaks = np.flatnonzero((row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:])) + 1
                 peaks = peaks[np.abs(peaks - reach) > _APART * rate]
-                gains = _clicked(row) - _clicked(row[reach])
+                gains = clicked - clicked[reach]
                 moves += [(which, k - reach, float(gains[k])) for k in peaks[np.argsort(-row[peaks])][:_PEAKS]]
         moved = np.repeat(places[None], len(moves), axis=0)
         moved[np.arange(len(moves)), [move[0] for move in moves]] += [move[1] for move in moves]
@@ -269,13 +239,22 @@ def _chosen(
         places = moved[best]
         if not best:
             break
-    rivals = np.flatnonzero(score > score[best] - _RIVAL)
-    far = [moves[each][0] for each in rivals if abs(moves[each][1] - moves[best][1]) > _FAR * rate]
-    return places, np.array(far, dtype=np.int64)
+    sure = np.full(times.size, np.inf)
+    for (which, move, _), rival in zip(moves, score, strict=True):
+        if abs(move - moves[best][1]) > _FAR * rate:
+            sure[which] = min(sure[which], score[best] - rival)
+    return places, sure
 
 
-def _clicked(correlation: FloatArray) -> FloatArray:
-    return np.asarray(-0.5 * _INDEPENDENT * np.log1p(-(np.clip(correlation, 0.0, 0.999) ** 2)))
+def _clicked(correlations: FloatArray, numbers: FloatArray | float) -> FloatArray:
+    """Return the logarithm of how likely lags of clicks are from their correlations, of so many independent numbers."""
+    return np.asarray(-0.5 * numbers * np.log1p(-(np.clip(correlations, 0.0, 0.999) ** 2)))
+
+
+def _numbers(correlations: FloatArray) -> FloatArray:
+    """Return how many independent numbers a faint click has, by how it correlates where it does not match, rows."""
+    squares = (correlations**2).mean(axis=1, keepdims=True)
+    return np.asarray(np.clip(1.0 / (squares + np.finfo(float).tiny), _NUMBERS, _MOST_NUMBERS))
 
 
 def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[IntArray]:
@@ -413,17 +392,19 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
         )
     rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
     sharp, white = sharpened(clicks.sound, rate, rough)
-    both = np.array([sharp, sharp]), np.array([white, white])
-    times, _, alike, tied = onsets(*both, rate, rough, orders)
-    why = why_no_rocking(times if np.all(np.diff(times) > 0.0) else rough, found, clicks.contrasts, clicks.strengths)
+    times, chosen, alike, tied = onsets(sharp, white, rate, rough, orders)
+    grows = bool(np.all(np.diff(times) > 0.0))
+    lawful = times if grows and chosen.min() > _RIVAL else rough
+    why = why_no_rocking(lawful, found, clicks.contrasts, clicks.strengths)
     if not why and alike < _ALIKE:
         why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
     if why:
         raise recording.error(f"this is no sound of a rocking body: {why}")
-    sharps = told_apart(sharp, rate, times, orders)
-    rough, orders, members = revised(sharps, rate, times, orders, members)
-    times, unsure, _, tied = onsets(sharps, both[1], rate, rough, orders)
-    known = np.isin(np.arange(times.size), unsure, invert=True)
+    heard = rough = times if grows else rough
+    rough, orders, members = revised(sharp, rate, rough, orders, members)
+    if not np.array_equal(rough, heard):
+        times, chosen, _, tied = onsets(sharp, white, rate, rough, orders)
+    known = chosen > _RIVAL
     if known.sum() < _FEWEST:
         raise recording.error(f"{known.sum()} of its {known.size} clicks can be told in time only; nearer to the body?")
     times, rough, orders, members = times[known], rough[known], orders[known] - orders[known][0], members[known]
