@@ -2,9 +2,9 @@
 
 import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";
+import { drawChart, stillOf } from "/charts/curves.js";
 import { chartFiles } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
-import { TICK, vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number, pretty, quantity } from "/app/format.js";
@@ -14,7 +14,7 @@ import { words as inWords } from "/app/words.js";
 /** Draw curves over one abscissa; see the returned object for what it can do.
  * @param {HTMLElement} container @param {ChartOptions} options */
 export const lineChart = (container, options) => {
-  const { title, x, y, height = 220, bands } = options;
+  const { title, x, y, height = 220 } = options;
   const id = freshId("chart");
   const stage = el("div", { class: "chart-stage" });
   const figure = el("figure", { class: "chart" },
@@ -29,7 +29,7 @@ export const lineChart = (container, options) => {
   /** @type {Point | null} */
   let zoomed = null;
   const table = chartTable(options, () => data);
-  const still = () => ({ node: vectorOf(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
+  const still = () => ({ node: stillOf(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
   const csv = () => csvOf(options, data);
   figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, still, "chart", csv)));
 
@@ -50,7 +50,7 @@ export const lineChart = (container, options) => {
   };
 
   const plot = new uPlot({
-    width: widthOf(stage), height, bands,
+    width: widthOf(stage), height,
     legend: { show: false },
     cursor: { points: { size: 7 }, drag: { x: true, y: false } },
     scales: { x: { time: false, ...(x.log ? WHOLE : {}) }, y: scaleOf(y) },
@@ -64,7 +64,12 @@ export const lineChart = (container, options) => {
         ) hook?.(self.cursor.idx, Number(data[0][self.cursor.idx]));
       }],
       setScale: [(/** @type {uPlot} */ self, /** @type {string} */ key) => key === "x" && data[0].length && look(self)],
-      draw: [(/** @type {uPlot} */ self) => drawMarks(self, marks)],
+      draw: [(/** @type {uPlot} */ self) => {
+        self.ctx.save();
+        self.ctx.scale(devicePixelRatio, devicePixelRatio);
+        drawChart(self.ctx, self, options, data, marks);
+        self.ctx.restore();
+      }],
     },
   }, data, stage);
 
@@ -145,15 +150,9 @@ const around = (_, low, high) => {
   return low === 0 && high === 0 ? [-1, 1] : uPlot.rangeNum(low, high, 0.1, true);
 };
 
+// uPlot has the scales, the cursor and the zoom; what is seen is drawn by drawChart.
 /** @param {ChartSeries} series */
-const seriesOf = ({ label, colour: paint, dash, width = 1.6, points = false }) => ({
-  label,
-  stroke: () => colour(paint),
-  width,
-  dash: dash?.map((each) => each * devicePixelRatio),
-  spanGaps: false,
-  points: { show: points, size: 5, width: 0, fill: () => colour(paint) },
-});
+const seriesOf = ({ label, colour: paint }) => ({ label, stroke: () => colour(paint), paths: () => null, points: { show: false } });
 
 /** @param {ChartSeries[]} series */
 const legendOf = (series) => {
@@ -180,40 +179,4 @@ const summary = ({ title, x, y, series }, [xs, ...columns]) => {
   });
   const span = `${number(xs[0])} to ${number(xs.at(-1))} ${x.unit ?? ""}`;
   return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
-};
-
-/** @param {uPlot} self @param {Marks} marks */
-const drawMarks = (self, { vertical = [], horizontal = [], ticks = [] }) => {
-  const { ctx } = self;
-  const { left, top, width, height } = self.bbox;
-  ctx.save();
-  ctx.lineWidth = devicePixelRatio;
-  /** @param {string} paint @param {number[]} dash @param {...number} ends */
-  const line = (paint, dash, ...ends) => {
-    ctx.strokeStyle = colour(paint);
-    ctx.setLineDash(dash.map((each) => each * devicePixelRatio));
-    ctx.beginPath();
-    ctx.moveTo(ends[0], ends[1]);
-    ctx.lineTo(ends[2], ends[3]);
-    ctx.stroke();
-  };
-  /** @param {number} place @param {number} from @param {number} span */
-  const inside = (place, from, span) => place >= from && place <= from + span;
-  for (const value of vertical) {
-    const at = self.valToPos(value, "x", true);
-    if (inside(at, left, width)) line("--mark", [2, 3], at, top, at, top + height);
-  }
-  for (const value of horizontal) {
-    const at = self.valToPos(value, "y", true);
-    if (inside(at, top, height)) line("--mark-strong", [6, 4], left, at, left + width, at);
-  }
-  ctx.lineWidth = 1.5 * devicePixelRatio;
-  ticks.forEach(({ colour: paint, at }, row) => {
-    const foot = top + height - row * TICK * devicePixelRatio;
-    for (const value of at) {
-      const place = self.valToPos(value, "x", true);
-      if (inside(place, left, width)) line(paint, [], place, foot, place, foot - (TICK - 1) * devicePixelRatio);
-    }
-  });
-  ctx.restore();
 };

@@ -54,9 +54,9 @@ const look = ({ label, unit, log }) => ({
   labelSize: 18,
   labelFont: "12px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",
-  stroke: () => colour("--ink-soft"),
-  grid: { stroke: () => colour("--grid"), width: 1 },
-  ticks: { stroke: () => colour("--grid"), width: 1, size: 4 },
+  stroke: "transparent", // placed by uPlot, drawn by drawChart
+  grid: { show: false },
+  ticks: { show: false },
   /** @param {unknown} _ @param {(number | null)[]} ticks */
   values: (_, ticks) => ticks.map((each) => (each === null ? "" : number(each, log ? 1 : 6))),
 });

@@ -1,8 +1,8 @@
 /** One instant of the scene as an SVG: the ground, the bodies of all models, and which is which. */
 
 import { svg } from "/app/dom.js";
+import { legendOf, under } from "/charts/curves.js";
 import { SvgPen } from "/charts/pen.js";
-import { legendOf, under } from "/charts/vector.js";
 import { readColours } from "/scene/theme.js";
 
 /** The instant that a stage shows; `names` are the models in words.
