@@ -256,7 +256,56 @@ def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Call
 
 STATIC = Path(str(files("rocking"))) / "app" / "static"
 ASKED = re.compile(r"picture/|\.png\b|export\.\$\{\w+\}.*(svg|png)|drawing/picture-tools")
-OF_THE_SERVER = {"questions/parts.js", "views/compare-studies.js"}  # answers and comparisons: drawn there, and shown so
+OF_THE_SERVER = {
+    "views/studies-fragility.js",
+    "questions/parts.js",
+    "views/compare-studies.js",
+}  # answers and comparisons: drawn there, and shown so
+
+
+def test_a_chart_draws_what_is_in_sight(page: Any) -> None:
+    """A part is drawn to a value on either side of it, and all of it without one; with no value there are no words."""
+    script = """async ([columns, part]) => {
+        const { lineChart } = await import("/charts/line.js");
+        const { stillOf } = await import("/charts/curves.js");
+        const place = document.body.appendChild(document.createElement("div"));
+        const series = [{ label: "", colour: "--ink" }];
+        const options = { title: "", x: { label: "time" }, y: { label: "angle" }, series };
+        const chart = lineChart(place, options);
+        chart.setData(columns, part);
+        await new Promise(requestAnimationFrame);
+        const drawing = stillOf(chart.plot, options, columns, { horizontal: [1] });
+        const curve = [...drawing.querySelectorAll("path")].find((each) => each.getAttribute("stroke-width") === "1.6");
+        const words = [...drawing.querySelectorAll("text")].map((each) => each.textContent);
+        const text = drawing.outerHTML;
+        chart.destroy();
+        place.remove();
+        return [(curve?.getAttribute("d").match(/[ML]/g) ?? []).length, words.includes("angle"), /NaN/.test(text)];
+    }"""
+    times = list(range(100))
+    heights: list[int | None] = [k % 7 for k in times]
+    assert page.evaluate(script, [[times, heights], None]) == [100, True, False]
+    assert page.evaluate(script, [[times, heights], [40, 49]]) == [12, True, False]
+    heights[39] = heights[50] = heights[51] = None
+    assert page.evaluate(script, [[times, heights], [40, 49]]) == [12, True, False]  # to 38 and 52, with gaps
+    assert page.evaluate(script, [[times, [None] * 100], None]) == [0, False, False]
+
+
+def test_a_pen_of_svg_draws_small_bodies_and_clear_colours(page: Any) -> None:
+    """Places in metres keep their digits, and a colour with a share is one that every reader of SVG knows."""
+    script = """async () => {
+        const { SvgPen } = await import("/charts/pen.js");
+        const pen = new SvgPen();
+        pen.moveTo(0.00012345, 2);
+        pen.lineTo(1234.5678, -3);
+        pen.fillStyle = "#11223380";
+        pen.fill();
+        const [d, fill, opacity] = ["d", "fill", "fill-opacity"].map((name) => pen.node.firstChild.getAttribute(name));
+        return [d, fill, Number(opacity)];
+    }"""
+    d, fill, opacity = page.evaluate(script)
+    assert (d, fill) == ("M0.00012345 2L1234.568 -3", "#112233")
+    assert opacity == pytest.approx(128 / 255, rel=1e-6)
 
 
 def test_no_script_asks_for_a_picture_of_what_it_draws() -> None:

@@ -1,4 +1,4 @@
-// What the page uses of uPlot; drawing reads `_splits`, `_values` and `_lpos` of its axes too.
+// What the page uses of uPlot; drawing reads `_show`, `_splits`, `_values` and `_lpos` of its axes too.
 declare class uPlot {
   constructor(options: any, data: any, place: HTMLElement);
   static rangeNum(low: number, high: number, pad: number, soft: boolean): [number, number];
@@ -9,7 +9,7 @@ declare class uPlot {
   over: HTMLElement;
   cursor: { idx?: number | null; left?: number; top?: number };
   scales: { [key: string]: { min: number; max: number } };
-  axes: { label: string; _lpos: number; _splits?: number[]; _values?: string[] }[];
+  axes: { label: string; _show: boolean; _lpos: number; _splits?: number[]; _values?: string[] }[];
   setData(data: any, resetScales?: boolean): void;
   setScale(scale: string, limits: { min: number; max: number }): void;
   setSize(size: { width: number; height: number }): void;

@@ -49,7 +49,10 @@ def test_what_is_set_beside_a_file(run, printed, tmp_path):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ("map --width 1 --height 4 sine:amplitude=3,period=0.8 --threads 20000", "threads must be in [1, 4096]"),
+        (
+            "map --width 1 --height 4 sine:amplitude=3,period=0.8 --threads 20000",
+            "must be a whole number in [1, 4096]",
+        ),
         ("cor --width 1 --height 4 --set settings.linear=true", "settings.linear: an impact takes gravity only"),
     ],
 )

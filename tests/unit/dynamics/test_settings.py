@@ -55,7 +55,7 @@ def test_ranges(name: str) -> None:
 @pytest.mark.parametrize("value", [0, -1, 1.0, 2.5, True, None, "5", math.nan, math.inf, [1]])
 def test_most_events(value: Any) -> None:
     """The number of impacts is a whole one from 1."""
-    with pytest.raises(InvalidValueError, match=r"most_events must be a whole number in \[1, 2\^63\), got"):
+    with pytest.raises(InvalidValueError, match=r"most_events must be a whole number >= 1, got"):
         Settings(most_events=value)
 
 

@@ -106,7 +106,7 @@ class OpenStudy:
 def written(
     study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
 ) -> None:
-    """Write a finished study into a file; as a picture it compares its restitutions."""
+    """Write a finished study into a file: its curves if it is incremental, else a picture compares its restitutions."""
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
@@ -115,7 +115,12 @@ def written(
     elif kind == "svg":
         from rocking.app.downloads.pictures import draw_to
         from rocking.plots.campaign import campaign_picture
+        from rocking.plots.fragility import incremental_dynamic_analysis_picture
 
+        if study.job.document.campaign.kind == "incremental":
+            analysis = list(study.analyses.values())[restitution]
+            draw_to(lambda: incremental_dynamic_analysis_picture(analysis), target)
+            return
         if len(labels) < 2:
             raise Refused("there is nothing to compare in a study that was asked with one restitution")
         draw_to(lambda: campaign_picture(study.opened), target)

@@ -114,3 +114,19 @@ def test_a_picture_compares_all_restitutions(computed, map_job, stripes, tmp_pat
     one = computed(map_job(3, restitution={"model": "ked"}))
     with pytest.raises(Refused, match="nothing to compare"):
         written(one, "svg", tmp_path / "one.svg", None, 0)
+
+
+def test_a_picture_of_an_incremental_study_has_its_curves(computed, map_job, tmp_path):
+    """It is of one restitution, and no comparison: a study with one has it too."""
+    asked = {
+        "campaign": {"name": "rise", "kind": "incremental"}, "map": None,
+        "fragility": {"levels": [2.0, 4.0, 8.0, 12.0]},
+        "motions": {"pulse": [f"sine:amplitude={a},period={p}" for a in (2.0, 4.0) for p in (0.4, 0.7)]},
+    }  # fmt: skip
+    one = computed(map_job(**asked, restitution={"value": 0.9}))
+    two = computed(map_job(**asked, restitution={"values": [0.9, 0.4]}))
+    alone, same, other = (
+        _written(each, "svg", tmp_path, restitution=k).read_bytes() for each, k in ((one, 0), (two, 0), (two, 1))
+    )
+    assert alone.count(b"<path") > 10
+    assert alone == same != other

@@ -28,7 +28,7 @@ const inSight = (line) => {
   const dialog = [...document.querySelectorAll("dialog[open]")].at(-1);
   if ((dialog ?? document.body) === line.parentElement) return;
   (dialog ?? document.body).append(line);
-  dialog?.addEventListener("close", () => document.body.append(line), { once: true });
+  dialog?.addEventListener("close", () => dialog.contains(line) && inSight(line), { once: true });
 };
 
 /** Take the status line away, or some words alone if it still says them. */

@@ -29,9 +29,9 @@ export const under = (legend, width, height, ...drawing) => {
 };
 
 /** Axes, bands, marks and curves where uPlot has placed them, in dots of the page.
- * @param {CanvasRenderingContext2D} pen @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
-export const drawChart = (pen, plot, { series, bands = [] }, data, marks) => {
-  const frame = frameOf(plot);
+ * @param {CanvasRenderingContext2D} pen @param {uPlot} plot @param {ChartOptions} options @param {Columns} all @param {Marks} marks */
+export const drawChart = (pen, plot, { series, bands = [] }, all, marks) => {
+  const [frame, data] = [frameOf(plot), inSight(plot.scales.x, all)];
   const { left, top, width, height } = frame;
   drawAxes(pen, plot, frame);
   pen.save();
@@ -45,6 +45,18 @@ export const drawChart = (pen, plot, { series, bands = [] }, data, marks) => {
   series.forEach((each, k) => each.points && drawDots(pen, frame, each, data[0], data[k + 1] ?? []));
 };
 
+/** Columns of what lies in sight, to a value of each on either side. @param {{ min: number, max: number }} scale @param {Columns} data */
+const inSight = ({ min, max }, data) => {
+  const end = data[0].length - 1;
+  const open = (/** @type {number} */ k) => k > 0 && k < end && data.some((column) => (column[k] ?? null) === null);
+  let [from, to] = [0, end];
+  while (from < end && Number(data[0][from + 1]) < min) from += 1;
+  while (to > 0 && Number(data[0][to - 1]) > max) to -= 1;
+  while (open(from)) from -= 1;
+  while (open(to)) to += 1;
+  return data.map((column) => column.slice(from, to + 1));
+};
+
 /** @param {uPlot} plot */
 const frameOf = (plot) => {
   const ratio = plot.ctx.canvas.width / plot.width;
@@ -56,6 +68,7 @@ const frameOf = (plot) => {
 
 /** @param {CanvasRenderingContext2D} pen @param {string} paint @param {number} width @param {number[]} dash @param {...number} ends */
 const line = (pen, paint, width, dash, ...ends) => {
+  if (!ends.every(Number.isFinite)) return; // on an axis that is not there
   Object.assign(pen, { strokeStyle: colour(paint), lineWidth: width });
   pen.setLineDash(dash);
   pen.beginPath();
@@ -69,11 +82,12 @@ const drawAxes = (pen, plot, { left, top, width, height, x, y }) => {
   const [across, up] = plot.axes;
   const [right, bottom] = [left + width, top + height];
   Object.assign(pen, { font: "12px system-ui, sans-serif", fillStyle: colour("--ink-soft"), textAlign: "center", textBaseline: "alphabetic" });
-  across._splits?.forEach((value, k) => {
+  if (across._show) across._splits?.forEach((value, k) => {
     line(pen, "--grid", 1, [], x(value), top, x(value), bottom + 4);
     pen.fillText(across._values?.[k] ?? "", x(value), bottom + 19);
   });
-  pen.fillText(across.label, left + width / 2, across._lpos + 11);
+  if (across._show) pen.fillText(across.label, left + width / 2, across._lpos + 11);
+  if (!up._show) return; // there is no value, nor a place for words
   pen.save();
   pen.translate(up._lpos - 3, top + height / 2);
   pen.rotate(-Math.PI / 2);

@@ -15,7 +15,8 @@ export const measured = (words, font = "12px system-ui, sans-serif") => {
 export const wrapped = (words, width, font) => {
   /** @type {string[]} */
   const lines = [];
-  for (const piece of words.match(/[\u2e80-\u9fff]|[^ \u2e80-\u9fff]+ ?/g) ?? []) {
+  const pieces = words.match(/[\u2e80-\u9fff]|[^ \u2e80-\u9fff]+ ?/g) ?? [];
+  for (const piece of pieces.flatMap((each) => (measured(each, font).width > width ? [...each] : [each]))) {
     const longer = `${lines.at(-1) ?? ""}${piece}`;
     if (lines.length && measured(longer.trimEnd(), font).width <= width) lines[lines.length - 1] = longer;
     else lines.push(piece);

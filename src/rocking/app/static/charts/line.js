@@ -65,8 +65,9 @@ export const lineChart = (container, options) => {
       }],
       setScale: [(/** @type {uPlot} */ self, /** @type {string} */ key) => key === "x" && data[0].length && look(self)],
       draw: [(/** @type {uPlot} */ self) => {
+        const ratio = self.ctx.canvas.width / self.width;
         self.ctx.save();
-        self.ctx.scale(devicePixelRatio, devicePixelRatio);
+        self.ctx.scale(ratio, ratio);
         drawChart(self.ctx, self, options, data, marks);
         self.ctx.restore();
       }],

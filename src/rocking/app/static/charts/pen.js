@@ -17,8 +17,9 @@ const ANCHORS = { center: "middle", right: "end" };
 /** @type {{ [word: string]: number | undefined }} */
 const BELOW = { top: 0.8, middle: 0.35 }; // of the size of the letters
 
+// Metres of a small body or dots of the page.
 /** @param {...number} values */
-const at = (...values) => values.map((value) => Math.round(value * 1000) / 1000).join(" ");
+const at = (...values) => values.map((value) => Number(value.toPrecision(7))).join(" ");
 
 /** Draws into `node`; it has what the page's drawings use of a canvas. */
 export class SvgPen {
@@ -77,7 +78,9 @@ export class SvgPen {
   textOf(path) { return path ? written.get(path) : this.d; }
   /** @param {Path2D} [path] @param {string} [rule] */
   fill(path, rule) {
-    this.put("path", { d: this.textOf(path), fill: this.fillStyle, "fill-rule": rule, "fill-opacity": at(this.globalAlpha) });
+    const [, paint, share] = /^(#.{6})(..)$/.exec(this.fillStyle) ?? [null, this.fillStyle, "ff"]; // no SVG 1.1 has #rrggbbaa
+    const opacity = at(this.globalAlpha * Number.parseInt(share, 16) / 255);
+    this.put("path", { d: this.textOf(path), fill: paint, "fill-rule": rule, "fill-opacity": opacity });
   }
 
   /** @param {Path2D} [path] */

@@ -2,7 +2,6 @@
 
 import { html, useMemo, useRef } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";
-import { say } from "/app/say.js";
 import { chartFiles, menuOf, saveFile, savePngOf } from "/charts/save.js";
 import { stillOf } from "/charts/still.js";
 import { Made } from "/parts/made.js";
@@ -17,7 +16,7 @@ export const Pictured = ({ title, more = "", about = "", canvasOf, children }) =
     title: given.current.title,
     about: given.current.about,
     node: stillOf(place.current, given.current.canvasOf),
-    alt: [...place.current.querySelectorAll("[role=img]")].map((each) => each.getAttribute("aria-label")).join(" "),
+    alt: [...place.current.querySelectorAll("[role=img], canvas[aria-label]")].map((each) => each.getAttribute("aria-label")).join(" "),
   }), "picture"), [title]);
   return html`<div ref=${place} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
 };
@@ -26,7 +25,7 @@ export const Pictured = ({ title, more = "", about = "", canvasOf, children }) =
 export const Fetched = ({ title, path, ...more }) => {
   const files = useMemo(() => {
     /** @param {(file: Blob, title: string) => unknown} save */
-    const saved = (save) => () => fetchFile(path).then((file) => save(file, title)).catch((error) => say(error.message, "error"));
+    const saved = (save) => () => fetchFile(path).then((file) => save(file, title));
     return menuOf(title, "picture", [["PNG", saved(savePngOf)], ["SVG", saved((file) => saveFile(file, title, "svg"))]]);
   }, [title, path]);
   return html`<div><img class="drawing" src=${`/api/${path}`} ...${more} /><${Made} node=${files} class="chart-foot" /></div>`;

@@ -2,6 +2,7 @@
 
 import { saveBlob } from "/app/api.js";
 import { el, set, svg } from "/app/dom.js";
+import { say } from "/app/say.js";
 import { sayAll, words } from "/app/words.js";
 import { wrapped } from "/charts/letters.js";
 import { colour, inLight } from "/charts/style.js";
@@ -30,7 +31,8 @@ export const savePngOf = async (drawing, title) => {
     sheet.getContext("2d")?.drawImage(image, 0, 0, sheet.width, sheet.height);
     /** @type {Blob | null} */
     const blob = await new Promise((resolve) => sheet.toBlob(resolve));
-    if (blob) saveFile(blob, title, "png");
+    if (!blob) throw new Error("This browser makes no PNG of that size: save it as SVG.");
+    saveFile(blob, title, "png");
   } finally {
     URL.revokeObjectURL(address);
   }
@@ -53,16 +55,20 @@ export const menuOf = (title, what, kinds) => {
   const items = kinds.map(([kind, save]) => el("button", {
     type: "button", class: "button quiet", "aria-label": `${kind} of the ${what} ${title}`,
     onclick: () => {
-      save();
-      menu.open = false;
+      leave();
+      Promise.resolve().then(save).catch((error) => say(error.message, "error"));
     },
   }, kind));
-  const menu = el("details", { class: "chart-files" },
-    el("summary", { class: "button quiet", "aria-label": `Save the ${what} ${title}` }, "Save"),
-    el("div", {}, items));
+  const head = el("summary", { class: "button quiet", "aria-label": `Save the ${what} ${title}` }, "Save");
+  const menu = el("details", { class: "chart-files" }, head, el("div", {}, items));
+  const leave = () => { // and the keyboard stays at the menu
+    menu.open = false;
+    head.focus();
+  };
   /** @param {any} event */
   const close = (event) => {
-    if (event.type === "keydown" ? event.key === "Escape" : !menu.contains(event.relatedTarget)) menu.open = false;
+    if (event.type === "focusout" && !menu.contains(event.relatedTarget)) menu.open = false;
+    if (event.key === "Escape" && menu.open) leave();
   };
   for (const kind of ["focusout", "keydown"]) menu.addEventListener(kind, close);
   return menu;

@@ -284,7 +284,7 @@ export const createProjects = (app, first) => {
         const joined = ours || join(whole.document);
         if (joined) last = /** @type {Own} */ (whole.document);
         changed.add("inputs");
-        known(whole);
+        known(joined ? whole : { ...whole, version: kept.version }); // another reload asks again
         if (joined) await save();
         else clash.value = { theirs: whole, mine };
         return;
@@ -329,9 +329,11 @@ const remembered = () => {
 
 /** @param {{ id: string, version: number, more: boolean, sent: Own[], last: Own | null }} facts */
 const remember = (facts) => {
-  try {
-    sessionStorage.setItem(OPEN, JSON.stringify(facts));
-  } catch {
-    // The next reload opens the project that was changed last.
+  for (const more of [{}, { sent: [], last: null }]) { // a reload asks where too much was typed to be kept twice
+    try {
+      return sessionStorage.setItem(OPEN, JSON.stringify({ ...facts, ...more }));
+    } catch {
+      // The next reload opens the project that was changed last.
+    }
   }
 };

@@ -56,10 +56,12 @@ export const createQuestions = (app, ...commands) => {
       if (!shown.value && all.value.length) await follow(all.value[0].id);
     }),
     ask: safely(async (tables, files, name, { command = commands[0], format = "", project = here() } = {}) => {
+      const place = here();
       shown.value = null;
       await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
+      if (place !== here()) return; // it stands in the project where it was asked
       mine = question.id;
       shown.value = { ...question, answer: null, toml: "" };
       await follow(question.id);

@@ -63,6 +63,10 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
     && look({ turned: stage.value.turned + across, raised: stage.value.raised + up });
   /** @param {number} times */
   const nearer = (times) => stage.value && look({ near: stage.value.near * times });
+  const photograph = () => {
+    if (!stage.value) throw new Error("The body is not drawn yet.");
+    return stage.value.photograph();
+  };
   /** @param {KeyboardEvent} event */
   const keys = (event) => {
     const does = {
@@ -77,7 +81,7 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
   return html`
     ${trouble.value && html`<${Note} kind="warning" words=${trouble.value} />`}
     <div class="space-picture" hidden=${Boolean(trouble.value)} data-own=${question.name} data-about=${words}>
-      <${Pictured} title=${title} canvasOf=${() => stage.value.photograph()}><canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
+      <${Pictured} title=${title} canvasOf=${photograph}><canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
         data-testid="space-stage" onKeyDown=${keys}
         onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)}
         onPointerMove=${(event) => event.buttons && turn(-BY_PIXEL * event.movementX, BY_PIXEL * event.movementY)}

@@ -83,7 +83,7 @@ export const createRecord = (app, onChange) => {
       const [stations, records] = [true, false].map((are) => sent.filter(({ name }) => isStations(name) === are));
       const form = app.forms.of("records", { files: [], steps: [] });
       const { files: before, steps } = form.value;
-      form.at("files").value = [...before.filter((/** @type {SentFile} */ { sha }) => sent.every((one) => one.sha !== sha)), ...sent];
+      form.at("files").value = [...before.filter((/** @type {SentFile} */ { sha, name }) => sent.every((one) => one.sha !== sha && one.name !== name)), ...sent];
       form.at("steps").value = [{ name: "response", id: freshId("step"), keys: { stations: stations[0].name } },
         ...steps.filter((/** @type {RecordStep} */ { name }) => name !== "response")];
       form.at("shown").value = records[0].name;

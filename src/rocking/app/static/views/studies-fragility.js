@@ -2,21 +2,24 @@
 import { html, useMemo, useSignal } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
+import { Fetched } from "/charts/pictured.js";
 import { pretty, quantity } from "/app/format.js";
 import { Choice, Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
 
 /** Fragility curves, of one restitution at a time.
- * @param {{ found: Server.FragilityResult, chosen: { restitution: number } }} props */
-export const Fragility = ({ found, chosen }) => {
+ * @param {{ study: Server.StudyFacts, found: Server.FragilityResult, chosen: { restitution: number } }} props */
+export const Fragility = ({ study, found, chosen }) => {
   const k = useSignal("0");
   chosen.restitution = Number(k.value);
   const options = found.analyses.map(({ restitution }, value) => [String(value), modelWords(restitution)]);
   return html`
     ${options.length > 1 && html`<${Choice} label="Restitution" options=${options} value=${k} />`}
     <div data-about=${options[chosen.restitution][1]}>
-      <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} /></div>`;
+      <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />
+      ${study.kind === "incremental" && html`<${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
+        path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of every motion over the intensity to which it is scaled" />`}</div>`;
 };
 
 /** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
