@@ -39,9 +39,11 @@ def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str)
 
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
     """Return `value` as a whole number between `low` and `high`."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
+    is_whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not is_whole or not low <= int(value) <= high:
         top = f"{high}]" if high < 2**53 else f"2^{high.bit_length()})"
-        allowed = f">= {low}" if high == 2**63 - 1 else f"in [{low}, {top}"
+        beyond = high != 2**63 - 1 or (is_whole and int(value) > high)
+        allowed = f"in [{low}, {top}" if beyond else f">= {low}"
         raise InvalidValueError(f"{name} must be a whole number {allowed}, got {value!r:.60}")
     return int(value)
 

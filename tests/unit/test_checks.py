@@ -43,6 +43,10 @@ def test_whole_numbers():
     for value in (0, 10, 1.0, True, None, "1", float("nan"), np.float64(2.0)):
         with pytest.raises(InvalidValueError, match=r"^n must be a whole number in \[1, 9\], got "):
             checks.whole("n", value, 1, 9)
+    # a usual upper end is told only to who is beyond it
+    for value, allowed in ((-1, ">= 0"), (0.5, ">= 0"), (2**63, r"in \[0, 2\^63\)")):
+        with pytest.raises(InvalidValueError, match=f"^n must be a whole number {allowed}, got "):
+            checks.whole("n", value)
 
 
 @pytest.mark.parametrize("value", NOT_NUMBERS, ids=lambda value: type(value).__name__)

@@ -36,7 +36,6 @@ _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 def figure_of(what: str, evaluation: Evaluation) -> "Figure":
     """Return a picture."""
     from rocking.plots.body import body_picture, coefficient_picture
-    from rocking.plots.energy_stages import energy_stages_picture
     from rocking.plots.ground_motion import ground_motion_picture
     from rocking.plots.response import response_picture
 
@@ -53,8 +52,6 @@ def figure_of(what: str, evaluation: Evaluation) -> "Figure":
         case "coefficients":
             tables = evaluation.impact.tables
             return in_words(coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.foot]])
-        case "stages":
-            return energy_stages_picture(evaluation.body, onto=evaluation.foot)
     return body_picture(evaluation.body)
 
 

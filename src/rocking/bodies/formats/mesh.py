@@ -5,7 +5,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -61,6 +61,7 @@ def mesh_from_file(
         except OSError as error:
             raise BodyFileError(f"cannot be opened ({error.strerror})") from error
         vertices, faces = _loaded(content, kind)
+        surface = checks.one_of("surface", surface, get_args(Surface))
         surface = "wrap" if surface == "faces" and not len(faces) else surface
         done = repaired(
             times(vertices * scale, turn.T), faces,

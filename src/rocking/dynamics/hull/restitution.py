@@ -55,7 +55,8 @@ def spread_of(body: HullBody) -> Solid:
     """Return the distribution of mass of a body, which "ked-3d" needs; refused where its moments alone are known."""
     if body.solid is None:
         raise InvalidValueError(
-            "restitution 'ked-3d' needs the distribution of mass, and of this body moments alone are known"
+            "restitution 'ked-3d' needs the distribution of mass, and of this body moments alone are known: give the"
+            " HullBody its solid"
         )
     return body.solid
 

@@ -22,7 +22,7 @@ def normals(seed: object, *shape: int) -> FloatArray:
 
     The last bit of one in 4000 of NumPy's is that of the C library's logarithm; rounding to 2e-10 takes it away.
     """
-    numbers = np.random.default_rng(checks.whole("seed", seed, high=2**128)).standard_normal(shape)
+    numbers = np.random.default_rng(checks.whole("seed", seed, high=2**128 - 1)).standard_normal(shape)
     numbers *= _GRID
     np.rint(numbers, out=numbers)
     numbers *= 1.0 / _GRID

@@ -127,7 +127,7 @@ class InventoryObject:
             checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
-        checks.whole("count", self.count, 1, 1_000_000)
+        object.__setattr__(self, "count", checks.whole("count", self.count, 1, 1_000_000))
 
     def base(self, direction: Direction) -> float:
         """Return the size of the base in a direction.

@@ -231,6 +231,7 @@ def test_clouds_in_text(tmp_path):
     path = tmp_path / "cloud.xyz"
     np.savetxt(path, bad_scans.scattered(V, F, 4000), fmt="%.6f")
     assert rk.read_body(path, units="m").volume == pytest.approx(VOLUME, rel=MOST_VOLUME)
+    assert rk.read_body(path, units="m", surface="Faces").volume == rk.read_body(path, units="m").volume
     np.savetxt(path, V[:3], fmt="%.6f")
     with pytest.raises(BodyFileError, match="too few for a cloud"):
         rk.read_body(path, units="m")

@@ -44,6 +44,11 @@ def quakes():
 
 
 @pytest.mark.verifies("closed form", "the rectangle that just overturns, 0.01 shorter and longer")
+def test_a_count_of_numpy_is_a_number():
+    """It is written into JSON as any other."""
+    assert type(InventoryObject(name="vase", width=0.2, depth=0.2, height=1.0, count=np.int64(3)).count) is int
+
+
 def test_counts_by_hand():
     """Pulses 1 % shorter than the closed form for overturning leave it standing, 1 % longer do not: 3 of 10 fall."""
     hazard = Hazard.of_records([rectangle(0.99 * CRITICAL)] * 7 + [rectangle(1.01 * CRITICAL)] * 3)
