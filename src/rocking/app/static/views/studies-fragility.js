@@ -18,7 +18,7 @@ export const Fragility = ({ study, found, chosen }) => {
     ${options.length > 1 && html`<${Choice} label="Restitution" options=${options} value=${k} />`}
     <div data-about=${options[chosen.restitution][1]}>
       <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />
-      ${study.kind === "incremental" && html`<${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
+      ${study.kind === "incremental" && html`<h3>Curves of the incremental analysis</h3><${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
         path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of every motion over the intensity to which it is scaled" />`}</div>`;
 };
 
