@@ -251,11 +251,12 @@ RATTLED = "".join(f"{0.005 * k:.3f},{a:.9f}\n" for k, a in enumerate(NOISE)).enc
 
 
 CURVE = """(svg) => {
-  const numbers = (node, ...keys) => keys.map((key) => Number(node.getAttribute(key)));
-  const [left, width] = numbers(svg.querySelector("clipPath rect"), "x", "width");
+  const numbers = (path) => path.getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+  const [left, , width] = numbers(svg.querySelector("clipPath path"));
+  const paths = (wide) => [...svg.querySelectorAll(`g[clip-path] path[stroke-width="${wide}"]`)];
   return { left, width,
-    marks: [...svg.querySelectorAll("g[clip-path] line")].map((each) => numbers(each, "x1", "x2", "y1", "y2")),
-    curves: [...svg.querySelectorAll("g[clip-path] path")].map((each) => each.getAttribute("d")) };
+    marks: paths(1).map(numbers).map(([x1, y1, x2, y2]) => [x1, x2, y1, y2]),
+    curves: paths(1.6).map((each) => each.getAttribute("d")) };
 }"""
 
 
