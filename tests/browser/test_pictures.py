@@ -267,14 +267,14 @@ def test_a_chart_draws_what_is_in_sight(page: Any) -> None:
     """A part is drawn to a value on either side of it, and all of it without one; with no value there are no words."""
     script = """async ([columns, part]) => {
         const { lineChart } = await import("/charts/line.js");
-        const { stillOf } = await import("/charts/curves.js");
+        const { chartStill } = await import("/charts/curves.js");
         const place = document.body.appendChild(document.createElement("div"));
         const series = [{ label: "", colour: "--ink" }];
         const options = { title: "", x: { label: "time" }, y: { label: "angle" }, series };
         const chart = lineChart(place, options);
         chart.setData(columns, part);
         await new Promise(requestAnimationFrame);
-        const drawing = stillOf(chart.plot, options, columns, { horizontal: [1] });
+        const drawing = chartStill(chart.plot, options, columns, { horizontal: [1] });
         const curve = [...drawing.querySelectorAll("path")].find((each) => each.getAttribute("stroke-width") === "1.6");
         const words = [...drawing.querySelectorAll("text")].map((each) => each.textContent);
         const text = drawing.outerHTML;

@@ -12,7 +12,7 @@ const [ROW, BELOW, EDGE] = [20, 50, 2]; // of a legend, below the frame, and of 
 const TICK = 6; // height of a row of ticks on the axis [px]
 
 /** What a chart shows, with its legend. @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
-export const stillOf = (plot, options, data, marks) => {
+export const chartStill = (plot, options, data, marks) => {
   const pen = new SvgPen();
   drawChart(/** @type {any} */ (pen), plot, options, data, marks);
   const { top, height } = frameOf(plot);
@@ -48,12 +48,12 @@ export const drawChart = (pen, plot, { series, bands = [] }, all, marks) => {
 /** Columns of what lies in sight, to a value of each on either side. @param {{ min: number, max: number }} scale @param {Columns} data */
 const inSight = ({ min, max }, data) => {
   const end = data[0].length - 1;
-  const open = (/** @type {number} */ k) => k > 0 && k < end && data.some((column) => (column[k] ?? null) === null);
+  const gap = (/** @type {number} */ k) => k > 0 && k < end && data.some((column) => (column[k] ?? null) === null);
   let [from, to] = [0, end];
   while (from < end && Number(data[0][from + 1]) < min) from += 1;
   while (to > 0 && Number(data[0][to - 1]) > max) to -= 1;
-  while (open(from)) from -= 1;
-  while (open(to)) to += 1;
+  while (gap(from)) from -= 1;
+  while (gap(to)) to += 1;
   return data.map((column) => column.slice(from, to + 1));
 };
 

@@ -2,7 +2,7 @@
 
 import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";
-import { drawChart, stillOf } from "/charts/curves.js";
+import { chartStill, drawChart } from "/charts/curves.js";
 import { chartFiles } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
 import { el, fill, freshId } from "/app/dom.js";
@@ -29,7 +29,7 @@ export const lineChart = (container, options) => {
   /** @type {Point | null} */
   let zoomed = null;
   const table = chartTable(options, () => data);
-  const still = () => ({ node: stillOf(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
+  const still = () => ({ node: chartStill(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
   const csv = () => csvOf(options, data);
   figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, still, "chart", csv)));
 
