@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test docs oldest packages coverage portable portable-quick lint types golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants lock clean
+.PHONY: help demo test docs oldest packages coverage portable portable-quick lint types golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants pelicun lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -29,6 +29,7 @@ help:
 	@echo "make evidence-sets  1000 sets of measurements made up, and how often a left-out group lies within its interval (goes on where it stopped)"
 	@echo "make virtual-rocks  20 rocks foreseen from their scans, and what another program makes of them (goes on where it stopped)"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
+	@echo "make pelicun  PELICUN computes with curves that are exported for it, in an environment of its own"
 	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped)"
 	@echo "make oldest   the unit tests with the oldest dependencies that are admitted"
 	@echo "make packages the source distribution and, from it, a wheel, into dist; what is in them, the index page, the workflow"
@@ -142,6 +143,15 @@ oldest: $(OLDEST)/created
 	PYTHONPATH=$(abspath src) $(OLDEST)/bin/python -m pytest tests/unit -n 2 --dist loadfile -o filterwarnings= -W ignore::DeprecationWarning \
 		-W "ignore:check the input" -m "not timed and not browser and not pinned" --ignore=tests/unit/test_theory_pages.py
 
+# PELICUN reads what is exported for it, in an environment of its own: it needs older libraries than the others.
+PELICUN := build/pelicun
+$(PELICUN)/created: $(ENGINE) requirements/pelicun.lock
+	@$(PYTHON) -m venv $(PELICUN)
+	@$(PELICUN)/bin/python -m pip install --quiet --require-hashes --only-binary=:all: -r requirements/pelicun.lock
+	@touch $@
+pelicun: $(PELICUN)/created
+	PYTHONPATH=$(abspath src) $(PELICUN)/bin/python -m pytest tests/verification/test_pelicun.py -o filterwarnings= -q
+
 # The manual that `make docs` made goes into both.
 MANUAL := src/rocking/app/manual
 packages: $(VENV)/dev
@@ -198,6 +208,8 @@ lock: $(VENV)/created
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
 		--no-annotate --no-emit-package rocking --upgrade --extra mutants --constraint requirements/dev.lock pyproject.toml \
 		-o requirements/mutants.lock
+	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		--no-annotate --no-emit-package rocking --upgrade --extra pelicun pyproject.toml -o requirements/pelicun.lock
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so

@@ -70,7 +70,7 @@ def printed(capsys, *words):
 def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path):
     """One entry, and commands, studies, scaling, sets of records, pictures, the page and NRML know the measure."""
     _, names = section("An intensity measure")
-    rms = replace(names["rms"], openquake=("RMS", 0.5))
+    rms = replace(names["rms"], openquake=("RMS", "2 m/s2", 0.5))
     assert "rms" not in measures()
     monkeypatch.setitem(intensity.MEASURES, "rms", rms)
     record = rk.GroundMotion([0.0, 3.0, -4.0, 0.0], 0.1)

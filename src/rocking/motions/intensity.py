@@ -262,8 +262,8 @@ class IntensityMeasure:
         Whether a motion alone does not tell it.
     is_listed : bool
         Whether it stands in the table of a motion, where ratios of what stands there would say nothing new.
-    openquake : tuple of str and float, optional
-        What OpenQuake calls it, and one SI unit in the unit there; None if it is not known there.
+    openquake : tuple of str, str and float, optional
+        Name in OpenQuake, unit there, and one SI unit in that unit; None if OpenQuake has no such measure.
     uplift : callable, optional
         Its value above which every horizontal motion lifts a body with equal sides and below which none does, of what
         is known of the body; None if there is none.
@@ -282,7 +282,7 @@ class IntensityMeasure:
     symbol: str = ""
     needs_body: bool = False
     is_listed: bool = True
-    openquake: tuple[str, float] | None = None
+    openquake: tuple[str, str, float] | None = None
     uplift: Callable[[RockingScale], float] | None = None
 
     def of(self, motion: GroundMotion, body: RockingScale | None = None) -> float:
@@ -411,7 +411,7 @@ def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
     return IntensityMeasure(
         name, words, "m/s2", 1, lambda m, _: spectral_acceleration(m, period, damping),
         symbol=f"PSA({period:g} s, {damping:g})",
-        openquake=(f"SA({period!r})", 1.0 / g) if damping == 0.05 else None,
+        openquake=(f"SA({period!r})", "g", 1.0 / g) if damping == 0.05 else None,
     )  # fmt: skip
 
 
@@ -466,6 +466,21 @@ def spectral_period(name: str) -> tuple[float, float] | None:
     return None if found is None else (float(found[1]), float(found[2] or 0.05))
 
 
+def exchange_unit(name: str, unit: str) -> tuple[str, float]:
+    """Return the unit in which other programs read a measure, and one SI unit in that unit.
+
+    The unit of OpenQuake where OpenQuake has the measure; g for other accelerations; else the unit of the measure.
+
+    >>> exchange_unit("pgv", "m/s")
+    ('cm/s', 100.0)
+    """
+    period = spectral_period(name)
+    known = MEASURES.get(name) if period is None else spectral_measure(*period)
+    if known is not None and known.openquake is not None:
+        return known.openquake[1:]
+    return ("g", 1.0 / g) if unit == "m/s2" else (unit, 1.0)
+
+
 def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
     """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6, its peak exact."""
     if not isinstance(motion, Pulse):
@@ -481,15 +496,15 @@ def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
 _NAMED = (
     IntensityMeasure(
         "pga", "peak ground acceleration", "m/s2", 1, lambda m, _: peak_ground_acceleration(m),
-        symbol="PGA", openquake=("PGA", 1.0 / g), uplift=lambda b: b.threshold,
+        symbol="PGA", openquake=("PGA", "g", 1.0 / g), uplift=lambda b: b.threshold,
     ),
     IntensityMeasure(
         "pgv", "peak ground velocity", "m/s", 1, lambda m, _: peak_ground_velocity(m),
-        symbol="PGV", openquake=("PGV", 100.0),  # cm/s
+        symbol="PGV", openquake=("PGV", "cm/s", 100.0),
     ),
     IntensityMeasure(
         "pgd", "peak ground displacement", "m", 1, lambda m, _: peak_ground_displacement(m),
-        symbol="PGD", openquake=("PGD", 100.0),  # cm
+        symbol="PGD", openquake=("PGD", "cm", 100.0),
     ),
     IntensityMeasure(
         "pga/(g tan alpha)", "peak ground acceleration over the one that lifts", "-", 1,
@@ -512,11 +527,11 @@ _NAMED = (
     ),
     IntensityMeasure(
         "arias", "Arias intensity", "m/s", 2, lambda m, b: arias_intensity(m, b.gravity),
-        symbol="Arias", openquake=("IA", 1.0),
+        symbol="Arias", openquake=("IA", "m/s", 1.0),
     ),
     IntensityMeasure(
         "cav", "cumulative absolute velocity", "m/s", 1, lambda m, _: cumulative_absolute_velocity(m),
-        symbol="CAV", openquake=("CAV", 1.0 / g),  # g s
+        symbol="CAV", openquake=("CAV", "g s", 1.0 / g),
     ),
     IntensityMeasure(
         "d5_95", "significant duration 5-95 %", "s", 0, lambda m, _: significant_duration(m), symbol="D5-95",

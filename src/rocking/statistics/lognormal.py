@@ -136,11 +136,32 @@ class LognormalFit:
 
     @cached_property
     def verdict(self) -> str:
-        """What can be claimed, in plain words."""
+        """What can be claimed, in plain words; levels are numbers without a unit, since a fit knows none."""
+        return self.verdict_in("")
+
+    def verdict_in(self, unit: str, size: float = 1.0) -> str:
+        """Return the verdict with levels in a unit.
+
+        Parameters
+        ----------
+        unit : str
+            Name of the unit, as the text shows it; empty for none.
+        size : float
+            The unit of the levels in this unit [-].
+
+        Returns
+        -------
+        str
+            What can be claimed, in plain words.
+        """
         rise = None
         if self.curves is not None and self.method == "maximum-likelihood":
             rise = float(2.0 * (self.curves.value - flat_line(self._model)[1])[0])  # Eq. 205
-        return verdict_of(self.counts, self.separation, self.curve, rise)
+
+        def level(value: float, digits: int = 6) -> str:
+            return f"{value * size:.{digits}g} {unit}".rstrip()
+
+        return verdict_of(self.counts, self.separation, self.curve, rise, level)
 
     @property
     def interval_method(self) -> IntervalMethod:

@@ -1,5 +1,6 @@
 """Likeliest curves, each with the proof that it is a maximum, and whether the data fix one at all, in words."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -89,11 +90,14 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
     return np.sum(failures * distance, axis=1), np.sum(trials * np.abs(distance), axis=1)  # Eq. 201
 
 
-def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:
+def verdict_of(
+    counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None,
+    level: Callable[..., str],
+) -> str:  # fmt: skip
     """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know."""
     # The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the level,
-    # a chi-square of one degree of freedom; None for a penalised fit.
-    parts = [_finding(counts, separation, curve, penalised=rise is None)]
+    # a chi-square of one degree of freedom; None for a penalised fit. `level` writes a level, with its unit.
+    parts = [_finding(counts, separation, curve, level, penalised=rise is None)]
     if rise is not None and rise < 3.841:
         parts.append("Chance alone explains the growth with the level (5 % test): intervals may be open.")
     if curve is not None and counts.is_clustered:
@@ -114,10 +118,13 @@ def _clustered(counts: Counts) -> str:
     )
 
 
-def _finding(counts: Counts, separation: Separation, curve: tuple[float, float] | None, *, penalised: bool) -> str:
+def _finding(
+    counts: Counts, separation: Separation, curve: tuple[float, float] | None, level: Callable[..., str],
+    *, penalised: bool,
+) -> str:  # fmt: skip
     levels, sentence = counts.levels, separation.value[0].upper() + separation.value[1:]
     size = f"{counts.observations} outcomes at {levels.size} {'level' if levels.size == 1 else 'levels'}"
-    shown = "" if curve is None else f"median {curve[0]:.4g}, dispersion {curve[1]:.3g}"
+    shown = "" if curve is None else f"median {level(curve[0], 4)}, dispersion {curve[1]:.3g}"
     if separation is Separation.OVERLAP and curve is None:
         return f"{size} give no curve: the likeliest rises so little, if at all, that it has no median."
     if separation is Separation.OVERLAP:
@@ -127,18 +134,18 @@ def _finding(counts: Counts, separation: Separation, curve: tuple[float, float] 
         return f"{size} give {shown}, where the {what}."
     if separation.step:
         low, high = levels[counts.survivals > 0.0][-1], levels[counts.failures > 0.0][0]
-        where = f"between {low:g} and {high:g}" if high > low else f"at {low:g}"
+        where = f"between {level(low)} and {level(high)}" if high > low else f"at {level(low)}"
         return (
             f"{sentence}. {size} have no likeliest curve: the likelihood grows towards a step {where},"
             " with dispersion 0."
             + (f" The penalised likelihood gives {shown}: a convention, not a finding." if curve else "")
         )
     if separation in {Separation.NONE_FAILED, Separation.ALL_FAILED}:
-        return f"{sentence}. {_bound(counts, separation)} No curve is fitted."
+        return f"{sentence}. {_bound(counts, separation, level)} No curve is fitted."
     return f"{sentence}. No curve is fitted to {size}."
 
 
-def _bound(counts: Counts, separation: Separation) -> str:
+def _bound(counts: Counts, separation: Separation, level: Callable[..., str]) -> str:
     none = separation is Separation.NONE_FAILED
     place = -1 if none else 0
     trials = counts.trials[place]
@@ -146,7 +153,7 @@ def _bound(counts: Counts, separation: Separation) -> str:
     share = float(1.0 - (1.0 - LEVEL) ** (1.0 / float(trials)))  # Eq. 227
     what, text = ("failed", f"below {share:.3g}") if none else ("survived", f"above {1.0 - share:.3g}")
     return (
-        f"At {counts.levels[place]:g} none of {trials:g} {what}: there the probability of failure is {text}"
+        f"At {level(counts.levels[place])} none of {trials:g} {what}: there the probability of failure is {text}"
         f" (confidence {LEVEL:.0%})."
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
+from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
 from rocking.statistics.ordered_probit import ORDERED_METHODS, OrderedMethod, nested_curves
@@ -220,9 +221,10 @@ def model_of(
     chosen = checks.one_of("method", method, ORDERED_METHODS)
     wanted = list(analysis.fits) if states is None else [checks.one_of("states", s, analysis.fits) for s in states]
     subject: Subject = analysis.subject
+    measure = subject.measure
     curves, without = [], []
     for state, fit in ((name, fit) for name, fit in analysis.fits.items() if name in wanted):
-        curve = curve_of(state, fit)
+        curve = curve_of(state, fit, measure.name, measure.unit)
         if curve is None:
             without.append(state)
         else:
@@ -234,23 +236,32 @@ def model_of(
         )
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
     model = FragilityModel(
-        name, subject.measure.name, subject.measure.unit, tuple(curves), analysis.levels, analysis.trials,
+        name, measure.name, measure.unit, tuple(curves), analysis.levels, analysis.trials,
         analysis.counts, source or analysis.definition, subject.uplift_threshold, about,
-        {state: analysis.fits[state].verdict for state in without},
+        {state: analysis.fits[state].verdict_in(*_shown(measure.name, measure.unit)) for state in without},
     )  # fmt: skip
     return model if chosen == "separate" else with_common_dispersion(model)
 
 
-def curve_of(state: str, fit: LognormalFit) -> FragilityCurve | None:
-    """Return a fit as a curve; None if it has no finite median and dispersion above zero."""
+def curve_of(state: str, fit: LognormalFit, measure: str = "", unit: str = "-") -> FragilityCurve | None:
+    """Return a fit as a curve; None if it has no finite median and dispersion above zero.
+
+    The verdict contains levels of the measure in the unit of exported files.
+    """
     median, dispersion = fit.median, fit.dispersion
     if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
         return None
     summary = fit.summary()
     return FragilityCurve(
-        state, float(median), float(dispersion), fit.method, fit.verdict, tuple(summary["median_95"]),
-        tuple(summary["dispersion_95"]), summary["interval_method"],
+        state, float(median), float(dispersion), fit.method, fit.verdict_in(*_shown(measure, unit)),
+        tuple(summary["median_95"]), tuple(summary["dispersion_95"]), summary["interval_method"],
     )  # fmt: skip
+
+
+def _shown(measure: str, unit: str) -> tuple[str, float]:
+    """Return the unit of a measure in texts of exported files, and one SI unit in that unit."""
+    name, size = exchange_unit(measure, unit)
+    return "" if name == "-" else name, size
 
 
 def with_evidence(
@@ -273,11 +284,12 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     except InvalidValueError as error:
         names = ", ".join(curve.state for curve in model.curves)
         raise InvalidValueError(f"{error} The states are {names}: model_of(..., states=) leaves some out") from error
+    unit, size = _shown(model.measure, model.unit)
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
         verdict = (
             f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
-            f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
+            f" {f'{curve.median * size:.4g} {unit}'.rstrip()}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
         )
         curves.append(FragilityCurve(curve.state, median, dispersion, "common-dispersion", verdict.strip()))
     return replace(model, curves=tuple(curves))

@@ -10,9 +10,9 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import MEASURES, spectral_measure, spectral_period
+from rocking.motions.intensity import MEASURES, exchange_unit, spectral_measure, spectral_period
 from rocking.statistics.goodness import STATISTICS
 from rocking.studies.fragility.curves import (
     CLAIMS,
@@ -129,7 +129,8 @@ def fema_p58_table(
     Returns
     -------
     Table
-        Damage states DS1, DS2, ... from the least to the worst, sequential.
+        Damage states DS1, DS2, ... from the least to the worst, sequential. Medians of accelerations are in g, as in
+        files for PELICUN and OpenQuake; the table contains the unit.
 
     Raises
     ------
@@ -151,10 +152,11 @@ def fema_p58_table(
     )  # fmt: skip
     model = nested(model, crossing)
     demand, count = demand_parameter or model.measure, int(np.sum(model.trials))
-    unit = "dimensionless" if model.unit == "-" else model.unit
+    unit, size = exchange_unit(model.measure, model.unit)
+    unit = "dimensionless" if unit == "-" else unit
     rows = tuple(
         (
-            model.name, description, f"DS{k}", curve.state, curve.median, curve.dispersion, demand, unit,
+            model.name, description, f"DS{k}", curve.state, curve.median * size, curve.dispersion, demand, unit,
             "sequential", "; ".join(part for part in (quality, curve.method, curve.verdict) if part), model.source,
             count,
         )
@@ -177,10 +179,13 @@ def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
             f"for PELICUN curves stand against pga or sa(period) with 5 % damping, got {model.measure!r:.60}"
         )
     demand = "Peak Ground Acceleration" if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
-    row: list[Cell] = [model.name, 0, demand, "g", 0, 0]
+    unit, size = exchange_unit(model.measure, model.unit)
+    # Demand-Directional is 1, since the curve is of the motion in one direction: with 0 PELICUN takes the larger of
+    # two directions times NonDirectionalMultipliers, 1.2 unless a user sets another (pelicun/model/demand_model.py)
+    row: list[Cell] = [model.name, 0, demand, unit, 0, 1]
     curves = nested(model, crossing).curves
     for curve in curves:
-        row += ["lognormal", curve.median / conventions.g, curve.dispersion, ""]
+        row += ["lognormal", curve.median * size, curve.dispersion, ""]
     head = (*_PELICUN, *(f"LS{k}-{name}" for k in range(1, len(curves) + 1) for name in _LIMIT_STATE))
     return Table.of_rows("pelicun", head, [tuple(row)])
 
@@ -355,34 +360,34 @@ def to_nrml(
     """
     target = target_of(path)
     loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
-    imt, unit = intensity_type(model.measure)
+    imt, unit, size = intensity_type(model.measure)
     model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
     top = model.highest if highest is None else highest
     states = _identifiers([curve.state for curve in model.curves])
     root = ET.Element("nrml", xmlns=NAMESPACE)
     about = {"id": _identifier(model.name), "assetCategory": asset_category, "lossCategory": loss_category}
     node = ET.SubElement(root, "fragilityModel", {k: _word(v) for k, v in about.items()})
-    ET.SubElement(node, "description").text = _word(_description(model, description))
+    ET.SubElement(node, "description").text = _word(_description(model, description, unit))
     ET.SubElement(node, "limitStates").text = " ".join(states)
     function = ET.SubElement(
         node, "fragilityFunction", {"id": _word(model.name), "format": "continuous", "shape": "logncdf"}
     )
     levels = {
-        "noDamageLimit": (model.uplift_threshold or 0.0) * unit,
+        "noDamageLimit": (model.uplift_threshold or 0.0) * size,
         "minIML": 0.0,
-        "maxIML": checks.positive("highest", top, model.unit) * unit,
+        "maxIML": checks.positive("highest", top, model.unit) * size,
     }
     ET.SubElement(function, "imls", {"imt": imt} | {name: repr(value) for name, value in levels.items()})
     for state, curve in zip(states, model.curves, strict=True):
-        mean, deviation = moments_of_lognormal(curve.median * unit, curve.dispersion)
+        mean, deviation = moments_of_lognormal(curve.median * size, curve.dispersion)
         ET.SubElement(function, "params", {"ls": state, "mean": repr(mean), "stddev": repr(deviation)})
     ET.indent(root)
     ET.ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
     return target
 
 
-def intensity_type(measure: str) -> tuple[str, float]:
-    """Return what OpenQuake calls a measure, and the factor from SI to its unit: g, cm/s, cm, m/s or g s."""
+def intensity_type(measure: str) -> tuple[str, str, float]:
+    """Return the name of a measure in OpenQuake, the unit there, and one SI unit in that unit."""
     period = spectral_period(measure)
     one = MEASURES.get(measure) if period is None else spectral_measure(*period)
     if one is None or one.openquake is None:
@@ -402,9 +407,10 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
     return mean, mean * math.sqrt(math.expm1(dispersion**2))  # Eq. 228
 
 
-def _description(model: FragilityModel, description: str) -> str:
+def _description(model: FragilityModel, description: str, unit: str) -> str:
     claims = [f"{c.state}: {'; '.join(filter(None, (c.method, c.verdict)))}" for c in model.curves if c.method]
-    return " | ".join([description or model.source or "fragility of a rocking body", *claims])
+    about = f"{model.measure} in {unit}"
+    return " | ".join([description or model.source or "fragility of a rocking body", about, *claims])
 
 
 def _identifier(name: str) -> str:

@@ -74,7 +74,8 @@ def test_fema_p58_columns():
     made = fema_p58_table(model(), "a statue", "Peak ground acceleration")
     rows = [dict(zip(made.header, row, strict=True)) for row in made.rows]
     assert [row["Damage State"] for row in rows] == ["DS1", "DS2"]
-    assert rows[1]["Median Demand"] == 4.7
+    assert rows[1]["Median Demand"] == pytest.approx(4.7 / 9.80665, rel=1e-14)
+    assert rows[1]["Demand Unit"] == "g"
     assert rows[1]["Total Dispersion (Beta)"] == 0.4
     assert rows[1]["Demand Parameter"] == "Peak ground acceleration"
     assert rows[1]["Source of Data"] == "ten records"
@@ -88,7 +89,7 @@ def test_pelicun_reads_a_row():
         "LS1-DamageStateWeights,LS2-Family,LS2-Theta_0,LS2-Theta_1,LS2-DamageStateWeights"
     )
     (row,) = made.rows
-    assert row[1:7] == (0, "Peak Ground Acceleration", "g", 0, 0, "lognormal")
+    assert row[1:7] == (0, "Peak Ground Acceleration", "g", 0, 1, "lognormal")
     assert row[11] == pytest.approx(4.7 / 9.80665, rel=1e-14)
     assert (row[8], row[12]) == (0.25, 0.4)
     spectral = table(model(measure="sa(1.0)"), "pelicun")
@@ -174,7 +175,7 @@ def test_nrml_names_and_limits(tmp_path):
     path = to_nrml(model(name=NASTY, source="a < b & c"), tmp_path / "f.xml")
     node, function, _, _, space = parsed(path)
     assert function.attrib["id"] == NASTY
-    assert node.find("n:description", space).text == "a < b & c"
+    assert node.find("n:description", space).text == "a < b & c | pga in g"
     assert "<statue>" not in path.read_text(encoding="utf-8")
     curves = tuple(FragilityCurve(name, 2.0 + k, 0.3) for k, name in enumerate(["a>b", "a above b", "0.5", "é"]))
     names = [p.attrib["ls"] for p in parsed(to_nrml(model(curves=curves), tmp_path / "f.xml"))[3]]
@@ -185,10 +186,10 @@ def test_nrml_names_and_limits(tmp_path):
 @pytest.mark.parametrize(
     ("name", "wanted"),
     [
-        ("pga", ("PGA", 1 / 9.80665)),
-        ("pgv", ("PGV", 100.0)),
-        ("sa(0.3)", ("SA(0.3)", 1 / 9.80665)),
-        ("arias", ("IA", 1.0)),
+        ("pga", ("PGA", "g", 1 / 9.80665)),
+        ("pgv", ("PGV", "cm/s", 100.0)),
+        ("sa(0.3)", ("SA(0.3)", "g", 1 / 9.80665)),
+        ("arias", ("IA", "m/s", 1.0)),
     ],
 )
 def test_nrml_units(name, wanted):
@@ -339,7 +340,8 @@ def test_one_dispersion_for_all_states_on_request(tmp_path):
     rows = fema_p58_table(made, crossing="common-dispersion")
     cells = [dict(zip(rows.header, row, strict=True)) for row in rows.rows]
     for cell, curve in zip(cells, (fit.rocked, fit.overturned), strict=True):
-        assert (cell["Median Demand"], cell["Total Dispersion (Beta)"]) == curve
+        assert cell["Median Demand"] == pytest.approx(curve[0] / 9.80665, rel=1e-14)
+        assert cell["Total Dispersion (Beta)"] == curve[1]
         assert "common-dispersion" in cell["Data Quality and Relevance"]
     path = to_nrml(made, tmp_path / "f.xml", crossing="common-dispersion")
     params = ET.parse(path).getroot().findall(f".//{TAG}params")
@@ -358,3 +360,63 @@ def test_a_workbook_keeps_what_is_sound(tmp_path):
     assert book["parameters"]["D2"].value == 3.1
     whole = openpyxl.load_workbook(to_excel(crossed(), tmp_path / "g.xlsx", crossing="common-dispersion"))
     assert whole["fema-p58"].max_row == 3
+
+
+def read_back(path):
+    """Median [m/s2] and dispersion of each state of a file, by the documented rules of its format alone."""
+    if path.suffix == ".xml":
+        _, _, imls, params, _ = parsed(path)
+        assert imls.attrib["imt"] == "PGA"  # in g, by the manual of OpenQuake
+        moments = [(float(p.attrib["mean"]), float(p.attrib["stddev"])) for p in params]
+        spread = [math.sqrt(math.log1p((deviation / mean) ** 2)) for mean, deviation in moments]
+        return [(m * 9.80665 * math.exp(-0.5 * b * b), b) for (m, _), b in zip(moments, spread, strict=True)]
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    if "Damage State" in rows[0]:
+        sizes = {"g": 9.80665, "m/s2": 1.0}
+        return [
+            (float(r["Median Demand"]) * sizes[r["Demand Unit"]], float(r["Total Dispersion (Beta)"])) for r in rows
+        ]
+    (row,) = rows
+    # pelicun/model/demand_model.py: the demand of a component that is not directional is multiplied, 1.2 by default
+    times = {"1": 1.0, "0": 1.2}[row["Demand-Directional"]]
+    assert row["Demand-Unit"] == "g"
+    return [(float(row[f"LS{k}-Theta_0"]) * 9.80665 / times, float(row[f"LS{k}-Theta_1"])) for k in (1, 2)]
+
+
+@pytest.mark.verifies("computed anew", "the rules by which each format is read", within="1e-12")
+def test_three_files_give_the_same_curves(tmp_path):
+    """NRML, PELICUN and FEMA P-58 have one unit, g; what their readers compute is the curve that was exported."""
+    made = model()
+    paths = [
+        to_nrml(made, tmp_path / "f.xml"),
+        to_csv(made, tmp_path / "pelicun.csv", "pelicun"),
+        to_csv(made, tmp_path / "p58.csv", "fema-p58"),
+    ]
+    for path in paths:
+        for (median, dispersion), curve in zip(read_back(path), CURVES, strict=True):
+            assert (median, dispersion) == pytest.approx((curve.median, curve.dispersion), rel=1e-12, abs=0.0)
+    units = [table(made, "pelicun").rows[0][3], fema_p58_table(made).rows[0][7]]
+    assert units == ["g", "g"]
+    assert fema_p58_table(model(measure="pgv", unit="m/s")).rows[1][4:8:3] == (pytest.approx(470.0, rel=1e-14), "cm/s")
+    assert fema_p58_table(model(measure="sa(1.0,0.1)")).rows[0][7] == "g"
+    assert fema_p58_table(model(measure="p pgv/(g tan alpha)", unit="-")).rows[0][7] == "dimensionless"
+
+
+def test_texts_of_files_name_the_unit(tmp_path):
+    """Levels in the texts of NRML and FEMA P-58 are in g, as the curves are, and each has its unit."""
+    made = fragility_analysis(
+        rk.Block(width=0.4, height=1.6), [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 0.8, 20)],
+        [3.0, 4.0, 5.0, 6.0], restitution=0.9,
+    )  # fmt: skip
+    curves = model_of(made, "block")
+    fit = made.fits["overturned"]
+    words = f"median {fit.median / 9.80665:.4g} g, dispersion {fit.dispersion:.3g}"
+    described = ET.parse(to_nrml(curves, tmp_path / "f.xml", highest=6.0)).getroot().find(f".//{TAG}description").text
+    assert "pga in g" in described
+    assert words in described
+    assert words in curves.curves[1].verdict
+    assert words not in fit.verdict  # of a fit alone, which knows no unit
+    made = separated()[0]
+    assert curve_of("overturned", fit_lognormal(*STEP, [10] * 4), "pga", "m/s2").verdict.count(" g") >= 3
+    assert "between 2 and 3" in made.curves[0].verdict
