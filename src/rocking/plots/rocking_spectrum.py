@@ -10,6 +10,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.labels import PEAK, geometric, plain, plain_log, plain_numbers
 from rocking.plots.style import PALE, SINGLE, in_journal_style, look, new_figure
+from rocking.statistics.quantiles import quantiles
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,10 +95,7 @@ def fractiles(found: "xr.Dataset", place: int) -> tuple[FloatArray, FloatArray, 
     part = found.isel(slenderness_angle=place)
     mode = np.asarray(part["mode"].values)
     peak = np.where(mode >= 0, math.inf, np.asarray(part["peak_ratio"].values))
-    peak = np.sort(np.where(mode == -3, np.nan, peak), axis=0)  # what failed comes last
-    known = (mode != -3).sum(axis=0)
-    rows = [np.maximum(np.ceil(share * known).astype(int) - 1, 0) for share in (0.16, 0.5, 0.84)]
-    low, middle, high = (np.take_along_axis(peak, row[None], 0)[0] for row in rows)
+    low, middle, high = quantiles(np.where(mode == -3, np.nan, peak), (0.16, 0.5, 0.84))
     return tuple(np.where(np.isfinite(part), part, np.nan) for part in (low, middle, high))  # type: ignore[return-value]
 
 

@@ -11,6 +11,7 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.statistics.counts import share_interval
+from rocking.statistics.quantiles import quantiles
 
 REPETITIONS = 2000  # bootstrap samples of an interval
 
@@ -215,10 +216,8 @@ class Forecasts:
         value = float(made(means(once))[0])
         if self._weights.shape[1] < 2:
             return Score(value, np.nan, np.nan)
-        drawn = made(means(self._weights))
-        drawn = drawn[~np.isnan(drawn)]  # samples without one of the two outcomes
-        low, high = np.quantile(drawn, (0.025, 0.975), method="closest_observation") if drawn.size else (np.nan, np.nan)
-        return Score(value, float(low), float(high))
+        drawn = made(means(self._weights))  # NaN: samples without one of the two outcomes
+        return Score(value, *quantiles(drawn, (0.025, 0.975)).tolist())
 
 
 def _brier(p: FloatArray, yes: FloatArray) -> FloatArray:

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import binom
 
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
-from rocking.studies.code_methods.comparison import _quantiles
+from rocking.studies.code_methods.comparison import CodeComparison
 from rocking.studies.code_methods.methods import BodySides
 from rocking.studies.remedies import Margins
 
@@ -45,10 +46,11 @@ def test_what_is_called_safe_is_counted(found):
 
 
 def test_bias_is_the_median_ratio(found):
-    """By hand: ratios sorted, the third of six; two motions that never overturn stand below all others."""
+    """By hand: the mean of the third and fourth of six ratios; motions that never overturn are below all others."""
     ratios = np.sort(found.capacity[1, :, 0] / found.overturning[:, 0])
     bias = found.bias("italian-linear", 0)
-    assert bias.median == ratios[2]
+    assert bias.median == pytest.approx(0.5 * (ratios[2] + ratios[3]), rel=1e-15)
+    assert bias.median != pytest.approx(ratios[2], rel=1e-3)  # not the lower middle value
     assert bias.interval[0] <= bias.median <= bias.interval[1]
     assert bias.count == 6
     assert bias.censored == int(np.isinf(found.overturning[:, 0]).sum())
@@ -56,14 +58,52 @@ def test_bias_is_the_median_ratio(found):
     assert math.isnan(several.bias("static").scatter)  # too few motions to say
 
 
-def test_quantiles_with_weights():
-    """Those of the values, each repeated as often as its weight says."""
-    random = np.random.default_rng(5)
-    values, weights = random.lognormal(size=(7, 3)), random.integers(0, 4, (7, 3)).astype(float)
-    expected = np.quantile(
-        np.repeat(values.ravel(), weights.astype(int).ravel()), (0.16, 0.5, 0.84), method="inverted_cdf"
-    )
-    assert _quantiles(values, weights, (0.16, 0.5, 0.84)) == expected.tolist()
+def comparison(truth):
+    """Return one method of capacity 1 beside intensities that overturn, one row per motion."""
+    truth = np.array(truth, dtype=np.float64)
+    return CodeComparison(
+        (CODE_METHODS["static"],), tuple("b" * truth.shape[1]), tuple("m" * len(truth)), ("as they are",),
+        np.ones((1, *truth.shape)), truth, np.ones((*truth.shape, 1)), np.zeros((*truth.shape, 1)),
+        np.zeros(truth.shape[1], dtype=bool), "",
+    )  # fmt: skip
+
+
+def test_the_median_of_two_is_their_mean():
+    """Ratios 0.5 and 2 have the median 1.25; a ratio that is only known to be small leaves the median unknown, 0."""
+    assert comparison([[2.0], [0.5]]).bias("static").median == 1.25
+    assert comparison([[2.0], [math.inf]]).bias("static").median == 0.0
+    assert comparison([[2.0], [0.5], [math.inf]]).bias("static").median == 0.5
+    assert math.isnan(comparison([[math.nan]]).bias("static").median)
+
+
+def test_scatter_is_half_the_distance_of_the_outer_quantiles():
+    """Ratios exp(k/10), k = 0 to 100: ln q84 = 8.4 and ln q16 = 1.6 fall on values, so that the scatter is 3.4."""
+    bias = comparison(np.exp(-0.1 * np.arange(101.0))[:, None]).bias("static")
+    assert bias.scatter == pytest.approx(3.4, rel=1e-12)
+    assert bias.median == pytest.approx(math.exp(5.0), rel=1e-12)
+    # 20 of 101 do not overturn: the 16 % quantile is unknown
+    some = np.exp(-0.1 * np.arange(101.0))[:, None]
+    some[:20] = math.inf
+    assert comparison(some).bias("static").scatter == math.inf
+
+
+def test_the_interval_of_the_median_draws_whole_motions():
+    """Two bodies alike under each motion count as one: the interval of n motions is the binomial one of the median.
+
+    The median of 41 drawn again exceeds the value of rank k where at most 20 draws are of rank k or less.
+    """
+    values = np.exp(-0.01 * np.arange(41.0))[:, None]
+    low, high = comparison(values).bias("static").interval
+    ranks = np.arange(41) + 1.0
+    share = binom.cdf(20, 41, ranks / 41.0)  # probability that the median is above the rank
+    wanted = [math.exp(0.01 * np.flatnonzero(share <= 1.0 - level)[0]) for level in (0.025, 0.975)]
+    np.testing.assert_allclose(np.log([low, high]), np.log(wanted), rtol=0.0, atol=0.021)  # 1000 draws: 2 ranks
+    twins = comparison(np.repeat(values, 2, axis=1)).bias("static").interval
+    np.testing.assert_allclose(twins, (low, high), rtol=1e-12)
+    # negative control: cells drawn one by one would give an interval narrower by the root of two
+    apart = binom.cdf(40, 82, ranks / 41.0)
+    ends = [math.exp(0.01 * np.flatnonzero(apart <= 1.0 - level)[0]) for level in (0.025, 0.975)]
+    assert math.log(ends[1] / ends[0]) < 0.8 * math.log(twins[1] / twins[0])
 
 
 def test_methods_are_chosen_by_name():

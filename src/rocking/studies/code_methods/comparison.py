@@ -10,10 +10,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
+from rocking.statistics.quantiles import quantiles
 from rocking.studies.code_methods.methods import CODE_METHODS, BodySides, CodeMethod, Shaking
 from rocking.studies.fragility.subject import checked_levels
 from rocking.studies.motion_sets import MotionList, MotionSet
@@ -29,7 +30,8 @@ QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
 class Bias:
     """How a method's capacity compares with the intensity that overturns: method over truth."""
 
-    median: float  # median ratio; above 1 the method takes a body for stronger than it is [-]
+    # median ratio; above 1 the method takes a body for stronger than it is; 0 where a ratio below all others enters [-]
+    median: float
     # 95 % interval of the median, by drawing whole motions again; NaN of fewer than five [-]
     interval: tuple[float, float]
     # half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite where too many motions do
@@ -136,10 +138,10 @@ class CodeComparison:
             independent = count if alone else int((rows[1] > 0.0).sum())
             interval = share_interval(min(hits, independent), independent)
         elif count and (rows[1] > 0.0).sum() >= LEAST_CLUSTERS:
-            again = self._again @ np.stack(rows, axis=1)
+            again = np.stack(rows, axis=1)[self._drawn].sum(axis=1)
             shares = again[:, 0] / np.where(again[:, 1] > 0.0, again[:, 1], np.nan)
             interval = _ends(shares)
-        middle = float(np.median(ratio[known])) if known.any() else math.nan
+        middle = float(quantiles(ratio[known], 0.5))
         return CalledSafe(int(known.sum()), count, hits, middle, interval)
 
     def bias(self, method: str, body: int | None = None) -> Bias:
@@ -163,11 +165,13 @@ class CodeComparison:
         good = np.isfinite(ratio)
         if not good.any():
             return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)
-        low, middle, high = _quantiles(ratio, good.astype(np.float64), QUARTERS)
+        sample = np.where(np.isinf(truth), -np.inf, ratio)  # below all others
+        sample[~good] = np.nan
+        low, middle, high = np.maximum(quantiles(sample.ravel(), QUARTERS), 0.0).tolist()
         interval, scatter = (math.nan, math.nan), math.nan
         if good.any(axis=1).sum() >= LEAST_CLUSTERS:
-            weights = self._again[:, :, None] * good
-            interval = _ends(np.array([_quantiles(ratio, each, (0.5,))[0] for each in weights if each.any()]))
+            medians = quantiles(sample[self._drawn].reshape(REPETITIONS, -1), 0.5, axis=1)
+            interval = _ends(np.maximum(medians, 0.0))
             scatter = 0.5 * math.log(high / low) if low > 0.0 else math.inf
         return Bias(middle, interval, scatter, int(good.sum()), int((good & np.isinf(truth)).sum()))
 
@@ -206,10 +210,11 @@ class CodeComparison:
         return names.index(checks.one_of("method", method, names))
 
     @cached_property
-    def _again(self) -> FloatArray:
-        """How often each motion is drawn, one row a repetition."""
+    def _drawn(self) -> IntArray:
+        """Numbers of the motions that are drawn with replacement, one row a repetition."""
         count = len(self.motions)
-        return np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), REPETITIONS).astype(np.float64)
+        times = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), REPETITIONS)
+        return np.repeat(np.tile(np.arange(count), REPETITIONS), times.ravel()).reshape(REPETITIONS, count)
 
 
 def _facts(called: CalledSafe) -> dict[str, Any]:
@@ -217,17 +222,8 @@ def _facts(called: CalledSafe) -> dict[str, Any]:
 
 
 def _ends(values: FloatArray) -> tuple[float, float]:
-    low, high = np.nanquantile(values, (TAIL, 1.0 - TAIL), method="inverted_cdf").tolist()
+    low, high = quantiles(values, (TAIL, 1.0 - TAIL)).tolist()
     return low, high
-
-
-def _quantiles(values: FloatArray, weights: FloatArray, shares: Sequence[float]) -> list[float]:
-    """Return quantiles of values that each count as often as their weight says."""
-    flat, often = np.where(weights > 0.0, values, 0.0).ravel(), weights.ravel()
-    order = np.argsort(flat, kind="stable")
-    summed = np.cumsum(often[order])
-    places = np.searchsorted(summed, np.asarray(shares) * summed[-1] * (1.0 - 1e-12))
-    return [float(flat[order[place]]) for place in places]
 
 
 def compare_code_methods(

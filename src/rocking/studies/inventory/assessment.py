@@ -1,5 +1,6 @@
 """The assessment: every object in both directions under every motion, the worse direction counts."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
+from rocking.statistics.quantiles import quantiles
 from rocking.studies.histories import Histories, JoinedHistories, Product, results_of
 from rocking.studies.inventory.draws import STRATA, Draws, restitutions, slenderest
 from rocking.studies.inventory.hazard import SEED, Hazard
@@ -430,7 +432,8 @@ class _Assessor:
         fell = outcome[good] == Outcome.OVERTURNED.code
         lifted = ~np.isin(outcome[good], [Outcome.NO_UPLIFT.code, Outcome.SLID.code])
         slid = np.isin(outcome[good], [Outcome.SLID.code, Outcome.ROCKED_AND_SLID.code])
-        middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
+        rotations = quantiles(np.where(fell, np.inf, ratio[good]), (0.5, 0.84)).tolist()
+        middle, high = (value if math.isfinite(value) else None for value in rotations)
         counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
         failed = int((~good).sum())
         light = limits.light(high_rotation=high, failed=failed, slid=int(slid.sum()), **counts)
@@ -477,10 +480,3 @@ class _Assessor:
         if (outcome == Outcome.FAILED.code).all():
             return False
         return self._direction(way, 0.0, outcome, ratio, np.zeros(1), limits).light is Light.GREEN
-
-
-def _quantile(ratio: FloatArray, fell: np.ndarray, share: float) -> float | None:
-    """Return the smallest ratio that at least a share of the motions do not exceed; None if that one overturns."""
-    ordered = np.sort(np.where(fell, np.inf, ratio))
-    value = float(ordered[int(np.ceil(share * ordered.size - 1e-9)) - 1])
-    return value if np.isfinite(value) else None

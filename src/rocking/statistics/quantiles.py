@@ -1,0 +1,59 @@
+"""Quantiles of samples: the one definition of all summaries."""
+
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+_ROUNDING = 9  # digits of a rank: 0.28 * 25 is 7.000000000000001
+
+
+def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
+    """Return quantiles of a sample along an axis: definition 7 of Hyndman and Fan, which is the default of NumPy.
+
+    The quantile is linear between the two neighbours in the sorted sample. The median of an even number of values is
+    the mean of the middle two. An infinite value is a value that lies beyond all others, for example the peak rotation
+    of a body that overturns. A quantile between a finite and an infinite neighbour is infinite: the finite one is
+    exceeded, and by how much is not known.
+
+    Parameters
+    ----------
+    values : array_like
+        The sample; NaN is a missing value.
+    probabilities : float or array_like
+        Probabilities of the quantiles, from 0 to 1 [-].
+    axis : int, optional
+        The axis along which the sample lies.
+
+    Returns
+    -------
+    ndarray
+        The quantiles, with the shape of the probabilities before the remaining axes; NaN where all values are missing
+        or a quantile lies between both infinities.
+
+    References
+    ----------
+    .. [1] Hyndman, R. J. and Fan, Y. (1996), Sample quantiles in statistical packages,
+       doi:10.1080/00031305.1996.10473566.
+
+    Examples
+    --------
+    >>> import math
+    >>> quantiles([3.0, 1.0, 2.0, math.inf], [0.0, 0.5, 0.84]).tolist()
+    [1.0, 2.5, inf]
+    """
+    ordered = np.moveaxis(np.sort(np.asarray(values, dtype=np.float64), axis=axis), axis, 0)  # NaN last
+    last = (~np.isnan(ordered)).sum(axis=0) - 1
+    share = np.reshape(probabilities, np.shape(probabilities) + (1,) * last.ndim)
+    if not len(ordered):
+        return np.full(share.shape[: np.ndim(probabilities)] + last.shape, np.nan)
+    rank = np.round(share * np.maximum(last, 0), _ROUNDING)
+    below, above = (
+        np.take_along_axis(ordered, ends.astype(np.int64).reshape(-1, *last.shape), 0).reshape(rank.shape)
+        for ends in (np.floor(rank), np.ceil(rank))
+    )
+    part = rank - np.floor(rank)
+    with np.errstate(invalid="ignore"):  # infinite less infinite, which is not selected
+        between = np.where(np.isinf(below) | np.isinf(above), below + above, below + part * (above - below))
+    return np.where(part == 0.0, below, between)
