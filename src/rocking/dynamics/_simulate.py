@@ -105,7 +105,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         theta [rad] and theta' [rad/s] at the start; how far a body in space leans towards x, and its angular velocity,
         three numbers in axes of the ground.
     start : Start or SpatialStart, optional
-        Instead of these: a plane body with friction that is also lifted or pushed along, or how a body in space leans.
+        Instead of these: a plane body, with friction also lifted or pushed along, or how a body in space leans.
     gravity : float
         Acceleration of gravity [m/s2].
     duration : float, optional
@@ -314,7 +314,11 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
             body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=bounce,
             bounce_law=bounce_law, start=_start(start, Start) or Start(rotation, angular_velocity), **how,
         )  # fmt: skip
-    refuse("a body without friction=, which rocks alone", bounce=bounce, bounce_law=bounce_law, start=start)
+    refuse("a body without friction=, which rocks alone", bounce=bounce, bounce_law=bounce_law)
+    if start is not None:
+        from rocking.dynamics.contact.base import Start
+
+        rotation, angular_velocity = rocking_start(_start(start, Start))
     response = response_of_rocking(
         body, motion, restitution, Settings(**settings), rotation=rotation, angular_velocity=angular_velocity,
         engine=engine, stream=stream, **how,
@@ -326,7 +330,8 @@ def _followed(  # noqa: PLR0913 - what the two questions have in common
 
 _USUAL: dict[str, tuple[Any, ...]] = {
     "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "engine": ("auto", "reference"),
-    "stream": (0,), "start": (None,), "twin": (False,), "threads": (None,), "duration": (None,),
+    "stream": (0,), "start": (None,), "twin": (False,), "threads": (None,), "duration": (None,), "rotation": (0.0,),
+    "angular_velocity": (0.0,),
 }  # fmt: skip
 
 
@@ -335,6 +340,16 @@ def refuse(what: str, **options: Any) -> None:
     for name, value in options.items():
         if np.ndim(value) or not any(value is usual or value == usual for usual in _USUAL[name]):
             raise InvalidValueError(f"{name} is nothing for {what}, got {value!r:.60}")
+
+
+def rocking_start(start: "Start") -> tuple[float, float]:
+    """Return theta [rad] and theta' [rad/s] of a start; one that lifts or pushes the body along is refused."""
+    if not start.rocks_alone:
+        raise InvalidValueError(
+            "without friction= a start has rotation and angular_velocity alone, since the body neither slides nor "
+            f"flies, got {start!r}"
+        )
+    return start.rotation, start.angular_velocity
 
 
 def _start(start: Any, kind: type) -> Any:

@@ -9,9 +9,11 @@ import numpy as np
 from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics._simulate import components_of, in_plane, refuse
+from rocking.dynamics._simulate import components_of, in_plane, refuse, rocking_start
+from rocking.dynamics.contact.base import Start, starts_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.parameters import COMPLEMENTARITY, RockingParameters, is_none, sides_of
+from rocking.dynamics.response import start_within
 from rocking.dynamics.settings import SHORTEST_STEP, Settings, in_space
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.dynamics.plane.batch import Rows
+
+
+_START_UNITS = {
+    "rotation": "rad", "angular_velocity": "rad/s", "horizontal_velocity": "m/s", "height": "m",
+    "vertical_velocity": "m/s",
+}  # fmt: skip
 
 
 def simulate_many(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -39,6 +47,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     threads: int | None = None,
     twin: bool = False,
     progress: Callable[[int], None] | None = None,
+    rotation: Any = 0.0,
+    angular_velocity: Any = 0.0,
     start: Any = None,
     duration: float | None = None,
     linear: bool = False,
@@ -77,9 +87,12 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         verdict does (`twin_change`, `twin_flips`): what the integration leaves open. It takes three times as long.
     progress : callable, optional
         Called with the number of histories done since the last call.
-    start : SpatialStart or sequence of them, or Start, optional
-        How bodies in space lean at the start, the lowest vertex at rest on the ground, or how plane bodies with
-        friction do; upright at rest if not given. Plane bodies that rock alone start at rest.
+    rotation, angular_velocity : float or array_like
+        theta [rad] and theta' [rad/s] of plane bodies at the start, as for `simulate`. Rows of one length state one
+        start per entry, for a basin of attraction for example; a number holds for each start.
+    start : Start or SpatialStart, or a sequence of them, optional
+        Instead of these: the starts of plane bodies, which friction may also lift or push along. In space the starts
+        of the bodies, the lowest vertex at rest on the ground. Upright at rest if not given.
     duration : float, optional
         How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
         that a history goes on until its energy decides whether it overturns. With friction as for `simulate`, in space
@@ -92,8 +105,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     xarray.Dataset
         Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
         ``start`` too, with peak_tilt and the direction of overturning; with friction over ``friction`` too, with how
-        far they slid, in space also with the stable pose in which they end. Every history that rocks alone ends with
-        its motion: energy then decides the outcome and the peak of the swings to come, whose impacts are not counted.
+        far they slid, in space also with the stable pose in which they end. Plane bodies with starts have ``start`` as
+        the last dimension, with initial_rotation [rad] and initial_angular_velocity [rad/s] as its coordinates. Every
+        history that rocks alone ends with its motion: energy then decides the outcome and the peak of the swings to
+        come, whose impacts are not counted.
         Its attributes say which engine ran, and why bodies in
         space were refused.
 
@@ -115,6 +130,9 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> sliding = rk.simulate_many(blocks[0], pulse, friction=[0.2, 0.6])
     >>> (sliding.sliding_distance > 0.0).squeeze().values.tolist()
     [True, False]
+    >>> let_go = rk.simulate_many(blocks[1], pulse, 0.9, rotation=[-0.1, 0.0, 0.1])
+    >>> let_go.outcome.dims[-1], let_go.initial_rotation.values.tolist()
+    ('start', [-0.1, 0.0, 0.1])
     >>> box = rk.dynamics.SpatialBody.box(width=0.5, depth=0.6, height=2.0)
     >>> in_space = rk.simulate_many(box, {"x": pulse, "y": pulse}, "housner", friction=[0.2, 0.6])
     >>> (in_space.sliding_distance > 0.01).squeeze().values.tolist()
@@ -127,6 +145,9 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
+        refuse(
+            "bodies in space, whose start is a SpatialStart", rotation=rotation, angular_velocity=angular_velocity
+        )
         refuse("bodies in space", twin=twin, bounce=bounce, bounce_law=bounce_law)
         if friction is not None:
             mus = _row("friction", friction)
@@ -144,31 +165,26 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     plausibility.warn(plausibility.of_scaled(motion_list, scales))
     if not restitutions:
         raise InvalidValueError("restitution must be at least one model, got none")
+    starts = starts_of(start, rotation, angular_velocity)
     if friction is None:
-        refuse(
-            "bodies without friction=, which rock alone from rest",
-            bounce=bounce,
-            bounce_law=bounce_law,
-            start=start,
-            duration=duration,
-        )
+        refuse("bodies without friction=, which rock alone", bounce=bounce, bounce_law=bounce_law, duration=duration)
         return _rocking_alone(
-            body_list, motion_list, scales, restitutions, Settings(**given), twin, threads, engine, progress
+            body_list, motion_list, scales, restitutions, starts, Settings(**given), twin, threads, engine, progress
         )
     from rocking.dynamics.contact.batch import many_with_contact
 
     refuse("bodies with friction", twin=twin)
     settings, mus = Settings(**given, mechanics="contact"), _row("friction", friction)
     results, ran = many_with_contact(
-        body_list, motion_list, scales, restitutions, mus, settings, bounce=bounce, bounce_law=bounce_law, start=start,
-        duration=duration, engine=engine, threads=threads, progress=progress,
+        body_list, motion_list, scales, restitutions, mus, settings, bounce=bounce, bounce_law=bounce_law,
+        starts=starts or [Start()], duration=duration, engine=engine, threads=threads, progress=progress,
     )  # fmt: skip
     return _dataset(
         body_list, motion_list, {"scale": scales, "restitution": list(map(_label, restitutions)), "friction": mus},
-        results, settings,
+        starts, results, settings,
         {
             "engine": ran, "bounce": bounce, "bounce_law": bounce_law,
-            "start": repr(start or "at rest"), "duration_s": np.nan if duration is None else duration,
+            "duration_s": np.nan if duration is None else duration,
         },
     )  # fmt: skip
 
@@ -178,6 +194,7 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
     motions: list[Motion],
     scales: FloatArray,
     restitutions: Sequence[Any],
+    starts: list[Start] | None,
     settings: Settings,
     twin: bool,
     threads: int | None,
@@ -194,14 +211,18 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
     all_parameters = [
         [RockingParameters.of_body(body, each, settings.gravity) for each in restitutions] for body in bodies
     ]
-    shape = (len(bodies), len(motions), scales.size, len(restitutions))
+    states = np.array([rocking_start(each) for each in starts or [Start()]])
+    for row in all_parameters if starts else ():
+        for state in states.tolist():
+            start_within(row[0], *state)
+    shape = (len(bodies), len(motions), scales.size, len(restitutions), len(states))
     batch = Batch([m.segments() for m in motions], law, settings, threads, engine)
     count = int(np.prod(shape))
-    results, work = batch.run(count, _pieces(all_parameters, scales, shape), progress)
+    results, work = batch.run(count, _pieces(all_parameters, scales, states, shape), progress)
     if twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
         halved = replace(batch, motions=[segments.refined(2) for segments in batch.motions], settings=finer)
-        again, _ = halved.run(count, _pieces(all_parameters, scales, shape))
+        again, _ = halved.run(count, _pieces(all_parameters, scales, states, shape))
         change = np.abs(np.abs(results["peak_rotation"]) - np.abs(again["peak_rotation"]))  # NaN without two results
         flips = np.abs(overturned(results["outcome"]) - overturned(again["outcome"]))
         results |= {"twin_change": change, "twin_flips": flips}
@@ -215,21 +236,23 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
         "seed": getattr(law, "seed", 0),
         **{f"work_{k}": v for k, v in work.items()},
     }
-    return _dataset(bodies, motions, {"scale": scales, "restitution": labels}, results, settings, attributes)
+    axes = {"scale": scales, "restitution": labels}
+    return _dataset(bodies, motions, axes, starts, results, settings, attributes)
 
 
 def _dataset(
     bodies: list[Body],
     motions: list[Motion],
     axes: dict[str, Any],
+    starts: list[Start] | None,
     results: dict[str, Any],
     settings: Settings,
     attributes: dict[str, Any],
 ) -> "xr.Dataset":
-    """Return results, one after another over body, motion and the axes, with units and provenance."""
+    """Return results, one after another over body, motion, the axes and starts, with units and provenance."""
     xarray = extra("xarray", "simulate_many")
-    dims = ("body", "motion", *axes)
-    shape = (len(bodies), len(motions), *map(len, axes.values()))
+    dims = ("body", "motion", *axes, *(["start"] if starts else []))
+    shape = (len(bodies), len(motions), *map(len, axes.values()), *([len(starts)] if starts else []))
     sides = [body.side("right", settings.gravity) for body in bodies]
     made: xr.Dataset = xarray.Dataset(
         {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
@@ -239,6 +262,7 @@ def _dataset(
             "motion": [m.name for m in motions],
             "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motions]),
             **{name: row if name == "restitution" else (name, row, {"units": "1"}) for name, row in axes.items()},
+            **_coordinates(starts),
         },
         attrs={
             "software": SOFTWARE,
@@ -247,6 +271,15 @@ def _dataset(
         },
     )
     return made
+
+
+def _coordinates(starts: list[Start] | None) -> dict[str, Any]:
+    """Return the coordinates of starts: rotation and angular velocity, and what else one of them has."""
+    return {
+        f"initial_{name}": ("start", values, {"units": unit})
+        for name, unit in _START_UNITS.items()
+        if starts and (any(values := [getattr(each, name) for each in starts]) or unit[:3] == "rad")
+    }
 
 
 def _in_space(bodies: list[Any], *axes_and_how: Any) -> "xr.Dataset":
@@ -279,7 +312,7 @@ def _listed(given: Any) -> list[Any]:
 
 
 def _pieces(
-    all_parameters: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
+    all_parameters: list[list[RockingParameters]], scales: FloatArray, states: FloatArray, shape: tuple[int, ...]
 ) -> "Callable[[int, int], Rows]":
     from rocking.dynamics.plane.batch import Rows
 
@@ -287,8 +320,9 @@ def _pieces(
     table = {name: values.reshape(shape[0], shape[3]) for name, values in both.items()}
 
     def rows(first: int, last: int) -> "Rows":
-        body, motion, factor, choice = np.unravel_index(np.arange(first, last), shape)
+        body, motion, factor, choice, start = np.unravel_index(np.arange(first, last), shape)
         values = {name: array[body, choice] for name, array in table.items()}
+        values |= {"rotation": states[start, 0], "velocity": states[start, 1]}
         return Rows.of(last - first, motion, np.arange(first, last), scale=scales[factor], **values)
 
     return rows

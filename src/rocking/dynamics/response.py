@@ -422,12 +422,7 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
     frequencies = parameters.right.frequency_parameter, parameters.left.frequency_parameter
     slow, quick = min(frequencies), max(frequencies)
-    half_pi = 0.5 * math.pi
-    rotation = checks.within(
-        "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
-    )
-    most = 100.0 * quick
-    velocity = checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?")
+    rotation, velocity = start_within(parameters, rotation, angular_velocity)
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
     length = usual if duration is None else checks.positive("duration", duration, "s")
     if motion is None:
@@ -442,6 +437,18 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     if motion is None and duration is None:
         found, segments = _until_rest(found, segments)
     return Response(body, motion, parameters, settings, segments, scale, stream, found)
+
+
+def start_within(parameters: RockingParameters, rotation: Any, angular_velocity: Any) -> tuple[float, float]:
+    """Return theta [rad] and theta' [rad/s] at the start, within a quarter turn and 100 p."""
+    half_pi = 0.5 * math.pi
+    most = 100.0 * max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
+    return (
+        checks.within(
+            "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
+        ),
+        checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?"),
+    )
 
 
 def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:

@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
@@ -152,6 +154,10 @@ class Start:
     InvalidValueError
         If a value is not finite, the rotation is beyond a quarter turn, or the height is negative.
 
+    Notes
+    -----
+    Without friction a body has `rotation` and `angular_velocity` alone: it neither slides nor flies.
+
     Examples
     --------
     >>> Start(rotation=0.1).height
@@ -173,6 +179,43 @@ class Start:
         checks.within("horizontal_velocity", self.horizontal_velocity, -1e4, 1e4, unit="m/s")
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
+
+
+    @property
+    def rocks_alone(self) -> bool:
+        """Whether the lower foot is at rest on the ground, as that of a body without friction is."""
+        return not (self.horizontal_velocity or self.height or self.vertical_velocity)
+
+
+def starts_of(start: Any, rotation: Any = 0.0, angular_velocity: Any = 0.0) -> list[Start] | None:
+    """Return the starts of plane bodies, from `start` or from numbers or rows of them; None where none is stated."""
+    stated = np.ndim(rotation) or np.ndim(angular_velocity) or rotation != 0.0 or angular_velocity != 0.0
+    if start is None:
+        return _starts_of_numbers(rotation, angular_velocity) if stated else None
+    if stated:
+        raise InvalidValueError("give either start or rotation and angular_velocity, got both")
+    several = list(start) if isinstance(start, (list, tuple)) else [start]
+    if not several:
+        raise InvalidValueError("start must be at least one Start(...), got none")
+    for k, each in enumerate(several):
+        if not isinstance(each, Start):
+            where = "" if each is start else f" at index {k}"
+            raise InvalidValueError(f"start must be a Start(...) or a list of these, got {each!r:.60}{where}")
+    return several
+
+
+def _starts_of_numbers(rotation: Any, angular_velocity: Any) -> list[Start]:
+    rows = [
+        np.atleast_1d(checks.real_array(name, values, unit))
+        for name, values, unit in (("rotation", rotation, "rad"), ("angular_velocity", angular_velocity, "rad/s"))
+    ]
+    sizes = [row.shape for row in rows]
+    if any(row.ndim != 1 or not row.size for row in rows) or len(set(sizes) - {(1,)}) > 1:
+        raise InvalidValueError(
+            "rotation and angular_velocity must be numbers, or rows of one length: one entry for each start, got "
+            f"shapes {sizes[0]} and {sizes[1]}"
+        )
+    return [Start(*values) for values in zip(*(row.tolist() for row in np.broadcast_arrays(*rows)), strict=True)]
 
 
 def state_at_start(start: Start, base: PlaneBase) -> ContactState:

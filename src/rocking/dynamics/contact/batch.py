@@ -202,15 +202,13 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
     *,
     bounce: float = 0.0,
     bounce_law: str = "newton",
-    start: Start | None = None,
+    starts: Sequence[Start] = (Start(),),
     duration: float | None = None,
     engine: str = "auto",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> tuple[dict[str, np.ndarray], str]:
-    """Return the results of every combination, the last axis (friction) running fastest, and which engine ran."""
-    if start is not None and not isinstance(start, Start):
-        raise InvalidValueError(f"start must be a Start(...), got {start!r:.60}")
+    """Return the results of every combination, the last axis (starts) running fastest, and which engine ran."""
     check_progress(progress)
     taken = thread_count(threads)
     for mu in friction:
@@ -219,15 +217,17 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
         imposed = [[imposed_on(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
         law = GroundContact(0.0, checks.number("bounce", bounce), None, bounce_law)
         bases = [PlaneBase.of_body(body) for body in bodies]
-        table = _Table(bases, motions, scales, np.array(imposed), friction, law, start or Start(), duration, settings)
+        table = _Table(bases, motions, scales, np.array(imposed), friction, law, starts, duration, settings)
         return table.run(taken, progress), FAST
     rows = []
-    for body, motion, scale, restitution, mu in product(bodies, motions, scales, restitutions, friction):
+    for body, motion, scale, restitution, mu, start in product(
+        bodies, motions, scales, restitutions, friction, starts
+    ):
         with warnings.catch_warnings():  # said once, before
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(
                 body, motion, float(mu), restitution, settings, bounce=bounce, bounce_law=bounce_law,
-                start=start or Start(), scale=float(scale), duration=duration,
+                start=start, scale=float(scale), duration=duration,
             )  # fmt: skip
         rows.append(_row_of(response))
         if progress is not None:
@@ -237,7 +237,7 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
 
 @dataclass(frozen=True)
 class _Table:
-    """Every combination of bodies, motions, scales, restitutions and coefficients of friction, for the fast engine."""
+    """Every combination of bodies, motions, scales, restitutions, friction and starts, for the fast engine."""
 
     bases: Sequence[PlaneBase]
     motions: Sequence[GroundMotion | Pulse]
@@ -245,7 +245,7 @@ class _Table:
     imposed: FloatArray  # of each body and restitution, landing left and right [-]
     friction: FloatArray
     law: GroundContact
-    start: Start
+    starts: Sequence[Start]
     duration: float | None
     settings: Settings
 
@@ -254,25 +254,29 @@ class _Table:
         segments = [motion.segments() for motion in self.motions]
         library = library_of(segments)
         numbers = [(base.inertia, base.height, base.left, base.right) for base in self.bases]
-        starts = [state_at_start(self.start, base) for base in self.bases]
+        states = [[state_at_start(start, base) for start in self.starts] for base in self.bases]
+        state = np.array([[each[:6] for each in row] for row in states])
+        touching = np.array([[sum(1 if foot < 0 else 2 for foot in each.touching) for each in row] for row in states])
         ends = np.array([
             [ends_of(length_of(motion, slow, self.duration), each.step, isinstance(motion, Pulse), slow)
              for motion, each in zip(self.motions, segments, strict=True)]
             for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
         ])  # fmt: skip
-        shape = (len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size)
-        touching = np.array([sum(1 if foot < 0 else 2 for foot in each.touching) for each in starts])
+        shape = (
+            len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size,
+            len(self.starts),
+        )  # fmt: skip
         count, pieces = int(np.prod(shape)), []
         for first in range(0, count, PIECE):
             last = min(first + PIECE, count)
-            body, motion, scale, choice, mu = np.unravel_index(np.arange(first, last), shape)
+            body, motion, scale, choice, mu, start = np.unravel_index(np.arange(first, last), shape)
             values: dict[str, Any] = dict(zip(NUMBERS[:4], np.array(numbers)[body].T, strict=True))
             values |= {"friction": self.friction[mu], "bounce": self.law.bounce, "scale": self.scales[scale]}
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
             values |= {"end": ends[body, motion]}
-            values |= dict(zip(NUMBERS[10:], np.array([each[:6] for each in starts])[body].T, strict=True))
-            law, how = self.law.bounce_law, self.settings
-            pieces.append(run_compiled(library, values, motion, law, touching[body], settings=how, threads=threads))
+            values |= dict(zip(NUMBERS[10:], state[body, start].T, strict=True))
+            law, how, feet = self.law.bounce_law, self.settings, touching[body, start]
+            pieces.append(run_compiled(library, values, motion, law, feet, settings=how, threads=threads))
             if progress is not None:
                 progress(last - first)
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
