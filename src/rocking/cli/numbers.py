@@ -17,6 +17,7 @@ UNITS: dict[str, dict[str, float]] = {
     "m": LENGTH_UNITS,
     "s": {"s": 1.0, "ms": 0.001},
     "rad": {"rad": 1.0, "deg": math.pi / 180.0},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
     "1": {},
 }
 """By the unit in which a value is computed: the units in which it may be written."""

@@ -145,9 +145,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     }  # fmt: skip
     several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
     if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
-        refuse(
-            "bodies in space, whose start is a SpatialStart", rotation=rotation, angular_velocity=angular_velocity
-        )
+        refuse("bodies in space, whose start is a SpatialStart", rotation=rotation, angular_velocity=angular_velocity)
         refuse("bodies in space", twin=twin, bounce=bounce, bounce_law=bounce_law)
         if friction is not None:
             mus = _row("friction", friction)
@@ -179,9 +177,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         body_list, motion_list, scales, restitutions, mus, settings, bounce=bounce, bounce_law=bounce_law,
         starts=starts or [Start()], duration=duration, engine=engine, threads=threads, progress=progress,
     )  # fmt: skip
+    labels = list(map(_label, restitutions))
     return _dataset(
-        body_list, motion_list, {"scale": scales, "restitution": list(map(_label, restitutions)), "friction": mus},
-        starts, results, settings,
+        body_list, motion_list, {"scale": scales, "restitution": labels, "friction": mus, "start": starts}, results,
+        settings,
         {
             "engine": ran, "bounce": bounce, "bounce_law": bounce_law,
             "duration_s": np.nan if duration is None else duration,
@@ -236,23 +235,24 @@ def _rocking_alone(  # noqa: PLR0913, PLR0917
         "seed": getattr(law, "seed", 0),
         **{f"work_{k}": v for k, v in work.items()},
     }
-    axes = {"scale": scales, "restitution": labels}
-    return _dataset(bodies, motions, axes, starts, results, settings, attributes)
+    axes = {"scale": scales, "restitution": labels, "start": starts}
+    return _dataset(bodies, motions, axes, results, settings, attributes)
 
 
 def _dataset(
     bodies: list[Body],
     motions: list[Motion],
     axes: dict[str, Any],
-    starts: list[Start] | None,
     results: dict[str, Any],
     settings: Settings,
     attributes: dict[str, Any],
 ) -> "xr.Dataset":
-    """Return results, one after another over body, motion, the axes and starts, with units and provenance."""
+    """Return results, one after another over body, motion and the axes, with units and provenance."""
     xarray = extra("xarray", "simulate_many")
-    dims = ("body", "motion", *axes, *(["start"] if starts else []))
-    shape = (len(bodies), len(motions), *map(len, axes.values()), *([len(starts)] if starts else []))
+    axes = {name: row for name, row in axes.items() if row is not None}
+    starts = axes.get("start", [])
+    dims = ("body", "motion", *axes)
+    shape = (len(bodies), len(motions), *map(len, axes.values()))
     sides = [body.side("right", settings.gravity) for body in bodies]
     made: xr.Dataset = xarray.Dataset(
         {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
@@ -261,7 +261,8 @@ def _dataset(
             "frequency_parameter": ("body", [side.frequency_parameter for side in sides], {"units": "rad/s"}),
             "motion": [m.name for m in motions],
             "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motions]),
-            **{name: row if name == "restitution" else (name, row, {"units": "1"}) for name, row in axes.items()},
+            "restitution": axes["restitution"],
+            **{name: (name, axes[name], {"units": "1"}) for name in ("scale", "friction") if name in axes},
             **_coordinates(starts),
         },
         attrs={
@@ -273,13 +274,13 @@ def _dataset(
     return made
 
 
-def _coordinates(starts: list[Start] | None) -> dict[str, Any]:
+def _coordinates(starts: list[Start]) -> dict[str, Any]:
     """Return the coordinates of starts: rotation and angular velocity, and what else one of them has."""
-    return {
-        f"initial_{name}": ("start", values, {"units": unit})
-        for name, unit in _START_UNITS.items()
-        if starts and (any(values := [getattr(each, name) for each in starts]) or unit[:3] == "rad")
-    }
+    if not starts:
+        return {}
+    rows = {name: [getattr(start, name) for start in starts] for name in _START_UNITS}
+    shown = [name for name in rows if name in {"rotation", "angular_velocity"} or any(rows[name])]
+    return {f"initial_{name}": ("start", rows[name], {"units": _START_UNITS[name]}) for name in shown}
 
 
 def _in_space(bodies: list[Any], *axes_and_how: Any) -> "xr.Dataset":

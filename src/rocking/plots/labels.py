@@ -30,6 +30,8 @@ SYMBOLS = {
     "width": "width [m]",
     "height": "height [m]",
     "restitution": "coefficient of restitution r [-]",
+    "initial_rotation": r"initial rotation $\theta_0$ [rad]",
+    "initial_angular_velocity": r"initial angular velocity $\dot{\theta}_0$ [rad/s]",
 }
 """Labels of axes, by name."""
 

@@ -46,7 +46,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     x, y : Axis or (str, array_like)
         Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
         duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
-        restitution, friction; in space azimuth [rad].
+        restitution, friction, initial_rotation [rad], initial_angular_velocity [rad/s]; in space azimuth [rad].
     restitution : as for `simulate`
         Not used where it is an axis.
     gravity : float

@@ -178,6 +178,11 @@ def _check_friction(_: Axis, question: Question) -> None:
         raise InvalidValueError("friction is an axis of bodies that may slide: their settings need a friction")
 
 
+def _check_in_plane(axis: Axis, question: Question) -> None:
+    if not isinstance(question.body, Body):
+        raise InvalidValueError(f"{axis.name} varies only for a plane body, got {question.body!r:.60}")
+
+
 def _check_in_space(axis: Axis, question: Question) -> None:
     if isinstance(question.body, Body):
         raise InvalidValueError(f"{axis.name} varies only for a body in space, got {question.body!r:.60}")
@@ -256,6 +261,16 @@ _ALL = (
         "azimuth", "rad", "angle from x towards y by which the horizontal motion of a body in space is turned",
         "azimuth", RESTITUTION, lambda case, values: {"sides": {**case.sides, "azimuth": values}}, _check_in_space,
         high=2.0 * np.pi, low_is_allowed=True,
+    ),
+    Axis(
+        "initial_rotation", "rad", "initial rotation of a plane body", "rotation", RESTITUTION,
+        lambda case, values: {"sides": {**case.sides, "rotation": values}}, _check_in_plane, -1.57, 1.57,
+        low_is_allowed=True,
+    ),
+    Axis(
+        "initial_angular_velocity", "rad/s", "initial angular velocity of a plane body", "angular velocity",
+        RESTITUTION, lambda case, values: {"sides": {**case.sides, "velocity": values}}, _check_in_plane, -1e3, 1e3,
+        low_is_allowed=True,
     ),
 )  # fmt: skip
 

@@ -74,14 +74,11 @@ class Question:
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of many variations, their modes and relative peaks [-] with them."""
-        # A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of
-        # p s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated. Values: sides
-        # and scale, by the names of `batch.ROWS`, one entry a history.
+        # values: sides, scale and what else varies, by the names of `batch.ROWS`, one entry a history
         count = stretch.size
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")
-        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}  # Eq. 179
-        rows = Rows.of(count, 0, stream, **quick)
+        rows = Rows.of(count, 0, stream, **quickened(values, stretch))
         results, work = self.batch.run(count, rows.part, progress)
         for name in quantities.TIMES:
             results[name] = results[name] * stretch
@@ -179,6 +176,18 @@ class Case:
     def values(self) -> dict[str, FloatArray]:
         """What the engine is told of each variation."""
         return {**self.sides, "scale": self.scale}
+
+
+_RATES = {"p_right", "p_left", "velocity"}
+
+
+def quickened(values: Mapping[str, FloatArray], stretch: FloatArray) -> dict[str, FloatArray]:
+    """Return the values of bodies to which the motion does what the motion stretched in time does to those at hand.
+
+    A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p s,
+    all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
+    """
+    return {name: row * stretch if name in _RATES else row for name, row in values.items()}  # Eq. 179
 
 
 def engine_words(settings: Settings, *, fast: bool) -> str:

@@ -216,3 +216,97 @@ def test_scales_go_up_to_a_million(name: str) -> None:
     own = rk.simulate_many(BODIES[0], MOTIONS[0], 0.9, scale=[1.0, -1.0], engine=name)
     for key in ("outcome", "peak_rotation"):
         np.testing.assert_allclose(made[key].to_numpy(), own[key].to_numpy(), rtol=1e-9)
+
+
+STATUE = rk.Section([rk.Region([(-0.35, 0.0), (0.25, 0.0), (0.3, 2.5), (-0.15, 2.2)], density=2400.0)])
+ALPHA = {foot: STATUE.side(foot).slenderness_angle for foot in ("right", "left")}
+ROTATIONS = [
+    0.0, 0.0, 0.0, 0.5 * ALPHA["right"], -0.5 * ALPHA["left"], ALPHA["right"], 1.05 * ALPHA["right"],
+    -1.2 * ALPHA["left"], -1.3 * ALPHA["left"], 1.5, 1e-20,
+]  # fmt: skip
+VELOCITIES = [0.0, 0.3, -0.3, 0.0, 0.2, 0.0, -0.6, 0.0, 2.5, 0.0, -0.2]
+COMPARED = ("outcome", "status", "side", "impacts", "uplifts", "peak_rotation", "overturning_time", "least_force")
+
+
+@every_engine
+@pytest.mark.parametrize("motion", [*MOTIONS, rk.pulses.sine(2.0, 0.8)], ids=lambda motion: motion.name)
+def test_starts_are_those_of_single_histories(name: str, motion: Any) -> None:
+    """Every start is what `simulate` gives for it: beyond the slenderness angle, upright with a velocity, either side.
+
+    Negative control: with the signs of the starts reversed the asymmetric body has other results.
+    """
+    how: Any = {"scale": [0.0, 0.5], "engine": name}
+    found = rk.simulate_many(STATUE, motion, [0.9], rotation=ROTATIONS, angular_velocity=VELOCITIES, **how)
+    assert found["outcome"].dims == ("body", "motion", "scale", "restitution", "start")
+    assert found["initial_rotation"].values.tolist() == ROTATIONS
+    assert found["initial_angular_velocity"].attrs["units"] == "rad/s"
+    outcomes = set()
+    for scale, start in np.ndindex(2, len(ROTATIONS)):
+        alone = rk.simulate(
+            STATUE, motion, 0.9, scale=how["scale"][scale], rotation=ROTATIONS[start], engine=name,
+            angular_velocity=VELOCITIES[start], duration=motion.duration,
+        )  # fmt: skip
+        one = found.isel(body=0, motion=0, scale=scale, restitution=0, start=start)
+        for key in COMPARED:
+            value = getattr(alone.trajectory, key)
+            np.testing.assert_allclose(one[key], getattr(value, "code", value), rtol=1e-12, err_msg=f"{key} {start}")
+        outcomes.add(alone.outcome)
+    assert outcomes == {Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED}
+    listed = [rk.dynamics.Start(-a, -w) for a, w in zip(ROTATIONS, VELOCITIES, strict=True)]
+    mirrored = rk.simulate_many(STATUE, motion, [0.9], start=listed, **how)
+    assert not np.array_equal(np.abs(mirrored["peak_rotation"]), np.abs(found["peak_rotation"]))
+
+
+@every_engine
+def test_a_basin_ends_where_energy_says(name: str) -> None:
+    """On ground at rest theta0 on a side overturns from theta' = p sqrt(2 (1 - cos(alpha - theta0))) outwards on.
+
+    Beyond the slenderness angle the body comes back only if that velocity points inwards; the velocity after the
+    impact is r times p sqrt(2 (E / (m g R))), which on the other side must not pass either.
+    """
+    still, sides = rk.GroundMotion(np.zeros(5), 0.01), [STATUE.side("right"), STATUE.side("left")]
+    rotations, velocities, expected = [], [], []
+    for sign, side in zip((1.0, -1.0), sides, strict=True):
+        alpha, p = side.slenderness_angle, side.frequency_parameter
+        for share in (0.0, 0.4, 0.9):
+            limit = p * math.sqrt(2.0 * (1.0 - math.cos(alpha * (1.0 - share))))
+            rotations += [sign * share * alpha] * 2
+            velocities += [sign * 0.999 * limit, sign * 1.001 * limit]
+            expected += [0.0, 1.0]
+        limit = p * math.sqrt(2.0 * (1.0 - math.cos(0.1 * alpha)))
+        rotations += [sign * 1.1 * alpha] * 2
+        velocities += [-sign * 0.999 * limit, -sign * 1.001 * limit]
+        expected += [1.0, 0.0]
+    how: Any = {"rotation": rotations, "angular_velocity": velocities, "engine": name}
+    found = rk.simulate_many(STATUE, still, 0.5, **how)
+    np.testing.assert_array_equal(found["overturned"].squeeze(), expected)
+    symmetric = rk.simulate_many(rk.Block(width=0.5, height=2.0), still, 0.5, **how)
+    assert not np.array_equal(symmetric["overturned"].squeeze(), expected), "a negative control: another body"
+
+
+def test_starts_of_one_history_and_of_many_have_the_same_words() -> None:
+    """`start` of `simulate` serves without friction; what rocking alone has not is refused by name."""
+    start = rk.dynamics.Start(rotation=0.05, angular_velocity=-0.1)
+    one = rk.simulate(STATUE, MOTIONS[0], 0.9, start=start)
+    assert one.peak_rotation == rk.simulate(STATUE, MOTIONS[0], 0.9, rotation=0.05, angular_velocity=-0.1).peak_rotation
+    assert rk.free_rocking(STATUE, restitution=0.9, start=start).rotation[0] == 0.05
+    many = rk.simulate_many(STATUE, MOTIONS[0], 0.9, start=start)
+    assert many.sizes["start"] == 1
+    assert "start" not in rk.simulate_many(STATUE, MOTIONS[0], 0.9).sizes
+    for how, says in (
+        ({"start": rk.dynamics.Start(height=0.1)}, "without friction= a start has rotation and angular_velocity alone"),
+        ({"start": [start, 0.1]}, r"start must be a Start\(...\) or a list of these, got 0.1 at index 1"),
+        ({"start": []}, "start must be at least one"),
+        ({"start": start, "rotation": 0.1}, "either start or rotation and angular_velocity"),
+        ({"rotation": [0.1, 2.0]}, "rotation must be in"),
+        ({"rotation": [0.1, math.nan]}, "rotation must be finite"),
+        ({"rotation": [0.1, 0.2], "angular_velocity": [0.1, 0.2, 0.3]}, "rows of one length"),
+        ({"angular_velocity": 1e4}, "angular_velocity must be in"),
+    ):
+        with pytest.raises(rk.errors.InvalidValueError, match=says):
+            rk.simulate_many(STATUE, MOTIONS[0], 0.9, **how)
+    with pytest.raises(rk.errors.InvalidValueError, match="without friction= a start has"):
+        rk.simulate(STATUE, MOTIONS[0], 0.9, start=rk.dynamics.Start(horizontal_velocity=0.1))
+    box = rk.dynamics.SpatialBody.box(0.5, 0.5, 2.0)
+    with pytest.raises(rk.errors.InvalidValueError, match="rotation is nothing for bodies in space, whose start"):
+        rk.simulate_many(box, MOTIONS[0], "housner", rotation=[0.1, 0.2])

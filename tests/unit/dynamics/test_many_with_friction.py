@@ -57,10 +57,30 @@ def test_peaks_have_the_sign_that_they_have_without_friction(scale):
 
 
 def test_files_say_what_was_computed():
-    """Bounce, start and duration are attributes."""
-    start = rk.dynamics.Start(rotation=0.05)
+    """Bounce and duration are attributes; the starts are coordinates, with what they have beside rotation."""
+    start = rk.dynamics.Start(rotation=0.05, height=0.02)
     found = rk.simulate_many(STATUE, MOTIONS[0], friction=0.5, bounce=0.3, start=start, duration=1.0)
-    assert (found.attrs["bounce"], found.attrs["duration_s"], found.attrs["start"]) == (0.3, 1.0, repr(start))
+    assert (found.attrs["bounce"], found.attrs["duration_s"]) == (0.3, 1.0)
+    assert {name: found[f"initial_{name}"].item() for name in ("rotation", "angular_velocity", "height")} == {
+        "rotation": 0.05, "angular_velocity": 0.0, "height": 0.02
+    }  # fmt: skip
+    assert "initial_vertical_velocity" not in found.coords
+
+
+@pytest.mark.parametrize("engine", ["fast", "reference"])
+def test_each_start_is_what_simulate_gives(engine):
+    """A row of starts is the last dimension; leaning either way, thrown and dropped."""
+    starts = [
+        rk.dynamics.Start(rotation=-0.08), rk.dynamics.Start(rotation=0.05, angular_velocity=0.2),
+        rk.dynamics.Start(height=0.01), rk.dynamics.Start(horizontal_velocity=0.4),
+    ]  # fmt: skip
+    found = rk.simulate_many(STATUE, MOTIONS[0], friction=[0.3, 0.6], start=starts, duration=1.5, engine=engine)
+    assert found["outcome"].dims[-2:] == ("friction", "start")
+    for k, start in enumerate(starts):
+        one = rk.simulate(STATUE, MOTIONS[0], friction=0.6, start=start, duration=1.5)
+        row = found.isel(body=0, motion=0, scale=0, restitution=0, friction=1, start=k)
+        for name in ("peak_rotation", "sliding_distance", "impacts"):
+            assert float(row[name]) == pytest.approx(float(TO_ORIGIN[name](one)), rel=1e-8, abs=1e-12)
 
 
 def test_less_friction_slides_and_more_rocks(table):

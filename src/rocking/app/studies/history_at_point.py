@@ -44,6 +44,9 @@ _OF_FAMILIES = ("pga", "pgv", "time_step")
 _TIMES = {"period", "duration", "velocity"}
 """Parameters of pulses that grow with their time while the acceleration stays."""
 
+_STARTS = {"rotation": "rotation", "angular_velocity": "velocity"}
+"""How a history starts, by the names of rows."""
+
 _CLOSE = 1e-12
 POINTS = 1000  # samples of the curves
 
@@ -92,6 +95,8 @@ class Variation:
     choice: dict[str, Any] | None  # the same, as inputs tell it; None where they cannot
     scale: float  # factor on the motion as the study has it [-]
     stretch: float = 1.0  # factor on its time [-]
+    rotation: float = 0.0  # theta [rad] and theta' [rad/s] at the start
+    angular_velocity: float = 0.0
 
     @classmethod
     def of(cls, study: OpenStudy, place: HistoryPlace) -> "Variation":
@@ -126,7 +131,8 @@ def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Vari
     case = Plane(question, x, y).case(*(axis.values[place.index[axis.name]][None] for axis in (x, y)))
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
     body = changed_body(variation.body, geometry)
-    variation = replace(variation, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
+    start: dict[str, Any] = {name: float(case.sides.get(row, [0.0])[0]) for name, row in _STARTS.items()}
+    variation = replace(variation, scale=float(case.scale[0]), stretch=float(case.stretch[0]), **start)
     if geometry:
         variation = replace(variation, body=body, table=body_table(body))
     if "restitution" in {x.name, y.name}:
@@ -241,7 +247,8 @@ def _responded(
     problem = ResponseProblem(
         variation.body, motion, {variation.label: variation.restitution}, job.problem.settings, engine, scale=scale
     )
-    how = {**problem.settings.stated, "engine": engine, "stream": place.number}
+    start = {name: getattr(variation, name) for name in _STARTS}
+    how = {**problem.settings.stated, "engine": engine, "stream": place.number, **start}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
         return problem, simulate(variation.body, motion, variation.restitution, scale=scale, **how)
@@ -254,6 +261,8 @@ def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
             f"the time of the motion is stretched by {variation.stretch:.6g} here, which inputs cannot say of a motion "
             "that is no pulse; the response is the one with the stretched motion"
         )
+    if variation.rotation or variation.angular_velocity:
+        return "with a motion, inputs state no initial rotation and no initial angular velocity"
     if variation.choice is None:
         return "the coefficient is drawn at every impact, by the number of the history, which inputs do not have"
     return ""

@@ -180,7 +180,6 @@ class Start:
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
 
-
     @property
     def rocks_alone(self) -> bool:
         """Whether the lower foot is at rest on the ground, as that of a body without friction is."""

@@ -220,9 +220,7 @@ def many_with_contact(  # noqa: PLR0913 - what the front door hands on
         table = _Table(bases, motions, scales, np.array(imposed), friction, law, starts, duration, settings)
         return table.run(taken, progress), FAST
     rows = []
-    for body, motion, scale, restitution, mu, start in product(
-        bodies, motions, scales, restitutions, friction, starts
-    ):
+    for body, motion, scale, restitution, mu, start in product(bodies, motions, scales, restitutions, friction, starts):
         with warnings.catch_warnings():  # said once, before
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(

@@ -19,6 +19,8 @@ const USUAL = {
   width: [0.2, 2],
   height: [0.5, 6],
   restitution: [0.7, 1],
+  initial_rotation: [-0.2, 0.2],
+  initial_angular_velocity: [-1, 1],
 };
 /** Axes that only a pulse has. */
 const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);

@@ -23,7 +23,7 @@ from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refin
 from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import Question, modes_of, peak_ratio
+from rocking.studies.question import Question, modes_of, peak_ratio, quickened
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import PIECE, Column, Table, prefixed, text_array
 
@@ -103,8 +103,7 @@ class MapHistories(Histories):
         """Return some of the rows, as the engine takes them; NaN where there is no such body."""
         numbers = np.arange(first, last, dtype=np.int64)
         values, stretch = self._values(numbers)
-        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}
-        return Rows.of(last - first, 0, numbers, **quick)
+        return Rows.of(last - first, 0, numbers, **quickened(values, stretch))
 
     def rescaled(self, first: int, last: int, results: Arrays) -> Arrays:
         """Return results with the times [s] and velocities [rad/s] of the stretched motions."""
@@ -135,18 +134,16 @@ class MapHistories(Histories):
 
     def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
         """Return what the engine takes of histories, and how their motion is stretched."""
-        plane = self.planes[0]
-        names = [*sides_of([None]), "scale", *(["friction"] if "friction" in {plane.x.name, plane.y.name} else [])]
-        values, stretch = {name: np.full(numbers.size, np.nan) for name in names}, np.ones(numbers.size)
-        values["scale"][:] = 1.0
+        values, stretch = {name: np.full(numbers.size, np.nan) for name in sides_of([None])}, np.ones(numbers.size)
+        values["scale"] = np.ones(numbers.size)
         for k, plane in enumerate(self.planes):
             own = numbers // self.cells == k
             if own.any():
                 with suppress(InvalidValueError):  # none of these bodies can be made
                     case = plane.case(*self._points(numbers[own]))
                     stretch[own] = case.stretch
-                    for name in names:
-                        values[name][own] = case.values[name]
+                    for name, row in case.values.items():
+                        values.setdefault(name, np.full(numbers.size, np.nan))[own] = row
         return values, stretch
 
 
