@@ -20,7 +20,7 @@ template <class T>
 using Table = nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Whole = std::int64_t;
 
-constexpr int kNumbers = 29, kChoices = 3, kResults = 10, kCounts = 10;
+constexpr int kNumbers = 29, kChoices = 4, kResults = 10, kCounts = 10;
 constexpr Whole kChunk = 4;
 
 static void expect(bool fine, const char* what) {
@@ -120,7 +120,7 @@ class Library {
     }
 
     // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
-    // spin; gravity. Choices: body, motion, law.
+    // spin; gravity. Choices: body, motion, law, facet on which the body stood.
     Result one(const double* v, const Whole* c, const Settings& set, Trace* trace = nullptr) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && !(v[k] == kInfinite && (k == 3 || k == 13 || k == 14))) return {};
@@ -128,13 +128,14 @@ class Library {
         if (!there(c[0], bodies_) || !there(c[1], motions_) || !bodies_[c[0]]->usable || !(v[3] >= 0.0 && v[13] > 0.0 && v[14] > 0.0 && v[28] > 0.0)) return {};
         const Body& b = *bodies_[c[0]];
         if (!(c[2] == kHousner || ((c[2] == kCoefficient || c[2] == kPosition) && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.intervals > 0))) return {};
+        if (c[3] < 0 || c[3] >= static_cast<Whole>(b.facets.size())) return {};
         Ground g;
         g.motion = &motions_[c[1]], g.scale = v[1], g.gravity = v[28], g.level = mat(v + 4), g.shelf[0] = v[13], g.shelf[1] = v[14];
         g.weight = g.level * Vec{0.0, 0.0, -g.gravity};
         State s{vec(v + 19), {v[15], v[16], v[17], v[18]}, vec(v + 22), vec(v + 25)};
         const double length = s.q[0] * s.q[0] + s.q[1] * s.q[1] + s.q[2] * s.q[2] + s.q[3] * s.q[3];
         if (!(std::fabs(length - 1.0) < 1e-9)) return {};
-        return Run(b, g, {static_cast<int>(c[2]), 0, v[0]}, v[3], set, trace).run(s, v[2]);
+        return Run(b, g, {static_cast<int>(c[2]), 0, v[0]}, v[3], set, trace).run(s, v[2], static_cast<int>(c[3]));
     }
 
     static void write(const Result& r, double* v, Whole* c) {

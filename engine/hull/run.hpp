@@ -54,14 +54,15 @@ class Run {
         length_ = span_ = 0.1 / pace_;
     }
 
-    Result run(const State& start, double horizon) {
+    // stood: the facet on which the body stood before it was tilted.
+    Result run(const State& start, double horizon, int stood) {
         s_ = start;
         until_ = greater(horizon, g_.end());
         first_ = start.place;
         const Mat axes = frame(s_.q);
-        law_.base = stood_ = under_ = b_.under(axes.c, 0);
+        law_.base = stood_ = under_ = stood;
         upright_ = -1.0 * unit(b_.facets[stood_]);
-        tilt_ = dot(upright_, axes.c), tilting_ = 0.0, kept_ = 0.0;
+        tilt_ = dot(upright_, axes.c), tilting_ = 0.0, kept_ = 0.0, up_ = axes.c;
         flow_.start(mode_);
         touch(touching_);
         bool strikes = false;

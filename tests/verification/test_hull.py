@@ -540,6 +540,64 @@ def test_random_hulls_have_a_result_in_the_compiled_engine():
     assert few["status"].item() == Status.TOO_MANY_EVENTS.code
 
 
+def _balance(section, side):
+    """The angle at which the centre of an asymmetric section is over a foot [rad]."""
+    (x, y), (left, right) = section.centre, section.feet
+    return math.atan((right - x if side > 0 else x - left) / y)
+
+
+@pytest.mark.parametrize(
+    ("engine", "shares"),
+    [("reference", (1.02,)), pytest.param("fast", (0.3, 0.5, 1.02, 1.5, 2.5), marks=needs_engine)],
+)
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.verifies("closed form", "release at rest beyond the balance of an asymmetric prism", within="exact")
+def test_a_body_released_beyond_its_balance_overturns(engine, shares, side):
+    """From rest the energy of the balance is out of reach, and a plane body of the section confirms each outcome.
+
+    The pose that counts is that in which the body stood before it was tilted, not that above which it is released.
+    """
+    section = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.35, 1.7), (0.05, 2.0)], 2400.0)])
+    solid, azimuth = Solid.from_section(section), 0.0 if side > 0 else math.pi
+    settings = {"friction": 0.8, "engine": engine, "tolerance": 1e-6, "rest_speed": 1e-2}
+    pose = HullBody.of(solid).poses[HullBody.of(solid).base]
+    for share in shares:
+        start = SpatialStart(tilt=share * _balance(section, side), azimuth=azimuth)
+        found = rk.free_rocking(solid, restitution="housner", start=start, **settings)
+        plane = rk.free_rocking(section, rotation=side * start.tilt, restitution="housner", friction=0.8)
+        overturned = Outcome.OVERTURNED in (found.outcome, plane.outcome)
+        assert found.tilt[0] == pytest.approx(start.tilt, rel=1e-12)
+        assert found.peak_tilt >= start.tilt * (1.0 - 1e-12)
+        assert overturned == (share > 1.0)
+        if not overturned:
+            assert found.pose == pose
+            continue
+        assert found.outcome is plane.outcome is Outcome.OVERTURNED
+        assert found.pose != pose
+        assert found.overturning_time == 0.0
+        assert math.cos(found.overturning_direction - azimuth) == pytest.approx(1.0)
+
+
+@needs_engine
+@pytest.mark.verifies("invariant", "one pose before the tilt in every door", within="exact")
+def test_every_door_knows_the_pose_before_the_tilt():
+    """Batches and plane bodies agree with single histories, for a body that stands on a base it was turned onto."""
+    block = rk.Block(width=0.5, height=2.0, depth=0.7)
+    solid, still = Solid.from_section(block), rk.pulses.rectangular(1e-9, 1e-3)
+    starts = [SpatialStart(tilt=share * block.slenderness_angle) for share in (0.98, 1.02, 2.0)]
+    table = rk.simulate_many([solid], [{"x": still}], "housner", friction=0.8, start=starts)
+    plane = [rk.simulate(block, still, "housner", friction=0.8, rotation=start.tilt).outcome for start in starts]
+    assert [each is Outcome.OVERTURNED for each in plane] == [False, True, True]
+    assert (np.ravel(table["outcome"]) == Outcome.OVERTURNED.code).tolist() == [False, True, True]
+    body = HullBody.of(solid)
+    side = next(k for k in range(len(body.facets)) if abs(body.facets[k][0]) > 1.0)
+    upright = HullEngine(body, HullGround(), friction=0.8, settings=HullSettings(tolerance=1e-8))
+    lying = HullEngine(body, HullGround(), friction=0.8, settings=HullSettings(tolerance=1e-8))
+    state = standing(body, facet=side)
+    assert upright.run(state, stood=body.base).outcome is Outcome.OVERTURNED
+    assert lying.run(state).outcome is Outcome.NO_UPLIFT
+
+
 def _drum(count, height):
     angle = 0.4 + 2.0 * math.pi * np.arange(count) / count
     points = [(0.4 * math.cos(a), 0.4 * math.sin(a), z) for a in angle for z in (0.0, height)]

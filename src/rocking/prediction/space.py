@@ -156,7 +156,8 @@ class SpaceMechanics(Mechanics):
         turned = zip(shapes, drawn["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
         numbers = numbers_of_rows(drawn["restitution"], factor, drawn["friction"], state, self._gravity)
-        choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law)])
+        stood = np.array([shape.facet for shape in shapes])
+        choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law), stood])
         ked = self._law == histories.KED
         rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, histories.chosen("auto"), ked=ked)
         found = rows.run(numbers, choices, thread_count(threads))
@@ -191,7 +192,7 @@ class _Shape:
     def __init__(self, body: HullBody) -> None:
         self.body = body
         facet = int(body.hull.rolls[body.under((0.0, 0.0, 1.0))])
-        self.start, self._facet = standing(body, facet=facet), facet
+        self.start, self.facet = standing(body, facet=facet), facet
 
     def state(self, azimuth: float) -> list[float]:
         """Return attitude, place and velocities at the start."""
@@ -204,4 +205,4 @@ class _Shape:
             return False
         hull, numbers = self.body.hull, np.array(self.body.poses)
         facet = int(np.flatnonzero(hull.stable & (numbers == pose))[0])
-        return float(hull.normals[facet] @ hull.normals[self._facet]) < ANOTHER
+        return float(hull.normals[facet] @ hull.normals[self.facet]) < ANOTHER

@@ -77,7 +77,7 @@ def test_drawn_rows_are_the_bodies_that_they_mean():
 def test_points_close_to_the_ground_touch_it():
     """A corner 2 mm above the ground stands on it where the base is uneven by 3 mm, not where by 1 mm."""
     what = mechanics(stone(lift=0.002), base=(0.0005, 0.0035))
-    corners = [len(what._shape(base, 1.0).body.hull.corners(what._shape(base, 1.0)._facet)) for base in (0.001, 0.003)]
+    corners = [len(what._shape(base, 1.0).body.hull.corners(what._shape(base, 1.0).facet)) for base in (0.001, 0.003)]
     assert corners == [4, 5]
 
 

@@ -113,7 +113,8 @@ class RowsOnHull:
         state = np.tile(numbers_of(law.on_hull, SpatialStart()), (count, 1))
         numbers = histories.numbers_of_rows(np.where(modelled, 0.0, r), scale, friction, state, pull, plane)
         codes = np.where(modelled, code, histories.COEFFICIENT)
-        choices = np.column_stack([np.zeros(count, np.int64), motion, codes]).astype(np.int64)
+        base = np.full(count, law.on_hull.base)
+        choices = np.column_stack([np.zeros(count, np.int64), motion, codes, base]).astype(np.int64)
         found = self.rows.run(numbers, choices, threads)
         fell, unknown = found["outcome"] == Outcome.OVERTURNED.code, np.full(count, np.nan)
         names = ("outcome", "status", "uplifts", "still_rocking", "steps", "overturning_time", "peak_time",

@@ -96,6 +96,11 @@ class HullBody:
         number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}
         return [number[facet] for facet in hull.rolls.tolist()]
 
+    @cached_property
+    def base(self) -> int:
+        """Facet on which the body stands in the axes of its vertices, before it is tilted."""
+        return self.under((0.0, 0.0, 1.0))
+
     def under(self, up: Vector) -> int:
         """Return the facet through which the vertical through the centre of mass leaves the hull, downward."""
         # up: in the axes of the body [-]

@@ -102,13 +102,17 @@ class HullEngine:
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
-    def run(self, state: State, horizon: float = 0.0) -> HullHistory:
-        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends."""
+    def run(self, state: State, horizon: float = 0.0, stood: int | None = None) -> HullHistory:
+        """Return the history from a state; it ends at rest after the motion and the horizon, or when patience ends.
+
+        stood: facet on which the body stood before it was tilted; if not given, that under its centre of mass.
+        """
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
-        self.stood = self.under = self.body.under(frame(state.attitude)[2])
+        up = frame(state.attitude)[2]
+        self.stood = self.under = self.history.stood = self.body.under(up) if stood is None else stood
         self.upright = scaled(-1.0, unit(self.body.facets[self.stood]))
-        self.watched: _Watched | None = None
+        self.watched = _Watched(self.time, up, dot(self.upright, up), 0.0)
         self.law = law_of(self.restitution, self.body, self.stood)
         if any(point_velocity(self.body, state, i)[2] < -_STRIKES * self.speed for i in self._touching()):
             self._impact()
@@ -164,8 +168,8 @@ class HullEngine:
         up, tilt = axes[2], dot(self.upright, axes[2])
         last = _Watched(self.time, up, tilt, -dot(self.upright, cross(self.state.spin, up)))
         peaks = [(tilt, self.time)]
-        span = self.time - self.watched.time if self.watched else 0.0
-        if self.watched and span > 0.0 and self.watched.rate < 0.0 < last.rate:
+        span = self.time - self.watched.time
+        if span > 0.0 and self.watched.rate < 0.0 < last.rate:
             # the least cosine of Hermite's cubic
             first, second, rise = self.watched.rate * span, last.rate * span, tilt - self.watched.tilt
             cubic, square = first + second - 2.0 * rise, 3.0 * rise - 2.0 * first - second
@@ -176,10 +180,11 @@ class HullEngine:
         made.least_cosine, made.peak_time = min((made.least_cosine, made.peak_time), *peaks)
         made.peak_spin = max(made.peak_spin, length(self.state.spin))
         under, poses = self.body.under(up), self.body.poses
-        if self.watched and poses[under] != poses[self.under] == poses[self.stood]:
+        if poses[under] != poses[self.under] == poses[self.stood]:
             apart = minus(self.body.facets[self.under], self.body.facets[under])
             before, after = dot(apart, self.watched.up), dot(apart, up)
-            made.overturning_time = self.watched.time - (before / (after - before) if after > before else -1.0) * span
+            share = -before / (after - before) if after > before else 1.0
+            made.overturning_time = self.watched.time + share * span
             x, y, _ = applied(axes, self.upright)
             made.direction = math.atan2(y, x)
         self.under, self.watched = under, last

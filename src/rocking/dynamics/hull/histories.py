@@ -103,7 +103,7 @@ def traced(
     results, counts = _COMPILED.room(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
     nodes, impacts, members, stuck, struck, least, fell = library.trace(
-        numbers, np.array([[0, 0, code]]), results, counts, *limits
+        numbers, np.array([[0, 0, code, body.base]]), results, counts, *limits
     )
     found = {name: column.item() for name, column in _COMPILED.named(results, counts).items()}
     if not nodes.size:
@@ -117,7 +117,7 @@ def traced(
             "pose", "uplifts", "steps", "held", "replaced")  # fmt: skip
     return HullHistory(
         nodes[:, 0].tolist(), [_state(row[1:]) for row in nodes], contacts, events, list(Status)[found["status"]],
-        list(Outcome)[found["outcome"]], bool(found["still_rocking"]), fell=fell, least_cosine=least,
+        list(Outcome)[found["outcome"]], bool(found["still_rocking"]), fell=fell, least_cosine=least, stood=body.base,
         **{name: found[name] for name in same},
     )  # fmt: skip
 
@@ -196,7 +196,8 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     numbers = numbers_of_rows(
         values[law], factors[scale], frictions[mu], states[body, first], pulls[ground], planes[ground], float(horizon)
     )
-    choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law]]).astype(np.int64)
+    bases = np.array([0 if each is None else each.base for each in several])
+    choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law], bases[body]]).astype(np.int64)
     rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), ked=ked)
     found = rows.run(numbers, choices, taken, progress)
     return SpatialBatch(shape, found, rows.words, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
@@ -227,7 +228,7 @@ class HullRows:
     ) -> dict[str, np.ndarray]:
         """Return the results of rows by name, NaN where there is none.
 
-        numbers: as of `numbers_of_rows`; choices: body, motion, law.
+        numbers: as of `numbers_of_rows`; choices: body, motion, law, facet on which the body stood before its tilt.
         """
         pieces = []
         size = PIECE if self.engine == "fast" else 1
@@ -257,7 +258,8 @@ class HullRows:
         ground = HullGround.placed(
             SpatialGround(moving.times, row[1] * moving.coefficients), row[4:13], row[13:15], float(row[28])
         )
-        return results_of(HullEngine(body, ground, law, float(row[3]), self.settings).run(_state(row[15:28]), row[2]))
+        engine = HullEngine(body, ground, law, float(row[3]), self.settings)
+        return results_of(engine.run(_state(row[15:28]), row[2], which[3]))
 
 
 def results_of(history: HullHistory) -> tuple[list[float], list[int]]:

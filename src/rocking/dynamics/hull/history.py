@@ -47,6 +47,7 @@ class HullHistory:
     slid: bool = False
     rocked: bool = False
     fell: bool = False  # off the shelf
+    stood: int = 0  # facet on which the body stood before it was tilted
     pose: int = -1  # the stable pose in which it ends, or to which it is on its way
     overturning_time: float = math.nan  # when its centre left the first pose for the last time [s]
     direction: float = math.nan  # in which it leant then, from x towards y [rad]

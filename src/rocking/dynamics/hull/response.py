@@ -70,7 +70,7 @@ def response_on_hull(
     if used == "fast":
         found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=given)
     else:
-        found = HullEngine(made, ground, law, settings.friction, given).run(start_of(made, start), horizon)
+        found = HullEngine(made, ground, law, settings.friction, given).run(start_of(made, start), horizon, made.base)
     end = min(until, found.time[-1])
     time = samples(step, end)
     return HullResponse(made, ground, str(law), settings, time, found, end, components, scale, ENGINES[used])
@@ -159,16 +159,13 @@ class HullResponse(ResponseBase):
 
     @cached_property
     def _up(self) -> FloatArray:
-        """The axis of the body, of its pose at the start, at the samples in axes of the ground."""
-        history = self.trajectory
-        first = attitude.matrix(np.array(history.states[0].attitude))
-        up = (float(first[2, 0]), float(first[2, 1]), float(first[2, 2]))
-        axis = -np.array(unit(self.body.facets[self.body.under(up)]))
+        """The axis of the body, of the pose in which it stood, at the samples in axes of the ground."""
+        axis = -np.array(unit(self.body.facets[self.trajectory.stood]))
         return applied(attitude.matrix(self.quaternion), axis)
 
     @cached_property
     def tilt(self) -> FloatArray:
-        """Angle from the pose at the start, at the samples [rad]."""
+        """Angle from the pose in which the body stood before it was tilted, at the samples [rad]."""
         x, y, z = self._up.T
         return np.asarray(np.arctan2(np.hypot(x, y), z))
 
@@ -204,7 +201,7 @@ class HullResponse(ResponseBase):
 
     @property
     def peak_tilt(self) -> float:
-        """Largest angle from the pose at the start, between the samples too [rad]."""
+        """Largest angle from the pose in which the body stood, between the samples too [rad]."""
         return self.trajectory.peak_tilt
 
     @property
