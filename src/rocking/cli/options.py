@@ -174,6 +174,7 @@ _RENAMED = {
     "--fill-holes": "--set body.repair=all",
     "--repair": "--set body.repair=all",
     "--surface": "--set body.surface=wrap",
+    "--inner-parts": "--set body.inner_parts=solid",
     "--base-tolerance": "--set body.base_tolerance=LENGTH",
     "--record": "--motion FILE",
     "--records": "--motion FOLDER, a pattern in quotes, or LIST.csv",

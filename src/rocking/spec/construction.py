@@ -177,7 +177,7 @@ def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool
     return Solid.from_section(body)
 
 
-_BESIDE_FILE = ("units", "density", "up", "repair", "surface", "wall", "base_tolerance", *KNOWN)
+_BESIDE_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_parts", "base_tolerance", *KNOWN)
 _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
 

@@ -14,7 +14,7 @@ from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.formats.words import MOST_VERTICES, blamed, checked_file
-from rocking.bodies.solid._changes import Repair, in_words
+from rocking.bodies.solid._changes import InnerParts, Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
@@ -46,6 +46,7 @@ def mesh_from_file(
     repair: Repair = "safe",
     surface: Surface = "faces",
     wall: float | None = None,
+    inner_parts: InnerParts = "refuse",
 ) -> Repaired:
     """Return the volume inside a mesh: welded, oriented, closed, centred, z up; with a sentence for each doubt."""
     # with no weld tolerance equal vertices are merged; if that leaves the surface open, those within 1e-6 of its size
@@ -65,7 +66,7 @@ def mesh_from_file(
         surface = "wrap" if surface == "faces" and not len(faces) else surface
         done = repaired(
             times(vertices * scale, turn.T), faces,
-            weld_tolerance=weld_tolerance, repair=repair, surface=surface, wall=wall,
+            weld_tolerance=weld_tolerance, repair=repair, surface=surface, wall=wall, inner_parts=inner_parts,
             place=lambda where: in_words(where @ turn / scale, units),
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]

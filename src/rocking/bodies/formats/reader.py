@@ -20,7 +20,7 @@ from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import Placement, blamed, read_text, readable
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
-from rocking.bodies.solid._changes import Repair
+from rocking.bodies.solid._changes import InnerParts, Repair
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import LENGTH_UNITS
@@ -36,6 +36,7 @@ class MeshOptions(TypedDict, total=False):
     repair: Repair
     surface: Surface
     wall: float | None
+    inner_parts: InnerParts
     base_tolerance: float | None
 
 
@@ -97,7 +98,9 @@ def read_body(
         "none", "safe" (if not given: what changes at most 1 % of the volume and moves the centre by at most 0.5 % of
         the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; ``surface``, "faces", or
         a skin over its points alone, "wrap" (if not given: of files that hold points alone), or their "hull";
-        ``wall``, how thick it is where it is hollow [m]; and ``base_tolerance`` [m]: vertices this close to the lowest
+        ``wall``, how thick it is where it is hollow [m]; ``inner_parts``, how closed parts inside another one that
+        are wound like it are read: "solid", "cavity" or "refuse" (if not given: refused where the two readings differ
+        by more than 1 % of the volume); and ``base_tolerance`` [m]: vertices this close to the lowest
         one touch the ground. A mesh that does not stand as it is in the file is let down from there until it rests. Of
         both ``mass`` [kg] and ``centre`` [m] where they are known, of drawings ``moment_of_inertia`` [kg m2], as for
         `Section`, and of meshes ``inertia`` [kg m2], as for `Solid`.

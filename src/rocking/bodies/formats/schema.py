@@ -234,6 +234,9 @@ class MeshTable(StrictTable):
         "faces", description="its faces, or a skin over its points, or their hull"
     )
     wall: Positive | None = Field(None, description="how thick it is, where it is hollow [unit of the file]")
+    inner_parts: Literal["refuse", "solid", "cavity"] = Field(
+        "refuse", description="closed parts inside another one and wound like it: refused, solid or cavities"
+    )
 
 
 class TurnTable(StrictTable):

@@ -121,8 +121,9 @@ def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: f
     own = table.units or units
     reach, wall = (None if x is None else x * length_unit(own) for x in (table.weld_tolerance, table.wall))
     mesh = mesh_from_file(
-        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface, wall=wall
-    )
+        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface, wall=wall,
+        inner_parts=table.inner_parts,
+    )  # fmt: skip
     repairs += [f"{path.name}: {words}" for words in mesh.repairs]
     return mesh.part(density)
 

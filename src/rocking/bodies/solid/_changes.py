@@ -15,6 +15,9 @@ Repair = Literal["none", "safe", "all"]
 
 """Merging equal vertices alone; what stays within the bounds below; whatever it takes."""
 
+InnerParts = Literal["refuse", "solid", "cavity"]
+"""How to read a closed part inside another one and wound like it: not at all, as filled, or as a hollow."""
+
 MOST_VOLUME = 0.01  # what safe repairs together may change of the volume [-]
 MOST_SHIFT = 0.005  # how far safe repairs together may move the centre of mass, over the size of the body [-]
 
@@ -34,12 +37,14 @@ class Changes:
     """Repairs of a surface, as they are made."""
 
     allowed: Repair = "safe"
+    inner_parts: InnerParts = "refuse"
     place: Callable[[FloatArray], str] = in_words  # a place from the middle of the box [m], in the user's words
     made: list[tuple[str, float, FloatArray | None]] = field(default_factory=list)  # sentence, volume [m3], where [m]
     mended: list[FloatArray] = field(default_factory=list)  # faces that closed holes, (m, 3, 3) each [m]
 
     def __post_init__(self) -> None:
         self.allowed = checks.one_of("repair", self.allowed, get_args(Repair))
+        self.inner_parts = checks.one_of("inner_parts", self.inner_parts, get_args(InnerParts))
 
     def say(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
         """Note a repair; volume: what it can have changed [m3], about a place [m], or anywhere."""

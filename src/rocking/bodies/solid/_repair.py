@@ -14,7 +14,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid._changes import HELP, Changes, Repair, in_words
+from rocking.bodies.solid._changes import HELP, Changes, InnerParts, Repair, in_words
 from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, decimated, hollowed, oriented_shells, turned_consistently
 from rocking.bodies.solid._skin import Surface, skin
@@ -209,6 +209,7 @@ def repaired(
     repair: Repair = "safe",
     surface: Surface = "faces",
     wall: float | None = None,
+    inner_parts: InnerParts = "refuse",
     place: Callable[[FloatArray], str] = in_words,
 ) -> Repaired:
     """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
@@ -217,7 +218,7 @@ def repaired(
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
-    changes = Changes(repair, lambda where: place(where + middle))
+    changes = Changes(repair, inner_parts, lambda where: place(where + middle))
     if surface == "faces":
         points, faces = _closed_surface(points, faces, weld_tolerance, size, changes)
     else:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
-from rocking.bodies.solid._changes import HELP, Changes
+from rocking.bodies.solid._changes import HELP, MOST_VOLUME, Changes, InnerParts
 from rocking.bodies.solid._self_crossing import inside
 from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.surfaces import area_vectors
@@ -112,6 +112,7 @@ MOST_SHELLS = 200  # surfaces in more pieces are refused [-]
 
 _PROBES, _GRID = 40, 12
 
+_NAMED = 3  # parts that a sentence names
 _TWICE = 2e-3  # two shells this close, over the size, may be one surface scanned twice [-]
 
 
@@ -145,39 +146,103 @@ def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tu
         within, crossing = _nested(points, shells)
         if crossing:
             return _united(points, shells, within, crossing, changes)
-        shells, within = _once(points, shells, within, changes)
     else:
         within = np.zeros((1, 1), dtype=bool)
-    depth = within.sum(axis=1)
     volumes = np.array([polyhedron_moments(points[shell]).mass for shell in shells])
-    wrong = ((volumes < 0.0) == (depth % 2 == 0)) & (volumes != 0.0)
+    matter = _matter(volumes, within)
+    once = _once(points, shells, volumes, matter, within, changes)
+    shells, volumes, matter, within = [shells[k] for k in once], volumes[once], matter[once], within[once][:, once]
+    inner = _inner_parts(points, shells, volumes, matter, within, changes)
+    filled, borders = _filled(matter, within, inner)
+    wrong = borders & (matter == filled) & ((volumes < 0.0) == filled) & (volumes != 0.0)
     turned = sum(len(shell) for shell, bad in zip(shells, wrong, strict=True) if bad)
     if turned:
         changes.say(f"turned {wrong.sum()} shell(s), {turned} faces, inside out")
-    if len(shells) > 1:
+    if borders.sum() > 1:
         changes.note(
-            f"the surface has {len(shells)} separate shells, {(depth % 2).sum()} of them cavities inside others; the "
-            "rest add up: cut out what is not of the body, as the table that it stood on"
+            f"the surface has {borders.sum()} separate shells, {(borders & ~filled).sum()} of them cavities inside "
+            "others; the rest add up: cut out what is not of the body, as the table that it stood on"
         )
-    return points, np.concatenate([s[:, ::-1] if bad else s for s, bad in zip(shells, wrong, strict=True)])
+    kept = [(shell, (volume < 0.0) == full) for shell, volume, full, border in
+            zip(shells, volumes, filled, borders, strict=True) if border]  # fmt: skip
+    return points, np.concatenate([shell[:, ::-1] if other else shell for shell, other in kept])
+
+
+def _matter(volumes: FloatArray, within: BoolArray) -> BoolArray:
+    """Whether each shell is wound like the outermost one about it, as the skin of matter is."""
+    depth = within.sum(axis=1)
+    outermost = [i if not depth[i] else int(np.flatnonzero(within[i] & (depth == 0))[0]) for i in range(len(depth))]
+    matter: BoolArray = (volumes < 0.0) == (volumes[outermost] < 0.0)
+    return matter
+
+
+def _filled(matter: BoolArray, within: BoolArray, inner: InnerParts) -> tuple[BoolArray, BoolArray]:
+    """Whether there is matter inside each shell, and whether the shell divides matter from none."""
+    depth = within.sum(axis=1)
+    filled, borders = np.zeros(len(depth), dtype=bool), np.zeros(len(depth), dtype=bool)
+    for i in np.argsort(depth, kind="stable").tolist():
+        about = np.flatnonzero(within[i])
+        outside = bool(len(about)) and bool(filled[about[depth[about].argmax()]])
+        # a skin of matter within matter, or of a cavity within a cavity, is read as was decided
+        filled[i] = matter[i] if matter[i] != outside else inner == "solid"
+        borders[i] = filled[i] != outside
+    return filled, borders
+
+
+def _inner_parts(
+    points: FloatArray, shells: list[IntArray], volumes: FloatArray, matter: BoolArray, within: BoolArray,
+    changes: Changes,
+) -> InnerParts:  # fmt: skip
+    """Return how closed parts inside others and wound like them are read; refuse what the user has to decide."""
+    readings: tuple[InnerParts, InnerParts] = ("solid", "cavity")
+    filled, borders = _filled(matter, within, "solid")
+    doubtful = np.flatnonzero(~borders | (filled & ~matter))
+    if not len(doubtful):
+        return "cavity"
+    wholes = []
+    for reading in readings:
+        full, border = _filled(matter, within, reading)
+        wholes.append(float((np.abs(volumes) * (full * 1.0 - ~full) * border).sum()))
+    middles = [polyhedron_moments(points[shells[i]]).centre for i in doubtful]
+    sizes = np.abs(volumes[doubtful])
+    parts = zip(sizes[:_NAMED].tolist(), middles[:_NAMED], strict=True)
+    named = ", ".join(f"{size:.4g} m3 about {changes.place(middle)}" for size, middle in parts)
+    more = f" and {len(doubtful) - _NAMED} more" if len(doubtful) > _NAMED else ""
+    count = "1 closed part" if len(doubtful) == 1 else f"{len(doubtful)} closed parts"
+    words = f"{count} inside another one, wound like it ({named}{more})"
+    solid, hollow = wholes
+    differ = f"the body encloses {solid:.4g} m3 if solid and {hollow:.4g} m3 if hollow"
+    if changes.inner_parts != "refuse":
+        changes.note(f'took {words}, as inner_parts="{changes.inner_parts}" states: {differ}')
+        return changes.inner_parts
+    share = (solid - hollow) / solid
+    if share > MOST_VOLUME:
+        raise GeometryError(
+            f"{words} can be matter or cavities: {differ}, which is {percent(share)} of the volume; state "
+            'inner_parts="solid" or inner_parts="cavity"'
+        )
+    where = np.average(middles, axis=0, weights=sizes)
+    changes.say(f'took {words}, as solid; inner_parts="cavity" states the other reading', solid - hollow, where)
+    return "solid"
 
 
 def _once(
-    points: FloatArray, shells: list[IntArray], within: BoolArray, changes: Changes
-) -> tuple[list[IntArray], BoolArray]:
-    """Shells without those that another one, closely about them, repeats."""
-    volumes = np.array([polyhedron_moments(points[shell]).mass for shell in shells])
+    points: FloatArray, shells: list[IntArray], volumes: FloatArray, matter: BoolArray, within: BoolArray,
+    changes: Changes,
+) -> IntArray:  # fmt: skip
+    """Return the numbers of the shells without those that another one, closely about them, repeats."""
     areas = np.array([np.linalg.norm(area_vectors(points[shell]), axis=1).sum() for shell in shells])
     gaps = (np.abs(volumes) - np.abs(volumes)[:, None]) / areas  # from inner i to outer j
     size = float(np.ptp(points, axis=0).max())
     twice = within & (volumes * volumes[:, None] > 0.0) & (gaps < _TWICE * size)
+    if changes.inner_parts == "cavity":  # then a second skin is the inner side of a thin wall
+        twice &= ~matter
     for i, j in np.argwhere(twice).tolist():
         changes.say(
             f"left out a shell {1000.0 * gaps[i, j]:.2g} mm within another, as of a surface scanned twice",
             abs(abs(volumes[j]) - abs(volumes[i])),
         )
-    keep = ~twice.any(axis=1)
-    return [shell for shell, kept in zip(shells, keep, strict=True) if kept], within[keep][:, keep]
+    return np.flatnonzero(~twice.any(axis=1))
 
 
 def _united(
@@ -201,7 +266,12 @@ def _united(
         doubt if doubt < 0.1 * overlap else 0.0,
     )
     new, joined = surface(whole)
-    rest = [shell for i, shell in enumerate(shells) if i not in involved]
+    # what lies within one that was turned is turned with it
+    inward = np.array([polyhedron_moments(points[shell]).mass < 0.0 for shell in shells])
+    inward[np.setdiff1d(np.arange(len(shells)), involved)] = False
+    rest = [
+        shell[:, ::-1] if (within[i] & inward).any() else shell for i, shell in enumerate(shells) if i not in involved
+    ]
     return oriented_shells(np.concatenate([points, new]), np.concatenate([*rest, joined + len(points)]), changes)
 
 

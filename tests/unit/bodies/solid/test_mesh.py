@@ -173,12 +173,12 @@ def test_what_is_no_surface(vertices, faces, repair, words):
 
 
 def test_shells():
-    """Prisms that share an edge add up, one inside another is a cavity, crossing ones are united."""
+    """Prisms that share an edge add up, one inside another wound inward is a cavity, crossing ones are united."""
     other = np.concatenate([F, F + 8])
     beside = repaired(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
     assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13, abs=0.0)
     assert "2 separate shells, 0 of them cavities" in beside.repairs[-1]
-    hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), other)
+    hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), np.concatenate([F, F[:, ::-1] + 8]))
     assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13, abs=0.0)
     assert "1 of them cavities" in hollow.repairs[-1]
     for shift, shared in (([0.5, 0.5, 0.0], 1.0), ([0.5, 0.5, 1.0], 0.75), ([0.3, 0.0, 2.0], 1.4)):
@@ -189,17 +189,93 @@ def test_shells():
         repaired(np.concatenate([V, V + np.array([0.5, 0.5, 1.0])]), other, repair="none")
 
 
-@pytest.mark.parametrize("outward", [True, False], ids=["outward", "inward"])
+def nested(*winding):
+    """Boxes one in the other, each beside the middle of the last; wound outward (1) or inward (-1)."""
+    box_, sizes = box(1.0, 1.3, 0.7), np.array([4.0, 3.0, 2.0, 1.0, 0.5])[: len(winding)]
+    vertices = [size * (box_.vertices - [0.0, 0.0, 0.35]) + 0.3 * (4.0 - size) * np.ones(3) / 3.0 for size in sizes]
+    faces = [(box_.faces if out > 0 else box_.faces[:, ::-1]) + 8 * i for i, out in enumerate(winding)]
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def enclosed(*signs):
+    """Volume of such boxes, added or taken off [m3]."""
+    return 1.3 * 0.7 * sum(s * size**3 for s, size in zip(signs, (4.0, 3.0, 2.0, 1.0), strict=False))
+
+
+@pytest.mark.parametrize("outward", [1, -1], ids=["outward", "inward"])
 def test_shells_inside_shells(outward):
-    """Four boxes one in the other are a body, a cavity, a body and a cavity, whichever way their faces looked."""
-    sizes = np.array([4.0, 3.0, 2.0, 1.0])
-    box_ = box(1.0, 1.3, 0.7)
-    vertices = np.concatenate([size * (box_.vertices - [0.0, 0.0, 0.35]) for size in sizes])
-    faces = np.concatenate([box_.faces + 8 * i for i in range(4)])
-    done = repaired(vertices, faces if outward else faces[:, ::-1])
-    assert done.shape.moments().mass == pytest.approx(1.3 * 0.7 * (64.0 - 27.0 + 8.0 - 1.0), rel=1e-13, abs=0.0)
-    assert done.repairs[0] == "turned 2 shell(s), 24 faces, inside out"
-    assert "4 separate shells, 2 of them cavities" in done.repairs[1]
+    """Four boxes one in the other, wound alternately, are a body, a cavity, a body and a cavity."""
+    done = repaired(*nested(*(outward * np.array([1, -1, 1, -1]))))
+    assert done.shape.moments().mass == pytest.approx(enclosed(1, -1, 1, -1), rel=1e-13, abs=0.0)
+    assert "4 separate shells, 2 of them cavities" in done.repairs[-1]
+    assert (len(done.repairs) == 1) == (outward > 0)
+
+
+@pytest.mark.parametrize("outward", [1, -1], ids=["outward", "inward"])
+def test_inner_parts_are_decided_by_the_user(outward):
+    """Of parts wound like what surrounds them the user states what they are; each reading has its closed form.
+
+    A box wound like the outer one inside it is matter or a cavity; the same within a cavity is matter, which nobody
+    doubts, and inside matter again it is as was stated.
+    """
+    vertices, faces = nested(*(outward * np.ones(4, dtype=int)))
+    for repair in ("none", "safe", "all"):
+        with pytest.raises(GeometryError, match=r'42\.2 % of the volume; state inner_parts="solid" or'):
+            repaired(*nested(outward, outward), repair=repair)
+    for inner, volume in (("solid", enclosed(1)), ("cavity", enclosed(1, -1, 1, -1))):
+        done = repaired(vertices, faces, inner_parts=inner)
+        assert done.shape.moments().mass == pytest.approx(volume, rel=1e-13, abs=0.0)
+        stated = next(each for each in done.repairs if "inner_parts" in each)
+        assert f'as inner_parts="{inner}" states' in stated
+        assert f"{enclosed(1):.4g} m3 if solid and {enclosed(1, -1, 1, -1):.4g} m3 if hollow" in stated
+    for inner, volume in (("solid", enclosed(1, -1, 1)), ("cavity", enclosed(1, -1, 1, -1))):
+        done = repaired(*nested(*(outward * np.array([1, -1, 1, 1]))), inner_parts=inner)
+        assert done.shape.moments().mass == pytest.approx(volume, rel=1e-13, abs=0.0)
+    with pytest.raises(InvalidValueError, match="inner_parts must be one of refuse, solid, cavity"):
+        repaired(V, F, inner_parts="hollow")
+
+
+def test_a_small_inner_part_is_within_the_bound_of_safe_repairs():
+    """Half a percent of the volume, near the middle, is taken as solid and named; far from it, it moves the centre."""
+    speck = 0.005 ** (1.0 / 3.0)
+    middle = V.mean(axis=0)
+
+    def with_part(shift, repair="safe"):
+        other = np.concatenate([V, middle + speck * (V - middle) + shift])
+        return repaired(other, np.concatenate([F, F + 8]), repair=repair)
+
+    done = with_part([0.02, 0.05, 0.1])
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
+    assert "as solid" in done.repairs[0]
+    assert "at most 0.5 % of the volume" in done.repairs[0]
+    with pytest.raises(GeometryError, match="refuses: took 1 closed part inside"):
+        with_part([0.0, 0.0, 0.1], "none")
+    larger = middle + 0.0101 ** (1.0 / 3.0) * (V - middle)
+    with pytest.raises(GeometryError, match="inner_parts="):
+        repaired(np.concatenate([V, larger]), np.concatenate([F, F + 8]))
+
+
+def test_an_inner_part_through_the_wall_has_the_volume_of_the_solid_reading():
+    """A part that pokes out by a thousandth is united: the solid reading of the part inside is continuous with it."""
+    inner = V * 0.5 + np.array([0.0, 0.0, 1.0])
+    out = inner + np.array([0.251, 0.0, 0.0])
+    both = np.concatenate([F, F + 8])
+    solid = repaired(np.concatenate([V, inner]), both, inner_parts="solid")
+    united = repaired(np.concatenate([V, out]), both)
+    assert united.shape.moments().mass == pytest.approx(4.0 + 0.001 * 0.5 * 2.0, rel=1e-9, abs=0.0)
+    assert solid.shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
+    turned = repaired(np.concatenate([V, out, V * 0.2 + [-0.2, 0.0, 0.3]]), np.concatenate([both, F + 16])[:, ::-1],
+                      inner_parts="cavity")  # fmt: skip
+    assert turned.shape.moments().mass == pytest.approx(4.001 - 0.032, rel=1e-9, abs=0.0)
+
+
+def test_a_thin_wall_of_which_both_skins_look_outward():
+    """A skin closely inside another one is a surface scanned twice, unless inner parts are stated to be cavities."""
+    inside = V.mean(axis=0) + 0.999 * (V - V.mean(axis=0))
+    both = np.concatenate([V, inside]), np.concatenate([F, F + 8])
+    assert repaired(*both).shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
+    hollow = repaired(*both, inner_parts="cavity").shape.moments().mass
+    assert hollow == pytest.approx(4.0 * (1.0 - 0.999**3), rel=1e-9, abs=0.0)
 
 
 def test_one_sided_surface():

@@ -19,15 +19,16 @@ const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"
 const AXES = { x: [1, 0, 0], "-z": [0, 0, -1] };
 const REPAIRS = [["", "what is safe"], ["none", "nothing (\"none\"): refuse what is not closed"], ["all", "whatever it takes (\"all\")"]];
 const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")"], ["hull", "the hull of its points (\"hull\")"]];
+const INNER = [["", "refused, and named (\"refuse\")"], ["solid", "solid (\"solid\")"], ["cavity", "cavities (\"cavity\")"]];
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
 const LAWS = [["ked-3d", "kinetic energy distribution (ked-3d)"], ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"]];
 
 const OWN = "project"; // chosen in place of a scan
 const FIRST = {
-  files: [], chosen: "", asked: "equilibria", units: "", up: "", repair: "", surface: "", density: "", pose: null,
+  files: [], chosen: "", asked: "equilibria", units: "", up: "", repair: "", surface: "", inner: "", density: "", pose: null,
   shaken: "x", friction: "0.4", law: "ked-3d", coefficient: "0.8", times: "1", recordUnits: "", along_x: [], along_y: [], along_z: [],
 };
-const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "density"];
+const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "inner", "density"];
 const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
 
 /** The scan that is asked about: the chosen one, or the last; none where the body of the project is.
@@ -44,7 +45,7 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Space = ({ app, questions }) => {
   const form = useForm(app, "space", FIRST);
-  const [files, chosen, asked, units, up, repair, surface, density] = BODY.map((name) => form.at(name));
+  const [files, chosen, asked, units, up, repair, surface, inner, density] = BODY.map((name) => form.at(name));
   const [shaken, friction, law, coefficient, times, recordUnits] = MOVES.map((name) => form.at(name));
   const records = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, form.at(`along_${axis}`)]));
   const pose = form.at("pose"); // {number, up}: which way up it shall stand, in the axes of the file
@@ -70,7 +71,7 @@ const Space = ({ app, questions }) => {
     const inputs = app.inputs.get();
     const body = chosen.value === OWN ? { table: inputs.body, missing: app.faults.sentence({ inputs: true }) } : bodyOf(scan, {
       units: units.value, up: pose.value?.up ?? AXES[up.value] ?? up.value, repair: repair.value, surface: surface.value,
-      density: density.value.trim(),
+      inner_parts: inner.value, density: density.value.trim(),
     });
     const moves = asked.value === "simulate";
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
@@ -114,6 +115,7 @@ const Space = ({ app, questions }) => {
       <details><summary>What may be mended</summary>
         <${Choice} label="Mend" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and 0.5 % of the size for the centre." />
         <${Choice} label="Surface" value=${surface} options=${SURFACES} />
+        <${Choice} label="Closed parts inside" value=${inner} options=${INNER} help="Parts that are wound like the part around them." />
       </details>`}
       <${Choice} label="Asked is" value=${asked} options=${ASKED} />
       ${asked.value === "simulate" && html`
