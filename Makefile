@@ -30,7 +30,8 @@ help:
 	@echo "make virtual-rocks  20 rocks foreseen from their scans, and what another program makes of them (goes on where it stopped)"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
 	@echo "make pelicun  PELICUN computes with curves that are exported for it, in an environment of its own"
-	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped)"
+	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped;"
+	@echo "              SAMPLE=\"--seed 38 --count 50 --no-engines --packages hull floors\": a sample of some packages)"
 	@echo "make oldest   the unit tests with the oldest dependencies that are admitted"
 	@echo "make packages the source distribution and, from it, a wheel, into dist; what is in them, the index page, the workflow"
 	@echo "make clean    remove what was made"
@@ -189,7 +190,7 @@ bench: $(VENV)/bench $(ENGINE)
 	$(BIN)/python -m benchmarks
 
 mutants: $(VENV)/mutants $(ENGINE)
-	$(BIN)/python -m benchmarks.mutants
+	$(BIN)/python -m benchmarks.mutants $(SAMPLE)
 
 campaign: $(VENV)/dev $(ENGINE)
 	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/validation \

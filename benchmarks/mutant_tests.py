@@ -32,9 +32,9 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
         Path(os.environ[DURATIONS]).write_text(json.dumps(_spent), encoding="utf-8")
 
 
-def record(folder: Path) -> None:
-    """Run the suite once under coverage; later only what is in files of tests that have changed since."""
-    kept, now = folder / "recorded.json", seals()
+def record(folder: Path, tests: list[str], workers: int) -> None:
+    """Run the suite, or tests of some paths, once under coverage; later only files of tests that have changed since."""
+    kept, now = folder / "recorded.json", seals(tests)
     before = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     known = {path for path, seal in now.items() if before.get(path) == seal}
     changed = sorted(now.keys() - known)
@@ -44,9 +44,10 @@ def record(folder: Path) -> None:
     durations, stale = folder / "durations.json", () if whole else tuple(f"{path}::" for path in changed)
     old = {} if whole else json.loads(durations.read_text(encoding="utf-8"))
     print("Running the tests once to see which runs which line ...", flush=True)
-    command = [sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadfile", "-m", "not timed and not browser"]
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "not timed and not browser"]
+    command += ["-n", str(workers), "--dist", "loadfile"] if workers > 1 else []
     command += ["--cov", "--cov-context=test", "--cov-report=", "-p", "benchmarks.mutant_tests"]
-    command += ["-p", "no:cacheprovider", *([] if whole else ["--cov-append", *changed])]
+    command += ["-p", "no:cacheprovider", *(tests if whole else ["--cov-append", *changed])]
     at = {"COVERAGE_FILE": str(folder / "coverage"), DURATIONS: str(durations)}
     kept.unlink(missing_ok=True)
     done = subprocess.run(command, cwd=ROOT, env=os.environ | at, check=False)
@@ -59,13 +60,11 @@ def record(folder: Path) -> None:
     kept.write_text(json.dumps(now), encoding="utf-8")
 
 
-def seals() -> dict[str, str]:
-    """What stands in the sources and the tests, by path."""
-    return {
-        str(path.relative_to(ROOT)): hashlib.sha256(path.read_bytes()).hexdigest()
-        for folder in ("src", "tests")
-        for path in sorted((ROOT / folder).rglob("*.py"))
-    }
+def seals(tests: list[str]) -> dict[str, str]:
+    """Hashes of the sources and of the tests, all or those of some paths, by path."""
+    files = {file for part in ("src", *(tests or ["tests"])) for file in (ROOT / part).rglob("*.py")}
+    files |= {ROOT / part for part in tests if part.endswith(".py")}
+    return {str(path.relative_to(ROOT)): hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(files)}
 
 
 class Covering:

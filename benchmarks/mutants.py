@@ -2,8 +2,8 @@
 
 A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
 comparisons, signs, conditions, loops), each against the tests that run its line, the likeliest and quickest first, for
-90 seconds; and the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every
-verdict is a line in build/mutants/.
+90 seconds; and the hand-made errors of mutants.toml. It goes on where it was stopped: every verdict is a line in
+build/mutants/. A sample of some packages (--packages) is judged by the tests that mutants.toml names for each.
 """
 
 import argparse
@@ -12,6 +12,8 @@ import hashlib
 import json
 import math
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -43,6 +45,12 @@ CORE = {
     "readers": ("motions/formats/*.py",),
     "fragility": ("statistics/*.py", "studies/fragility/*.py"),
     "evidence": ("evidence/*.py",),
+    "hull": ("dynamics/hull/*.py",),
+    "prediction": ("prediction/*.py",),
+    "identification": ("identification/*.py", "identification/readers/*.py"),
+    "code methods": ("studies/code_methods/*.py",),
+    "equilibria": ("bodies/equilibria/*.py",),
+    "floors": ("motions/floors.py",),
 }
 NOT_NUMERICAL = ("export", "nrml", "lines.py", "tables.py", "words.py", "__init__")
 
@@ -80,6 +88,7 @@ OPERATORS = (
 )
 STAGES = (4.0, 15.0, 90.0)  # seconds of tests: most errors die in the first
 ENGINE_LIMIT = 900.0  # seconds for the tests of an engine
+PAGE = "RESULTS-mutants.md"
 HANGS = 3.0  # a mutant that takes this many times the processor's time that the tests take under coverage hangs
 
 
@@ -148,13 +157,13 @@ def _quiet_lines(tree: ast.AST) -> Iterator[int]:
             yield from range(part.lineno, (part.end_lineno or part.lineno) + 1)
 
 
-def sample(seed: int, count: int) -> tuple[list[Mutant], dict[str, int]]:
+def sample(seed: int, count: int, packages: list[str]) -> tuple[list[Mutant], dict[str, int]]:
     """The same number of every package, in an order that mixes them; and how many there are in all.
 
     Each has a rank by seed, file, line and operator, and the first ranks are taken: an edit elsewhere leaves them.
     """
     every, ranks = {}, {}
-    for package in CORE:
+    for package in packages:
         there = mutants(package)
         every[package], place = len(there), Counter[str]()
         ranked = {}
@@ -359,6 +368,21 @@ def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
     return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
 
 
+def planted(folder: Path) -> list[tuple[str, str, bool]]:
+    """The hand-made errors in Python, each judged by the tests that its entry names."""
+    found, worker = [], Worker(folder / "worker-planted")
+    for entry in by_hand()["python"]:
+        text = (ROOT / entry["file"]).read_text(encoding="utf-8")
+        if text.count(entry["old"]) != 1:
+            raise SystemExit(f"mutants.toml: {entry['name']}: {entry['file']} must have {entry['old']!r} once")
+        if failed := worker.fails(entry["tests"], ENGINE_LIMIT):
+            raise SystemExit(f"fails without an error too: {failed}")
+        worker.write(entry["file"], text.replace(entry["old"], entry["new"]))
+        found.append((entry["file"], entry["name"], bool(worker.fails(entry["tests"], ENGINE_LIMIT))))
+        worker.write(entry["file"], text)
+    return found
+
+
 def _build(folder: Path) -> None:
     """Build the plain kernels, which have the bits of the others, less optimised."""
     tools = Path(sys.executable).parent
@@ -398,7 +422,9 @@ def page(
     every: dict[str, int],
     known: dict[str, dict[str, object]],
     made: list[tuple[str, str, bool]],
-    seed: int,
+    command: str,
+    *,
+    whole: bool,
 ) -> bool:
     """Print and keep the scores and every survivor; whether the lower end of the score is 85 % or more.
 
@@ -409,16 +435,17 @@ def page(
     judged = [mutant for mutant in chosen if mutant.key in known]
     survivors = {mutant: mutant.change() for mutant in sorted(judged) if not known[mutant.key]["killed"]}
     same_results = {mutant for mutant, (_, new) in survivors.items() if (mutant.path, new) in reasons}
+    heading = "# Deliberate errors" if whole else f"## Deliberate errors in {', '.join(every)}"
     text = [
-        "# Deliberate errors",
+        heading,
         "",
-        f"Made by `make mutants`; seed {seed}.",
+        f"Made by `{command}`.",
         "",
         "| package | mutations | judged | noticed | change no result | noticed of the others | 95 % |",
         "|---|---|---|---|---|---|---|",
     ]
     low = 0.0
-    for package in (*CORE, "all"):
+    for package in (*every, "all"):
         of = [mutant for mutant in judged if package in {mutant.package, "all"}]
         killed, same = len(of) - sum(mutant in survivors for mutant in of), sum(mutant in same_results for mutant in of)
         if len(of) > same:
@@ -440,9 +467,13 @@ def page(
     for mutant, (old, new) in survivors.items():
         text.append(f"- `{mutant.path}`: `{old}` -> `{new}`: {reasons.get((mutant.path, new), 'not noticed')}")
     if made:
-        text += ["", f"Compiled engines, by hand: {sum(entry[2] for entry in made)} of {len(made)} noticed.", ""]
+        text += ["", f"By hand: {sum(entry[2] for entry in made)} of {len(made)} noticed.", ""]
         text += [f"- {file}: {name}: {'noticed' if killed else 'SURVIVED'}" for file, name, killed in made]
-    table.keep("RESULTS-mutants.md", text)
+    # the page of all packages comes first, then one part per sample of some packages
+    first_part, *others = re.split(r"(?m)^(?=## )", (Path(__file__).parent / PAGE).read_text(encoding="utf-8"))
+    others = [part for part in others if not part.startswith(heading + "\n")]
+    parts = ["\n".join(text), *others] if whole else [first_part, *others, "\n".join(text)]
+    table.keep(PAGE, "\n\n".join(part.strip() for part in parts).splitlines())
     return low >= 0.85
 
 
@@ -455,15 +486,21 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=105, help="mutations of each package")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--hours", type=float, default=3.0, help="stop after this; the next call goes on")
+    parser.add_argument("--packages", nargs="+", choices=CORE, metavar="NAME", help=f"of {', '.join(CORE)} [all]")
     parser.add_argument("--no-engines", action="store_true", help="leave out the compiled engines")
     asked = parser.parse_args()
     folder = ROOT / "build/mutants"
     folder.mkdir(parents=True, exist_ok=True)
-    record(folder)
-    chosen, every = sample(asked.seed, asked.count)
+    packages = asked.packages or list(CORE)
+    record(folder, [test for name in asked.packages or () for test in by_hand()["tests"][name]], asked.workers)
+    chosen, every = sample(asked.seed, asked.count, packages)
     made = [] if asked.no_engines else engines(folder, asked.workers)
     known = run(chosen, folder, asked.workers, asked.hours)
-    raise SystemExit(not page(chosen, every, known, made, asked.seed))
+    made += planted(folder)
+    command = f"python -m benchmarks.mutants --seed {asked.seed} --count {asked.count}"
+    if asked.packages:
+        command += f" --no-engines --packages {shlex.join(asked.packages)}"
+    raise SystemExit(not page(chosen, every, known, made, command, whole=not asked.packages))
 
 
 if __name__ == "__main__":
