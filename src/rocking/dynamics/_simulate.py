@@ -11,7 +11,7 @@ from rocking.dynamics.response import Response, response_of_rocking
 from rocking.dynamics.settings import Settings, in_space
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.components import Components, with_vertical
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_level
 from rocking.motions.pulse import Motion, Pulse
 
 if TYPE_CHECKING:
@@ -390,13 +390,13 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
             raise InvalidValueError("the vertical motion is given twice: by the vertical part of x, and by z")
         z = x.changed("its vertical part", acceleration=x.vertical, vertical=None)
         x = x.changed("its horizontal part", vertical=None)
-    return x, y, z
+    return checked_level(x), checked_level(y), z
 
 
 def together(motion: Any, *, plane: bool = False) -> Any:
     """Return a motion of one component as it is, of several as one of a study: in a plane along x, with its z."""
     if not isinstance(motion, (Mapping, tuple, Components)):
-        return motion
+        return checked_level(motion)
     if plane:
         return in_plane(motion)
     return motion if isinstance(motion, Components) else Components(*components_of(motion))
@@ -405,7 +405,7 @@ def together(motion: Any, *, plane: bool = False) -> Any:
 def in_plane(motion: Any) -> GroundMotion | Pulse:
     """Return the motion of a plane body: along x, and z as its vertical part."""
     if isinstance(motion, (GroundMotion, Pulse)):
-        return motion
+        return checked_level(motion)  # type: ignore[no-any-return]
     x, y, z = components_of(motion)
     if y is not None:
         raise InvalidValueError("a plane body moves along x and z, got y too; Solid.from_section makes it a solid")
@@ -413,4 +413,5 @@ def in_plane(motion: Any) -> GroundMotion | Pulse:
         return x
     if not isinstance(z, GroundMotion) or isinstance(x, Pulse):
         raise InvalidValueError("vertical motion of a plane body is a record beside another: two GroundMotion, please")
-    return with_vertical(z.scaled(0.0) if x is None else x, z)
+    still = z.changed("no horizontal motion", acceleration=0.0 * z.acceleration, metadata={})
+    return with_vertical(still if x is None else x, z)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.motion import GroundMotion, checked_level, checked_motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +24,11 @@ class Components:
     x: Any  # GroundMotion, Pulse or None
     y: Any
     z: Any
+
+    def __post_init__(self) -> None:
+        """Refuse a vertical component along x or y."""
+        checked_level(self.x)
+        checked_level(self.y)
 
     @property
     def parts(self) -> tuple[Any, Any, Any]:
@@ -111,7 +116,7 @@ def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMot
     >>> both.acceleration.tolist(), both.vertical.tolist()
     ([0.0, 1.0], [0.0, 0.5])
     """
-    _check("horizontal", horizontal)
+    _check("horizontal", checked_level(horizontal))
     _check("vertical", vertical)
     if not math.isclose(horizontal.time_step, vertical.time_step, rel_tol=1e-9):
         raise InvalidValueError(

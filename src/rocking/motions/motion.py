@@ -128,7 +128,17 @@ class GroundMotion:
         -------
         Segments
             Of degree 1.
+
+        Raises
+        ------
+        InvalidValueError
+            If it is a vertical component of a record, or may be one.
         """
+        checked_level(self)
+        return self.upright_segments()
+
+    def upright_segments(self) -> Segments:
+        """Return the same as `segments` of a motion along z, which may be a vertical component."""
         return Segments.between_samples(self.time_step, self.acceleration, self.vertical)
 
     def changed(self, what: str, **fields: Any) -> "GroundMotion":
@@ -181,6 +191,28 @@ def checked_motion(given: Any, name: str = "motion") -> GroundMotion:
     if not isinstance(given, GroundMotion):
         raise InvalidValueError(
             f"{name} must be a GroundMotion, got {given!r:.60}; a pulse becomes one by .sampled(time_step)"
+        )
+    return given
+
+
+ORIENTATION = "orientation"
+"""Key of the metadata with the direction that a record states: up, down, unclear, or an azimuth [degree]."""
+
+_UPRIGHT = {"up": "is vertical", "down": "is vertical", "unclear": "may be vertical or inclined"}
+
+
+def checked_level(given: Any) -> Any:
+    """Return a motion unless it is a vertical component of a record, or may be one.
+
+    >>> checked_level(GroundMotion([0.0, 1.0], 0.1, metadata={"component": "UP", "orientation": "up"}))
+    Traceback (most recent call last):
+    rocking.errors.InvalidValueError: component UP of 'ground motion' is vertical and cannot be a horizontal motion; ...
+    """
+    metadata = given.metadata if isinstance(given, GroundMotion) else {}
+    if (what := _UPRIGHT.get(metadata.get(ORIENTATION, ""))) is not None:
+        which = f"component {metadata.get('component', '')} of {metadata.get('file', given.name)!r:.100}"
+        raise InvalidValueError(
+            f"{which} {what} and cannot be a horizontal motion; give it along z, and a horizontal component along x"
         )
     return given
 

@@ -108,7 +108,7 @@ def digest(motion: Any) -> str:
     if isinstance(motion, Components):
         parts = (b"none" if part is None else digest(part).encode() for part in motion.parts)
         return hashlib.sha256(b" ".join(parts)).hexdigest()
-    segments = motion.segments()
+    segments = motion.upright_segments() if isinstance(motion, GroundMotion) else motion.segments()
     hashed = hashlib.sha256(np.array([segments.step, segments.degree], "<f8").tobytes())
     for part in (segments.horizontal, segments.vertical):
         hashed.update(b"none" if part is None else np.ascontiguousarray(part, "<f8").tobytes())

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import MissingExtraError, RecordError
-from rocking.motions.formats import Component, Record, Source, formats
+from rocking.motions.formats import Component, Record, Source, formats, read_record
+from rocking.motions.formats.sac import OBSPY, read_traces
 
 SAC = formats()["sac"]
 
@@ -165,3 +166,42 @@ def test_two_samples_are_a_record() -> None:
     assert SAC.read(Source("a", typed([0.5, -1.25], e=0.02)), units="g").components[0].acceleration.size == 2
     with pytest.raises(RecordError, match="at least 2"):
         SAC.read(Source("a", typed([0.5], e=0.0)), units="g")
+
+
+@pytest.mark.parametrize(
+    "rate", [60, 62.5, 75, 100, 120, 125, 128, 200, 250, 256, 300, 31.25, 500, 512, 1000, 1.0 / 0.15]
+)
+def test_every_rate_is_read(tmp_path, rate):
+    """The step is that of the header to single precision, whatever ObsPy warns of rounding; no doubt is left."""
+    obspy = pytest.importorskip("obspy")
+    trace = obspy.Trace(np.sin(0.1 * np.arange(500, dtype=np.float32)))
+    trace.stats.update({"network": "XX", "station": "A", "channel": "HNE"})
+    trace.stats.sac = {"delta": np.float32(1.0 / rate)}
+    path = tmp_path / "a.sac"
+    trace.write(str(path), format="SAC")
+    content = bytearray(path.read_bytes())
+    struct.pack_into("<f", content, 0, 1.0 / rate)  # ObsPy writes it rounded too
+    struct.pack_into("<f", content, 24, 499.0 / rate)
+    source = Source("a.sac", bytes(content))
+    (part,) = formats()["sac"].read(source, "m/s2").components
+    assert part.time_step == pytest.approx(1.0 / rate, rel=6e-8, abs=0.0)  # half a unit of single precision
+    assert not source.doubts
+
+
+def test_the_case_at_250_samples_a_second(case_records):
+    """It is read with a unit, at 0.004 s."""
+    pytest.importorskip("obspy")
+    (part,) = read_record(case_records / "sac_250hz.sac", units="m/s2").components
+    assert (part.time_step, part.acceleration.size) == (0.004, 600)
+
+
+def test_warnings_of_a_foreign_reader_are_doubts(monkeypatch):
+    """What ObsPy warns of is passed on; what it says of its own code is not."""
+    said = {"traces": [_SAID], "warnings": ["something is odd"]}
+    monkeypatch.setattr(OBSPY, "answer", lambda *_: (said, [np.zeros(3)]))
+    source = Source("a.sac", b"x")
+    read_traces(source, "SAC")
+    assert source.doubts == ["a.sac: ObsPy warns: something is odd"]
+
+
+_SAID = {"id": "XX.A..HNE", "text": "", "step": 0.01, "about": {}, "sac": {}, "header": "", "channels": None}

@@ -80,7 +80,8 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
     if motion is None:
         return np.zeros(0), np.zeros((0, 1))
     checks.of_kind(name, motion, (GroundMotion, Pulse), "a GroundMotion, a pulse or None")
-    segments = motion.segments()
+    along_z = name == "vertical" and isinstance(motion, GroundMotion)
+    segments = motion.upright_segments() if along_z else motion.segments()  # type: ignore[union-attr]
     if segments.vertical is not None:
         raise InvalidValueError(
             f"the {name} component must not have a vertical part of its own; hand it over as vertical=GroundMotion(...)"

@@ -37,6 +37,9 @@ _QUANTITY, _UNIT, _CHANNEL, _AZIMUTH, _COUNT = 1, 2, 49, 53, 69
 _STEP, _LENGTH, _PEAK, _PEAK_TIME = 61, 62, 63, 64
 # codes of the units that are accelerations; what the line before the data may call them
 _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s/s", "cm/sec^2", "gal"})}
+_SENSES = {400: "UP", 401: "DOWN", 500: "RADL", 501: "TRAN", 600: "LONG", 601: "TANG", 700: "H1", 701: "H2"}
+"""Codes that stand for an azimuth, COSMOS tables: 402 is a vertical of unknown sense, and stays a number."""
+
 _LEAST_DECIMALS = 3  # of a peak that is written in fewer digits than its columns have room for
 
 
@@ -132,7 +135,7 @@ def _label(header: list[str], texts: int, azimuth: float) -> str:
     # an azimuth of 0 may stand for none where the text gives no degrees
     known = azimuth > 0.0 or (azimuth == 0.0 and not code) or re.search(r"\bdeg\b", label, re.IGNORECASE)
     direction = f"{azimuth:.0f}" if azimuth != _UNKNOWN and known else code or (found[1] if found else "")
-    return f"CHAN {number[1] if number else 1}: {direction}"
+    return f"CHAN {number[1] if number else 1}: {_SENSES.get(int(azimuth), direction)}"
 
 
 def _data_line(source: Source, line: int) -> tuple[re.Match[str], int]:
@@ -185,7 +188,8 @@ def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
     wholes, figures = np.full(100, _UNKNOWN), np.full(100, _UNKNOWN)
     wholes[[_QUANTITY, _UNIT, _CHANNEL, _COUNT]] = 1, 4, row + 1, values.size
     azimuth = re.fullmatch(r"\d{1,3}", part.name)
-    wholes[_AZIMUTH] = int(part.name) if azimuth else _UNKNOWN
+    senses = {name: code for code, name in _SENSES.items()}
+    wholes[_AZIMUTH] = int(part.name) if azimuth else senses.get(part.name.upper(), _UNKNOWN)
     figures[[_STEP, _LENGTH, _PEAK, _PEAK_TIME]] = 1000.0 * step, values.size * step, values[largest], largest * step
     event, date, station = (record.text(key, 40) for key in ("event", "date", "station"))
     texts = [

@@ -25,6 +25,9 @@ _KEYS = (
 _PER_LINE = 8
 _FULL_SCALE = 8_388_608  # counts of a 24-bit recorder
 _LARGEST_COUNT = 2**31
+_SIDES = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
+"""Directions of KiK-net by number: 1 to 3 in the borehole, 4 to 6 at the surface."""
+
 _REMOVED = "mean of the whole record removed"
 
 
@@ -60,7 +63,13 @@ class Knet(RecordFormat):
         headers.check_peak(source, peak, values, headers.half_digit(said[14]), what)
         metadata = {key.strip(". "): text for key, text in zip(_KEYS, said, strict=True) if text}
         metadata |= {"processing": _REMOVED, "mean removed": f"{raw.mean():.6g} gal"}
-        component = Component(said[12] or "unnamed", values, unit, step, abs(peak))
+        number = said[12] if said[12] in _SIDES else ""
+        if number:
+            metadata["position"] = "borehole" if number < "4" else "surface"
+        if number and number < "4":
+            source.doubt(12, f"direction {number} is of the instrument in the borehole, below the surface")
+        name = _SIDES.get(number, said[12]) or "unnamed"
+        component = Component(name, values, unit, step, abs(peak))
         return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)
 
     def write(self, record: Record) -> bytes:

@@ -26,8 +26,11 @@ def answer(request: dict[str, Any], content: bytes, stations: bytes | None = Non
     if "channel" in request:
         return _response(request, content)
     obspy = import_module("obspy")
-    warnings.simplefilter("error")
-    traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        for damage in _damage():
+            warnings.simplefilter("error", damage)
+        traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
     inventory = None
     if stations is not None:
         try:
@@ -35,7 +38,20 @@ def answer(request: dict[str, Any], content: bytes, stations: bytes | None = Non
         except Exception as error:  # noqa: BLE001 - its layers raise nearly any class
             return {"stations": str(error)[:120]}, []
     described = [_described(trace, inventory) for trace in traces]
-    return {"traces": described}, [np.asarray(trace.data) for trace in traces]
+    told = dict.fromkeys(" ".join(str(each.message).split())[:200] for each in said if not _is_of_programs(each))
+    return {"traces": described, "warnings": list(told)}, [np.asarray(trace.data) for trace in traces]
+
+
+def _damage() -> list[type[Warning]]:
+    """Return the classes of warnings that say that samples are damaged or missing."""
+    return [import_module("obspy.io.mseed").InternalMSEEDWarning, RuntimeWarning]
+
+
+def _is_of_programs(warning: warnings.WarningMessage) -> bool:
+    """Return whether a warning is about code, or about the rounding of a step that is read without it."""
+    return issubclass(warning.category, (DeprecationWarning, FutureWarning, ImportWarning)) or (
+        "Sample spacing read from SAC" in str(warning.message)
+    )
 
 
 def _described(trace: Any, inventory: Any) -> dict[str, Any]:
@@ -45,7 +61,7 @@ def _described(trace: Any, inventory: Any) -> dict[str, Any]:
         "id": trace.id,
         "text": str(trace),
         "step": float(stats.delta),
-        "about": {key: str(stats[key]) for key in ("network", "station", "channel", "starttime")},
+        "about": {key: str(stats[key]) for key in ("network", "station", "location", "channel", "starttime")},
         "sac": {key: _plain(value) for key, value in said.items()},
         "header": "\n".join(f"{key} = {said[key]}" for key in sorted(said)),
         "channels": None if inventory is None else [_channel(one) for one in _channels(trace, inventory)],

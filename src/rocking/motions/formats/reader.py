@@ -14,6 +14,7 @@ from rocking import checks, plausibility
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.components import with_vertical
+from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
@@ -284,16 +285,25 @@ def _read(source: Source, format: str | None, units: str | None, time_step: floa
 
 def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     own = {"format": record.format, "unit": part.unit, "component": part.name, "header": record.header}
+    own[directions.KEY] = directions.as_text(_direction(source, record, part))
     metadata = {**record.metadata, **part.metadata, **own}
     digest = hashlib.sha256(source.content).hexdigest()
     told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
+    name += " borehole" if metadata.get("position") == "borehole" else ""
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
     motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *source.doubts))
     velocity, displacement = ground_velocity(motion), ground_displacement(motion)
     ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
     plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))
     return motion
+
+
+def _direction(source: Source, record: Record, part: Component) -> directions.Direction:
+    """Return the direction of a component by its record, and by the name of the file where it is alone in it."""
+    sides = directions.settled([one.direction for one in record.components])
+    side = sides[record.components.index(part)]
+    return directions.both(side, directions.of_file_name(source.name)) if len(sides) == 1 else side
 
 
 def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:

@@ -13,6 +13,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
+from rocking.motions.formats import directions
 
 LARGEST_FILE = 256 * 1024 * 1024  # larger files are refused [bytes]
 
@@ -108,6 +109,13 @@ class Component:
     def peak(self) -> float:
         """Largest acceleration without its sign, in the unit of the file."""
         return float(np.abs(self.acceleration).max())
+
+    @property
+    def direction(self) -> directions.Direction:
+        """Direction by the file: ``up``, ``down``, ``unclear``, an azimuth [degree]; None if it states none."""
+        if directions.KEY in self.metadata:
+            return directions.of_metadata(self.metadata)
+        return directions.orientation(self.metadata.get("direction") or self.name)
 
 
 @dataclass(frozen=True, eq=False)

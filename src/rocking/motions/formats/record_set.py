@@ -13,6 +13,17 @@ from typing import Any
 from rocking import plausibility
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.components import Components, with_vertical
+from rocking.motions.formats.directions import (
+    DOWN,
+    KEY,
+    UNCLEAR,
+    UP,
+    Direction,
+    as_text,
+    of_metadata,
+    orientation,
+    settled,
+)
 from rocking.motions.formats.reader import delay, motions_in
 from rocking.motions.motion import GroundMotion
 
@@ -20,14 +31,11 @@ PERPENDICULAR = 5.0  # azimuths of two components differ by a right angle, to th
 FEW = 48  # so few files are read by one process: others take longer to start
 MOST_TOLD = 6  # so many doubts about files are said one by one
 
-_UP = re.compile(r"UP|DO?W?N|V|VER|VERT|VRT|VERTICAL|U|Z|U-?D|[A-Z]{2}Z")
-_DOWN = re.compile(r"DO?W?N")
-_COMPASS = re.compile(r"([NS])\s*(\d{1,2})\s*([EW])")
-_SIDES = {"N": 0.0, "NS": 0.0, "N-S": 0.0, "E": 90.0, "EW": 90.0, "E-W": 90.0, "S": 180.0, "W": 270.0}
 _AT_END = re.compile(
     r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT12])\d?$",
     re.IGNORECASE,
 )
+_CODE = re.compile(r"(?<![A-Z0-9])[A-Z][HLGMN][ENZ12](?![A-Z0-9])")
 _OF_NAMES = re.compile(r"^(horizontal-1|horizontal-2|vertical) acc\.? filename$")
 _PEER_AXES = {"horizontal-1": "x", "horizontal-2": "y", "vertical": "z"}
 _PEER = "horizontal-1 acc. filename"
@@ -253,79 +261,139 @@ def _warn(doubted: list[str]) -> None:
 
 
 def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
-    """Return the records of files, of which those that belong together by their names are one."""
-    groups: dict[Any, list[GroundMotion]] = {}
+    """Return the records of files, of which those that belong together by their names or headers are one."""
+    groups: dict[Any, list[tuple[GroundMotion, str]]] = {}
     left_out: list[tuple[str, str]] = []
     doubted: list[str] = []
     for path, read in files:
-        motions = _motions(path, read, left_out, doubted)
-        key, token = ((path.name,), "") if len(motions) > 1 else _key(path, motions)
-        if token and _oriented(motions[0]) is None:  # the header does not say what the name does
-            motions = [replace(motions[0], metadata={**motions[0].metadata, "component": token})]
-        groups.setdefault((path.parent, *key), []).extend(motions)
+        for motions in _by_sensor(_motions(path, read, left_out, doubted)):
+            key, token = (("", path.name, *_sensor(motions[0])), "") if len(motions) > 1 else _key(path, motions[0])
+            groups.setdefault((path.parent, *key), []).extend((each, token) for each in motions)
     records: list[Components] = []
-    for motions in groups.values():
+    for motions in _of_one_header([_directed(group) for group in groups.values()]):
         if why := _at_odds(motions):
-            left_out.append((", ".join(dict.fromkeys(each.metadata["file"] for each in motions)), why))
-            records += [_joined([each]) for each in motions]
-        elif motions:
+            left_out.append((_files(motions), why))
+            records += [_joined([each]) for each in motions if not _may_be_vertical(each, motions)]
+        else:
             records.append(_joined(motions))
     _warn(doubted)
     return RecordSet(tuple(records), tuple(left_out))
 
 
-def _key(path: Path, motions: Sequence[GroundMotion]) -> tuple[tuple[str, ...], str]:
+def _files(motions: Sequence[GroundMotion]) -> str:
+    return ", ".join(dict.fromkeys(each.metadata["file"] for each in motions))
+
+
+_SENSOR = "network", "station", "location", "position"
+
+
+def _sensor(motion: GroundMotion) -> tuple[str, ...]:
+    return tuple(motion.metadata.get(key, "") for key in _SENSOR)
+
+
+def _by_sensor(motions: Sequence[GroundMotion]) -> list[list[GroundMotion]]:
+    """Return the components of a file by the sensor that recorded them."""
+    groups: dict[tuple[str, ...], list[GroundMotion]] = {}
+    for motion in motions:
+        groups.setdefault(_sensor(motion), []).append(motion)
+    return list(groups.values())
+
+
+def _key(path: Path, motion: GroundMotion) -> tuple[tuple[str, ...], str]:
     """Return the name of a file without that of its component, with its ending; and what it says of the component."""
     stem, ending = path.stem, path.suffix.casefold()
-    name = motions[0].metadata["component"].split()[0].upper() if motions else ""
-    if name and re.fullmatch(rf"\.{re.escape(name.replace('-', ''))}\d?", ending.upper()):
+    name = motion.metadata["component"].split()[0].upper()
+    if re.fullmatch(rf"\.{re.escape(name.replace('-', ''))}\d?", ending.upper()):
         return (stem, ending[-1] if ending[-1].isdigit() else ""), ""  # K-NET, and KiK-net's two instruments
-    for form in (name.zfill(3), name) if name else ():
+    for form in (name.zfill(3), name):
         before, mark, after = stem.upper().rpartition(form)
         if mark and len(form) > 1 and (not after or not (before[-1:] + after[:1]).isalnum()):
             return (before.rstrip("-_. ") + "|" + after, ending), ""
-    end = _AT_END.search(stem)
-    if not motions or end is None:
+    if codes := list(_CODE.finditer(stem.upper())):
+        start, end = codes[-1].span()
+        return (stem[:start].upper() + "|" + stem[end:].upper(), ending), codes[-1][0]
+    end_of = _AT_END.search(stem)
+    if end_of is None:
         return (stem, ending), ""
-    return ((stem[: end.start()] + "|").upper(), ending), end[0].strip("-_. ")
+    return ((stem[: end_of.start()] + "|").upper(), ending), end_of[0].strip("-_. ")
 
 
-def orientation(name: str) -> str | float | None:
-    """Return ``up``, ``down``, or the azimuth of a component by its name [degree]; None if it does not say.
-
-    >>> [orientation(name) for name in ("UP", "HNE", "N-S", "N20W", "090", "T")]
-    ['up', 90.0, 0.0, 340.0, 90.0, None]
-    """
-    word = (name.split() or [""])[0].upper()
-    if _UP.fullmatch(word):
-        return "down" if _DOWN.fullmatch(word) else "up"
-    if word.isdigit():
-        return float(word) % 360.0 if float(word) <= 360.0 else None
-    if compass := _COMPASS.fullmatch(word):
-        north, degrees, east = compass.groups()
-        turned = float(degrees) if (north == "N") == (east == "E") else -float(degrees)
-        return (turned if north == "N" else 180.0 + turned) % 360.0
-    return _SIDES.get(word, _SIDES.get(word[-1:]) if re.fullmatch(r"[BHCEL][HNLG][NE]", word) else None)
+def _directed(group: Sequence[tuple[GroundMotion, str]]) -> list[GroundMotion]:
+    """Return the components of one name with their directions, also by what their file names say beside one another."""
+    motions = []
+    for motion, token in group:
+        if token and len(group) > 1 and _oriented(motion) is None:  # the header does not say what the name does
+            told = {"component": token, KEY: as_text(orientation(token))}
+            motion = replace(motion, metadata={**motion.metadata, **told})  # noqa: PLW2901
+        motions.append(motion)
+    sides = [_oriented(each) for each in motions]
+    return [
+        each if side == was else replace(each, metadata={**each.metadata, KEY: as_text(side)})
+        for each, was, side in zip(motions, sides, settled(sides), strict=True)
+    ]
 
 
-def _oriented(motion: GroundMotion) -> str | float | None:
-    return orientation(motion.metadata.get("component", ""))
+def _of_one_header(groups: Sequence[list[GroundMotion]]) -> list[list[GroundMotion]]:
+    """Return groups in which components of other names are one record where their headers agree."""
+    alone: dict[Any, list[int]] = {}
+    for place, motions in enumerate(groups):
+        if len(motions) == 1 and (key := _header_key(motions[0])):
+            alone.setdefault(key, []).append(place)
+    made, taken = [*groups], set[int]()
+    for places in alone.values():
+        members = [groups[place][0] for place in places]
+        distinct = len({_oriented(each) for each in members}) == len(members)
+        if 1 < len(members) <= 3 and distinct and not _at_odds(members):
+            made[places[0]] = members
+            taken.update(places[1:])
+    return [motions for place, motions in enumerate(made) if place not in taken]
+
+
+def _header_key(motion: GroundMotion) -> tuple[Any, ...] | None:
+    """Return what the headers of the components of one record have in common; None where they state too little."""
+    side, told = _oriented(motion), motion.metadata
+    when = [told.get(key, "") for key in ("event", "date", "starttime", "Record Time", "Origin Time")]
+    where = [told.get(key, "") for key in (*_SENSOR, "station number", "Station Code", "instrument", "kind")]
+    named = any(told.get(key) not in {None, "", "unknown"} for key in ("station", "station number", "Station Code"))
+    if side is None or side == UNCLEAR or not named or not any(when):
+        return None
+    return (told["format"], round(motion.time_step, 9), *when, *where)
+
+
+def _may_be_vertical(motion: GroundMotion, beside: Sequence[GroundMotion]) -> bool:
+    """Return whether a component that states no direction stands beside two others of which none is vertical."""
+    side, sides = _oriented(motion), [_oriented(each) for each in beside]
+    return side == UNCLEAR or (side is None and len(sides) > 2 and not {UP, DOWN} & set(sides))
+
+
+def _oriented(motion: GroundMotion) -> Direction:
+    return of_metadata(motion.metadata)
 
 
 def _at_odds(motions: Sequence[GroundMotion]) -> str:
     """Return why some components are not of one motion; empty if they are."""
-    sides = [_oriented(each) for each in motions]
-    level = [side for side in sides if not isinstance(side, str)]
-    if len(level) > 2 or len(sides) - len(level) > 1:
-        return f"{len(motions)} components of one name: more than two horizontal ones and one upwards"
-    if why := _at_other_times(motions):
+    if why := _sides_at_odds(motions) or _at_other_times(motions):
         return why
     for key in ("event", "station", "date"):
         if len({each.metadata[key] for each in motions if key in each.metadata}) > 1:
             return f"components of different {key}s"
-    azimuths = [side for side in level if isinstance(side, float)]
+    azimuths = [side for side in map(_oriented, motions) if isinstance(side, float)]
     if len(azimuths) == 2 and abs(abs(azimuths[0] - azimuths[1]) % 180.0 - 90.0) > PERPENDICULAR:
         return f"horizontal components at {azimuths[0]:g} and {azimuths[1]:g} degrees, not at right angles"
+    return ""
+
+
+def _sides_at_odds(motions: Sequence[GroundMotion]) -> str:
+    """Return why the directions of some components are not those of one motion; empty if they are."""
+    sides = [_oriented(each) for each in motions]
+    level = [side for side in sides if not isinstance(side, str)]
+    if UNCLEAR in sides:
+        name = motions[sides.index(UNCLEAR)].metadata["component"]
+        return f"component {name} may be vertical or inclined; name the files of x, y and z in a list"
+    if len(level) > 2 and len(level) == len(sides) and None in sides:
+        return f"{len(motions)} components, and none is stated to be vertical; name the files of x, y and z in a list"
+    if len(level) > 2 or len(sides) - len(level) > 1:
+        return f"{len(motions)} components of one name: more than two horizontal ones and one upwards"
     return ""
 
 
@@ -349,8 +417,10 @@ def _joined(motions: Sequence[GroundMotion]) -> Components:
         if known and (float(a) - float(b)) % 360.0 > 180.0:  # type: ignore[arg-type]
             first, second = second, first
     up = upright[0] if upright else None
-    if up is not None and _oriented(up) == "down":
-        up = up.changed("turned up: it was positive downwards", acceleration=-up.acceleration)
+    if up is not None and _oriented(up) == DOWN:
+        up = up.changed(
+            "turned up: it was positive downwards", acceleration=-up.acceleration, metadata={**up.metadata, KEY: UP}
+        )
     return Components(first, second, up)
 
 

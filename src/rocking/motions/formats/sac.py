@@ -17,7 +17,7 @@ import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import MissingExtraError, RecordError, how_to_install
-from rocking.motions.formats import headers
+from rocking.motions.formats import directions, headers
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
@@ -63,8 +63,7 @@ class Sac(RecordFormat):
         headers.check_count(source, int(said["npts"]), values.size)
         if values.size < 2 or not np.isfinite(values).all():
             raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
-        # SAC holds single precision: 0.02 is stored as 0.0199999996
-        step = headers.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
+        step = headers.step_between_samples(source, _step(float(said["delta"])), time_step)
         known = {key: float(said.get(key, _UNDEFINED)) for key in ("b", "e", "depmin", "depmax")}
         if not all(math.isfinite(value) for value in known.values()):
             raise source.error(None, "the header holds numbers that are not finite")
@@ -77,7 +76,8 @@ class Sac(RecordFormat):
         stated = None if _UNDEFINED in {known["depmax"], known["depmin"]} else peak
         name = trace.about["channel"] or "unnamed"
         headers.doubt_channel(source, name)
-        return Record(self.name, (Component(name, values, unit, step, stated),), trace.header, trace.about)
+        side = {directions.KEY: directions.as_text(_direction(name, said))}
+        return Record(self.name, (Component(name, values, unit, step, stated, side),), trace.header, trace.about)
 
     def write(self, record: Record) -> bytes:
         """Return a SAC file, in the unit of the component, which stands in the header's first text of the user."""
@@ -90,6 +90,25 @@ class Sac(RecordFormat):
         content = BytesIO()
         trace.write(content, format="SAC")
         return content.getvalue()
+
+
+def _step(delta: float) -> float:
+    """Return the step that single precision stands for [s]: that of a whole number of samples/s, or seven digits.
+
+    >>> _step(0.0199999996), _step(0.0166666675) == 1.0 / 60.0, _step(0.0320000015)
+    (0.02, True, 0.032)
+    """
+    rate = round(1.0 / delta) if delta > 0.0 else 0
+    return 1.0 / rate if rate and abs(rate * delta - 1.0) < 1.2e-7 else float(f"{delta:.7g}")
+
+
+def _direction(name: str, said: dict[str, Any]) -> directions.Direction:
+    """Return the direction by the code of the channel, and by the angles of the sensor where they are stated."""
+    azimuth, from_up = (float(said.get(key, _UNDEFINED)) for key in ("cmpaz", "cmpinc"))
+    if from_up == _UNDEFINED:
+        return directions.orientation(name)
+    known = None if azimuth == _UNDEFINED else azimuth
+    return directions.both(directions.orientation(name), directions.of_angles(known, from_up))
 
 
 def _byte_order(source: Source) -> str | None:
@@ -110,7 +129,7 @@ class Trace:
     id: str  # id, text: network, station, location and channel in one word, and all in a line
     text: str
     step: float  # step between samples [s]
-    about: dict[str, str]  # network, station, channel and time of the first sample
+    about: dict[str, str]  # network, station, location, channel and time of the first sample
     sac: dict[str, Any]  # header of a SAC file
     header: str  # the same as text
     # rates and sensitivities of the channels of a StationXML file that are its own
@@ -122,13 +141,15 @@ OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obs
 
 
 def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
-    """Return the traces that ObsPy finds in a file, in a process of its own."""
+    """Return the traces that ObsPy finds in a file, in a process of its own; its warnings are doubts of the file."""
     if find_spec("obspy") is None:
         need_obspy(form)
     files = [source.content] if stations is None else [source.content, stations.content]
     found, arrays = OBSPY.answer(source, {"format": form, "options": options}, *files)
     if "stations" in found and stations is not None:
         raise stations.error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
+    for warning in found.get("warnings", ()):
+        source.doubt(None, f"ObsPy warns: {warning}")
     if not found["traces"]:
         raise source.error(None, f"no trace in this {form} file")
     for said, samples in zip(found["traces"], arrays, strict=True):

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import headers, numbers
+from rocking.motions.formats import directions, headers, numbers
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
 TEXTS, WHOLES, REALS = 11, 6, 10
@@ -92,6 +92,11 @@ class SmcUsgs(RecordFormat):
         printed = re.search(r"component= *(\S+)", source.lines[5])
         level = str(azimuth) if azimuth is not None else printed[1] if printed else "unnamed"
         name = _UPRIGHT.get(upwards) or level
+        side = directions.orientation(printed[1]) if printed else directions.orientation(name)
+        if upwards is not None:  # angle from the upward vertical
+            upright = side if isinstance(side, str) else None
+            side = directions.both(upright, directions.of_angles(azimuth, float(upwards)))
+        done[directions.KEY] = directions.as_text(side)
         texts = {
             "kind": _KINDS[header.kind],
             "event": source.lines[3],

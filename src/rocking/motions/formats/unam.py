@@ -46,6 +46,7 @@ class Unam(RecordFormat):
         across, width = numbers.fortran_form(source, head, form)
         if across != channels:
             raise source.error(None, f"{channels} channels are stated, and samples in {form[:20]}")
+        sides = names
         if len(set(names)) < channels or "" in names:
             names = [f"CHAN {place}" for place in range(1, channels + 1)]
         texts = {
@@ -54,7 +55,9 @@ class Unam(RecordFormat):
             "magnitude": r"MAGNITUD\(ES\)\s*:",
         }
         metadata = metadata_of(**{key: header_text(source, head, word) for key, word in texts.items()})
-        about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
+        parts = zip(names, sides, strict=True)
+        channels_of = tuple(Component(name, np.empty(0), unit, step, None, {"direction": side}) for name, side in parts)
+        about = Record(self.name, channels_of, "", metadata)
         return side_by_side(source, about, first, int(counts[0]), peaks, (across, width))
 
     def write(self, record: Record) -> bytes:

@@ -1,0 +1,163 @@
+"""The direction of a component: up, down, an azimuth, or unclear, by a name, a code, angles or a file name."""
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from rocking.motions.motion import ORIENTATION
+
+UP, DOWN, UNCLEAR = "up", "down", "unclear"
+Direction = str | float | None
+"""``up``, ``down``, ``unclear`` (perhaps vertical or inclined), an azimuth [degree]; None where nothing is stated."""
+
+KEY = ORIENTATION
+_INCLINED = 45.0, 5.0  # from the vertical, from the level: components between these angles are inclined [degree]
+_UPRIGHT = re.compile(
+    r"\+?(?:UP[CX]?|UPWARDS?|VERTI[CK]\w*|VERT?|VRT|VTCL?|V|Z|U|U-?D\d?|U[-/]D|UP[-/ ]?(?:TO[-/ ])?DO?W?N|"
+    r"D[ÜU][ŞS]EY|[AC]Z)\+?",
+    re.IGNORECASE,
+)
+_DOWN = re.compile(r"DO?W?N|DOWNWARDS?|D-?U|-(?:UP|Z|V)", re.IGNORECASE)
+_SEED = re.compile(r"[FGDCESHBMLVURPTQ][HLGMN]([A-Z0-9])")
+_COMPASS = re.compile(r"([NS])(?:ORTH|OUTH)?[\s.-]*(\d{1,3}(?:\.\d*)?)\s*(?:DEG\w*|°)?[\s.-]*([EW])(?:AST|EST)?", re.I)
+_AZIMUTH = re.compile(r"[+]?(\d{1,4}(?:\.\d*)?)\s*(?:DEG\w*\.?|°)?", re.IGNORECASE)
+_WORDS = {
+    0.0: "N NS N-S SN S-N NORTH NORD NORTE KUZEY KG K-G",
+    90.0: "E EW E-W WE W-E EAST EST OST ESTE DOGU DOĞU DB D-B",
+    180.0: "S SOUTH SUR SÜD SUD GUNEY GÜNEY",
+    270.0: "W WEST OVEST OUEST OESTE BATI",
+}
+_SIDES = {word: azimuth for azimuth, words in _WORDS.items() for word in words.split()}
+_WHOLE_WORDS = re.compile(r"[^\W_]+")
+_BESIDE = re.compile(
+    r"A|ACC\w*|COMP\w*|CH\w*|DIR\w*|GROUND|MOTION|SENSOR|BESCHLEUNIGUNG|IVME|İVME|\d+|[GXY]|M|S|S2|CM|MS2",
+    re.IGNORECASE,
+)
+_IN_NAME = r"(?:UP[CX]?|DO?WN|VERT(?:ICAL)?|VER|VRT|U-?D)\d?|[FGDCESHBMLVURPTQ][HLGMN]Z|[ZUV]"
+_ENDINGS = re.compile(
+    r"(?:\.(?:at2|smc|acc|asc|ascii|txt|dat|csv|tsv|cor|v[12]c?|s0a|raw|sac|mseed|ms|--|d|c|m))+$", re.I
+)
+
+
+def orientation(name: str) -> Direction:
+    """Return ``up``, ``down``, ``unclear``, or the azimuth of a component by its name [degree]; None if not stated.
+
+    >>> [orientation(name) for name in ("UP", "HNE", "N-S", "N20W", "090", "T", "acc_z [g]", "HNU")]
+    ['up', 90.0, 0.0, 340.0, 90.0, None, 'up', 'unclear']
+    """
+    bare = " ".join(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name[:200]).split()) or " ".join(name[:200].split())
+    words = _WHOLE_WORDS.findall(bare)
+    if (found := _of_word(bare)) is not None or not words:
+        return found
+    if len(words) == 1:
+        return _of_word(re.sub(r"^(?:acc\w*?|a)(?=[xyz]$)", "", words[0], flags=re.IGNORECASE))
+    found = _of_words(words)
+    return found if found is not None else _of_word(bare.split()[0])
+
+
+def _of_word(word: str) -> Direction:
+    upper = word.upper()
+    if _DOWN.fullmatch(upper) or _UPRIGHT.fullmatch(upper):
+        return DOWN if _DOWN.fullmatch(upper) else UP
+    if found := _AZIMUTH.fullmatch(upper):
+        # COSMOS and CSMIP have codes above 360: 400 is up, 500 in older files
+        return float(found[1]) % 360.0 if float(found[1]) <= 360.0 else UNCLEAR
+    if compass := _COMPASS.fullmatch(upper):
+        return _of_compass(*compass.groups())
+    # SEED Reference Manual 2.4, appendix A: A, B, C and U, V, W are inclined, 3 is the third of three
+    if seed := _SEED.fullmatch(word):
+        known: dict[str, Direction] = {"Z": UP, "N": 0.0, "E": 90.0}
+        return known.get(seed[1], None if seed[1] in "12RTXY" else UNCLEAR)
+    return _SIDES.get(upper)
+
+
+def _of_compass(north: str, degrees: str, east: str) -> Direction:
+    turned = float(degrees) if (north == "N") == (east == "E") else -float(degrees)
+    return (turned if north == "N" else 180.0 + turned) % 360.0 if float(degrees) <= 90.0 else UNCLEAR
+
+
+def _of_words(words: Sequence[str]) -> Direction:
+    """Return what several words state; unclear where they contradict one another."""
+    found = [(word, _of_word(word)) for word in words if not word.isdigit()]
+    stated = [(word, side) for word, side in found if side is not None and (len(word) > 1 or word in "zZnNeE")]
+    if all(_BESIDE.fullmatch(word) for word, side in found if side is None):
+        stated = [(word, side) for word, side in found if side is not None and not _BESIDE.fullmatch(word)]
+    sides = {side if isinstance(side, str) else "level" for _, side in stated}
+    if len(sides) > 1:
+        return UNCLEAR
+    upright = next((side for _, side in stated if isinstance(side, str)), None)
+    return upright or (stated[0][1] if len(stated) == 1 else None)
+
+
+def of_angles(azimuth: float | None, from_up: float) -> Direction:
+    """Return the direction of a sensor by its azimuth and its angle from the upward vertical [degree].
+
+    >>> of_angles(90.0, 90.0), of_angles(0.0, 0.0), of_angles(None, 180.0), of_angles(0.0, 54.7)
+    (90.0, 'up', 'down', 'unclear')
+    """
+    steep, level = _INCLINED
+    if abs(from_up - 90.0) <= level:
+        return None if azimuth is None else azimuth % 360.0
+    if min(abs(from_up), abs(from_up - 180.0)) <= level:
+        return UP if from_up < steep else DOWN
+    return UNCLEAR
+
+
+def both(said: Direction, measured: Direction) -> Direction:
+    """Return the direction that two statements give: the second one, unclear where one is vertical and one is not.
+
+    >>> both("up", "down"), both("up", 90.0), both(None, 90.0), both(0.0, None)
+    ('down', 'unclear', 90.0, 0.0)
+    """
+    if said is None or measured is None:
+        return said if measured is None else measured
+    return measured if isinstance(said, str) == isinstance(measured, str) else UNCLEAR
+
+
+def settled(sides: Sequence[Direction]) -> list[Direction]:
+    """Return the directions of the components of one record, of which three determine what one of them leaves unclear.
+
+    >>> settled(["up", "unclear", "unclear"]), settled([0.0, 90.0, "unclear"]), settled(["unclear"] * 3)
+    (['up', None, None], [0.0, 90.0, 'up'], ['unclear', 'unclear', 'unclear'])
+    """
+    upright = sum(side in {UP, DOWN} for side in sides)
+    level = sum(isinstance(side, float) for side in sides)
+    if len(sides) == 3 and UNCLEAR in sides:
+        if upright == 1 and level < 2:
+            return [None if side == UNCLEAR else side for side in sides]
+        if level == 2:
+            return [UP if side == UNCLEAR else side for side in sides]
+    return list(sides)
+
+
+def of_file_name(name: str) -> Direction:
+    """Return ``up`` or ``down`` where the name of a file ends in a word for it; None otherwise.
+
+    >>> [of_file_name(name) for name in ("RSN8_ELC-UP.AT2", "A-CAT-DWN.AT2.smc", "group.txt", "NIG018UD.AT2", "x.UD2")]
+    ['up', 'down', None, 'up', 'up']
+    """
+    ending = re.search(r"\.(U-?D|UP|VERT?|Z|V)\d?$", name, re.IGNORECASE)
+    if ending and not re.search(r"\.V\d$", name, re.IGNORECASE):
+        return UP
+    stem = _ENDINGS.sub("", name)
+    if found := re.search(rf"(?:^|[-_. ])({_IN_NAME})$", stem, re.IGNORECASE):
+        return DOWN if _DOWN.fullmatch(found[1]) else UP
+    if re.search(r"\.[FGDCESHBMLVURPTQ][HLGMN]Z\.", f".{name}."):
+        return UP
+    found = re.search(r"[0-9a-z](UP|DO?WN|VERT|UD|[BHE][HN]Z)$", stem) or (
+        re.search(r"[A-Z]{2}(UP|DWN|VERT|[BHE][HN]Z)$", stem) if stem.isupper() else None
+    )
+    return None if found is None else DOWN if _DOWN.fullmatch(found[1]) else UP
+
+
+def as_text(side: Direction) -> str:
+    """Return a direction as text of the metadata."""
+    return "" if side is None else side if isinstance(side, str) else f"{side:g}"
+
+
+def of_metadata(metadata: Any) -> Direction:
+    """Return the direction that metadata hold, by its own key or by the name of the component."""
+    if KEY in metadata:
+        text = metadata[KEY]
+        return None if not text else text if text in {UP, DOWN, UNCLEAR} else float(text)
+    return orientation(metadata.get("component", ""))
