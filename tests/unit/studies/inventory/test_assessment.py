@@ -70,6 +70,21 @@ def test_counts_by_hand():
     )  # 100 cm is the limit itself
 
 
+def test_the_median_of_two_motions_is_their_mean():
+    """Quantiles of two are linear between both peaks; where one of two overturns, the median overturns."""
+
+    def rotations(*lengths):
+        (verdict,) = assess([COLUMN], Hazard.of_records([rectangle(each * CRITICAL) for each in lengths])).verdicts
+        wide = next(each for each in verdict.results if each.direction == "width")
+        return wide.median_rotation, wide.high_rotation
+
+    (low, _), (high, _) = rotations(0.7), rotations(0.9)
+    assert high > 1.2 * low
+    assert rotations(0.7, 0.9) == pytest.approx((0.5 * (low + high), low + 0.84 * (high - low)), rel=1e-12)
+    assert rotations(0.7, 1.1) == (None, None)
+    assert rotations(0.7, 0.9, 1.1)[0] == pytest.approx(high, rel=1e-12)
+
+
 @pytest.mark.verifies("closed form", "g b / h", within="1e-6 on either side")
 @pytest.mark.parametrize("way", ["width", "depth"])
 def test_uplift_is_sharp(way):
