@@ -63,14 +63,17 @@ def _show(result: "Reproduction") -> None:
     from rich.padding import Padding
     from rich.text import Text
 
+    from rocking.evidence._errata import agreement
+    from rocking.evidence.claims_of_errors import tally
+
     page = Page()
     page.line("Tables of Mao et al. (2024), recomputed", "bold")
     for title, rows in result.tables.items():
-        entries = [entry for row in rows for entry in row.entries.values()]
-        page.line(f"  {title}: {sum(e.agrees for e in entries)} of {len(entries)} printed values agree in all digits")
+        page.line(f"  {title}: {agreement(rows)}")
     page.line(f"  errata found: {sum(e.found for e in result.errata)} of {len(result.errata)}")
     page.line("\nClaims", "bold")
     page.rich(_claims(result))
+    page.line(f"  {tally(result.claims)}")
     show_league(page, result.league, len(result.data))
     page.line("\nVerdict", "bold")
     page.rich(Padding(Text("\n".join(result.verdict)), (0, 0, 0, 2)), soft_wrap=False)

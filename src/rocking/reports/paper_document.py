@@ -1,16 +1,15 @@
 """The report of `rocking paper`: what is recomputed, and what stands in the report, section by section."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import repeat
 
 from rocking.evidence._claims import claims
-from rocking.evidence._errata import Entry, Erratum, TableRow, errata, recomputed
+from rocking.evidence._errata import Entry, Erratum, TableRow, agreement, errata, recomputed
 from rocking.evidence._league import LeagueRow, league, verdict
 from rocking.evidence.bed_fit import Explanation, Ranked, explanation
 from rocking.evidence.calibration import Calibration, Coverage, calibrate, calibrate_on, coverage
-from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, Claim, tally
 from rocking.evidence.comparison import concordance, correlation, relative_error, zone
 from rocking.evidence.hierarchy import (
     HierarchicalCalibration,
@@ -26,7 +25,7 @@ from rocking.restitution import Housner, Ked
 
 MARK = {HOLDS: "good", IN_PART: "fair", FAILS: "bad"}
 
-_COLUMNS = {"relative_error": "relative error", "housner": "r_H", "ked": "r_r (KED)"}
+_COLUMNS = {"measured": "r_e", "relative_error": "relative error", "housner": "r_H", "ked": "r_r (KED)"}
 
 NO_FIGURE_4 = "Figure 4 of the paper is a photograph of the tested blocks and is not reproduced."
 
@@ -120,7 +119,6 @@ def paper_document(result: Reproduction) -> Document:
 
 def look_at(result: Reproduction) -> list[tuple[str, str]]:
     """Say what to look at first."""
-    counts = Counter(claim.verdict for claim in result.claims)
     found = sum(erratum.found for erratum in result.errata)
     best = result.league[0]
     return [
@@ -128,11 +126,7 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
             "Verdict",
             f"{len(result.verdict)} sentences made from the numbers; 'not resolved' where an interval includes zero",
         ),
-        (
-            "Claims",
-            f"{len(result.claims)} claims: {counts[HOLDS]} hold, {counts[IN_PART]} in part, {counts[FAILS]} do not, "
-            f"{counts[UNRESOLVED]} cannot be resolved from so few blocks",
-        ),
+        ("Claims", tally(result.claims)),
         (
             "League table",
             f"{len(result.league)} models; the smallest error is that of {best.name}, RMSE {best.rmse:.4f}",
@@ -147,7 +141,7 @@ def _claims(judged: Sequence[Claim]) -> list[Block]:
         for one in judged
     ]
     header = ["section", "claim", "verdict", "number", "test"]
-    return [report_table("Claims of sections 3 and 4", header, rows, stem="claims")]
+    return [Paragraph(f"{tally(judged)}."), report_table("Claims of sections 3 and 4", header, rows, stem="claims")]
 
 
 def _errata(checked: Sequence[Erratum]) -> list[Block]:
@@ -162,16 +156,18 @@ def _errata(checked: Sequence[Erratum]) -> list[Block]:
 def _paper_table(title: str, rows: Sequence[TableRow]) -> ReportTable:
     keys = list(rows[0].entries)
     columns = [f"{_COLUMNS[key]} {which}" for key in keys for which in ("printed", "recomputed")]
-    header = ["block or interface", "h/b", "r_e"]
+    given = () if "measured" in keys else ("r_e",)
+    header = ["block or interface", "h/b", *given]
     for printed, recomputed_ in zip(columns[::2], columns[1::2], strict=True):
         header += [printed, recomputed_, "difference"]
     cells = [
-        [row.label, f"{row.slenderness:g}", f"{row.measured:g}", *(x for key in keys for x in _pair(row.entries[key]))]
+        [
+            row.label, f"{row.slenderness:g}", *(f"{row.measured:g}" for _ in given),
+            *(x for key in keys for x in _pair(row.entries[key])),
+        ]
         for row in rows
-    ]
-    differing = sum(not entry.agrees for row in rows for entry in row.entries.values())
-    total = len(rows) * len(keys)
-    note = f"{total - differing} of {total} printed values agree in all their digits; the others are marked."
+    ]  # fmt: skip
+    note = f"{agreement(rows)}. Values that differ are marked."
     return report_table(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
 
 

@@ -1,6 +1,7 @@
 """The calibration that knows laboratories, interfaces and blocks: its likelihood, its coverage, what is kept of it."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,6 +93,19 @@ def test_the_nine_published_groups():
     assert 7 <= sum(each.within for each in groups) <= 9  # binomial: 95 % of 9, less three standard deviations
     assert [each.name for each in groups if not each.within] == ["table1: aluminum/concrete"]
     assert 35 <= sum(each.inside for each in groups) <= 39
+
+
+@pytest.mark.verifies("behaviour")
+def test_the_page_of_theory_states_these_numbers():
+    """The shares of the variance and the width of the intervals on the page of theory are those that are computed."""
+    page = " ".join((Path(__file__).parents[3] / "docs" / "theory" / "evidence.md").read_text("utf-8").split())
+    shares, groups = calibrate_hierarchy().shares, left_out_groups()
+    inside, width = sum(each.inside for each in groups), sum(each.rows * each.width for each in groups) / 39
+    assert (
+        f"{100.0 * shares['laboratory']:.0f} % of the variance lies between laboratories, "
+        f"{100.0 * shares['interface']:.0f} % between interfaces of one, {100.0 * shares['measurement']:.0f} % between"
+    ) in page
+    assert f"{inside} of the 39 rows, in intervals {width:.3f} wide on average" in page
 
 
 @pytest.mark.verifies("invariant", "order of the rows", within="1e-9")
