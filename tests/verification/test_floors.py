@@ -52,6 +52,15 @@ def test_floors_move_as_the_equations_of_the_building_say(storeys):
         assert np.abs(found - expected[number - 1]).max() < 1e-8
 
 
+@pytest.mark.verifies("behaviour")
+def test_buildings_have_1_to_100_storeys():
+    """A building of 100 storeys has a roof; one of 101 or none, and a floor outside of it, are refused."""
+    assert np.isfinite(on_floor(RECORD, 100, 100, 5.0).acceleration).all()
+    for number, storeys, name in ((1, 101, "storeys"), (1, 0, "storeys"), (0, 3, "number"), (4, 3, "number")):
+        with pytest.raises(InvalidValueError, match=name):
+            on_floor(RECORD, number, storeys, 5.0)
+
+
 @pytest.mark.verifies("negative control")
 def test_another_floor_moves_otherwise():
     """Negative control: the floor below, and another damping, are further off than a hundredth of the record's peak."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
 
 _ROUNDING = 9  # digits of a rank: 0.28 * 25 is 7.000000000000001
 
@@ -32,6 +33,11 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
         The quantiles, with the shape of the probabilities before the remaining axes; NaN where all values are missing
         or a quantile lies between both infinities.
 
+    Raises
+    ------
+    InvalidValueError
+        If a probability is outside [0, 1].
+
     References
     ----------
     .. [1] Hyndman, R. J. and Fan, Y. (1996), Sample quantiles in statistical packages,
@@ -43,11 +49,14 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
     >>> quantiles([3.0, 1.0, 2.0, math.inf], [0.0, 0.5, 0.84]).tolist()
     [1.0, 2.5, inf]
     """
+    share = np.asarray(probabilities, dtype=np.float64)
+    if not ((share >= 0.0) & (share <= 1.0)).all():
+        raise InvalidValueError(f"probabilities must be within [0, 1], got {share.min():g} to {share.max():g}")
     ordered = np.moveaxis(np.sort(np.asarray(values, dtype=np.float64), axis=axis), axis, 0)  # NaN last
     last = (~np.isnan(ordered)).sum(axis=0) - 1
-    share = np.reshape(probabilities, np.shape(probabilities) + (1,) * last.ndim)
     if not len(ordered):
-        return np.full(share.shape[: np.ndim(probabilities)] + last.shape, np.nan)
+        return np.full(share.shape + last.shape, np.nan)
+    share = share.reshape(share.shape + (1,) * last.ndim)
     rank = np.round(share * np.maximum(last, 0), _ROUNDING)
     below, above = (
         np.take_along_axis(ordered, ends.astype(np.int64).reshape(-1, *last.shape), 0).reshape(rank.shape)

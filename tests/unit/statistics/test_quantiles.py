@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking.errors import InvalidValueError
 from rocking.statistics.quantiles import quantiles
 
 SOURCE = Path(rocking.__file__).parent
@@ -66,6 +67,12 @@ def test_a_rank_that_rounding_moves_stays_a_rank():
 def test_missing_values_count_in_no_column():
     values = np.array([[1.0, math.nan], [2.0, 5.0], [4.0, 7.0], [9.0, math.nan]])
     np.testing.assert_allclose(quantiles(values, 0.5), [3.0, 6.0])
+
+
+@pytest.mark.parametrize("probability", [-0.5, 1.001, [0.5, -1e-9], math.nan])
+def test_probabilities_are_within_0_and_1(probability):
+    with pytest.raises(InvalidValueError, match="probabilities"):
+        quantiles([1.0, 2.0, 3.0], probability)
 
 
 SECOND = {"quantile", "nanquantile", "percentile", "nanpercentile"}

@@ -58,12 +58,12 @@ def test_bias_is_the_median_ratio(found):
     assert math.isnan(several.bias("static").scatter)  # too few motions to say
 
 
-def comparison(truth):
+def comparison(truth, factors=1.0, fell=0.0):
     """Return one method of capacity 1 beside intensities that overturn, one row per motion."""
     truth = np.array(truth, dtype=np.float64)
     return CodeComparison(
         (CODE_METHODS["static"],), tuple("b" * truth.shape[1]), tuple("m" * len(truth)), ("as they are",),
-        np.ones((1, *truth.shape)), truth, np.ones((*truth.shape, 1)), np.zeros((*truth.shape, 1)),
+        np.ones((1, *truth.shape)), truth, factors * np.ones((*truth.shape, 1)), fell * np.ones((*truth.shape, 1)),
         np.zeros(truth.shape[1], dtype=bool), "",
     )  # fmt: skip
 
@@ -74,6 +74,33 @@ def test_the_median_of_two_is_their_mean():
     assert comparison([[2.0], [math.inf]]).bias("static").median == 0.0
     assert comparison([[2.0], [0.5], [math.inf]]).bias("static").median == 0.5
     assert math.isnan(comparison([[math.nan]]).bias("static").median)
+
+
+def test_the_median_of_demand_over_capacity_is_that_of_all_cases():
+    """Demands .5, .8, .6 and 2 of a capacity of 1: the mean of .6 and .8, and three of four are called safe."""
+    called = comparison([[2.0]] * 4, np.array([0.5, 0.8, 0.6, 2.0])[:, None, None]).called_safe("static")
+    assert called.ratio == pytest.approx(0.7, rel=1e-15)
+    assert (called.total, called.safe) == (4, 3)
+
+
+def test_the_interval_of_a_share_draws_whole_motions():
+    """10 of 40 motions overturn: shares of motions drawn again are binomial; twins under each motion change nothing."""
+    fell = (np.arange(40.0) < 10.0)[:, None, None]
+    alone = comparison(np.full((40, 1), 2.0), 0.5, fell).called_safe("static")
+    assert (alone.safe, alone.overturned) == (40, 10)
+    wanted = binom.ppf([0.025, 0.975], 40, 0.25) / 40.0
+    np.testing.assert_allclose(alone.interval, wanted, rtol=0.0, atol=1.5 / 40.0)  # 1000 draws of whole numbers
+    twins = comparison(np.full((40, 2), 2.0), 0.5, np.repeat(fell, 2, axis=1)).called_safe("static")
+    assert twins.interval == pytest.approx(alone.interval, rel=1e-12)
+
+
+@pytest.mark.parametrize(("count", "known"), [(4, False), (5, True), (6, True)])
+def test_intervals_need_five_motions(count, known):
+    truth = np.exp(-0.1 * np.arange(count))[:, None]
+    found = comparison(truth, 0.5, (np.arange(count) < 2.0)[:, None, None])
+    assert (found.called_safe("static").interval is not None) is known
+    assert math.isfinite(found.bias("static").scatter) is known
+    assert math.isfinite(found.bias("static").interval[0]) is known
 
 
 def test_scatter_is_half_the_distance_of_the_outer_quantiles():
