@@ -213,8 +213,8 @@ def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
     if name.casefold() == horizontal.metadata.get("component", "horizontal").casefold():
         # files that do not name their component: two of one name could not be written to one file
         name += " (vertical)"
-    header = vertical.metadata.get("header")
-    return {"vertical component": name} | ({} if header is None else {"vertical header": header})
+    told = {key: vertical.metadata[key] for key in ("header", "channel") if key in vertical.metadata}
+    return {"vertical component": name} | {f"vertical {key}": text for key, text in told.items()}
 
 
 def matching(first: GroundMotion, second: GroundMotion) -> None:

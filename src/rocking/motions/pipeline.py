@@ -3,7 +3,6 @@
 import inspect
 import re
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from rocking import checks
@@ -42,13 +41,13 @@ def _without_response(motion: GroundMotion, stations: str, low: float = 0.02, hi
     Parameters
     ----------
     stations : str
-        StationXML file that describes the instrument.
+        StationXML file that describes the instrument, a folder of such files, or several with | between.
     low, high : float
         Frequencies between which that is done [Hz].
     """
     from rocking.motions.formats.instrument import without_response
 
-    return without_response(motion, Path(stations), low, high)
+    return without_response(motion, stations, low, high)
 
 
 def _rotated(motion: GroundMotion, angle: float) -> GroundMotion:

@@ -22,7 +22,7 @@ from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import InputFiles, located, tables_in
-from rocking.spec.record_sets import is_set, motions_of_set, one_record, stations_of, with_files
+from rocking.spec.record_sets import is_set, motions_of_set, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
@@ -289,11 +289,9 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
 
 
 def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
-    if stations := stations_of(with_files(table, inputs)):
-        return one_record(path, table, stations)  # type: ignore[no-any-return]
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
-    return read_motion(path, *keys, vertical_path=upright)
+    return read_motion(path, *keys, vertical_path=upright, stations=stations_of(with_files(table, inputs)))
 
 
 def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:

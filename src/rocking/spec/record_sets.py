@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from rocking import plausibility
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
-from rocking.motions.formats.reader import motions_in
 from rocking.motions.formats.record_set import RecordSet, paths_of, plane_motions, read_records, rows_of_list
+from rocking.motions.formats.stations import BETWEEN, station_files
 from rocking.motions.pipeline import processed, steps_of
 from rocking.motions.selection import Selection, selected
 from rocking.motions.target_spectra import target_spectrum
@@ -92,29 +92,22 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
     return motions
 
 
-def one_record(path: Path, table: "MotionKeys", stations: Path) -> Any:
-    """Return one component of a file of counts, turned into accelerations by a StationXML file."""
-    found = motions_in(path, stations=stations)
-    named = [each for each in found if table.component in {None, each.metadata["component"]}]
-    if len(named) != 1:
-        names = ", ".join(each.metadata["component"] for each in found)
-        raise InvalidValueError(f"the file has the components {names}; say component= one of these")
-    return named[0]
-
-
 def with_files(table: "MotionKeys", inputs: InputFiles) -> Sequence[str]:
-    """Return the steps of a table, whose files are looked for beside the document."""
+    """Return the steps of a table, whose files are looked for beside the document, and noted."""
     words = []
     for step in (part for text in table.process or () for part in text.split(";")):
         before, mark, after = step.partition("stations=")
-        file, comma, rest = after.partition(",")
-        words.append(f"{before}{mark}{inputs.file(file.strip())}{comma}{rest}" if mark else step)
+        places, comma, rest = after.partition(",")
+        named = [str(inputs.folder / place.strip()) for place in places.split(BETWEEN) if mark]
+        for path in station_files(named) if mark else ():
+            inputs.file(path.relative_to(inputs.folder).as_posix() if path.is_relative_to(inputs.folder) else str(path))
+        words.append(f"{before}{mark}{BETWEEN.join(named)}{comma}{rest}" if mark else step)
     return words
 
 
-def stations_of(steps: Sequence[str]) -> Path | None:
-    """Return the StationXML file that steps name; none if they name none."""
-    return next((Path(keys["stations"]) for _, keys in steps_of(steps) if "stations" in keys), None)
+def stations_of(steps: Sequence[str]) -> str | None:
+    """Return the StationXML files and folders that steps name; none if they name none."""
+    return next((str(keys["stations"]) for _, keys in steps_of(steps) if "stations" in keys), None)
 
 
 def _note(name: str, inputs: InputFiles) -> None:

@@ -19,6 +19,7 @@ from rocking.app.work import heavy
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import formats, read_record
+from rocking.motions.formats.miniseed import OF_COUNTS
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.motion import GroundMotion
 
@@ -132,7 +133,7 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
                 path.write_bytes(content)
             record, reasons = _read(path, stated)
     except RecordError as error:
-        if "with_response" not in str(error):
+        if OF_COUNTS not in str(error):
             raise
         words = f"{name}: the samples are counts of the instrument, whose response lies in a StationXML file of its own"
         raise RecordError(f"{words}; {_WAY}") from error

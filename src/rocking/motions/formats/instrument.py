@@ -1,6 +1,7 @@
 """The response of an instrument, taken out of a record by what a StationXML file says of it."""
 
-from pathlib import Path
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -8,17 +9,18 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.filters import cosine_sine
-from rocking.motions.formats.record import Source
-from rocking.motions.formats.sac import OBSPY
+from rocking.motions.formats.sac import OBSPY, check_stations
+from rocking.motions.formats.stations import Places, sensitivity_of, station_sources, the_channel
 from rocking.motions.motion import GroundMotion, checked_motion
 
 ABOVE = 1.25  # the edge of the band goes to zero at so many times its upper end, and at half its lower end [-]
 
 
-def without_response(motion: GroundMotion, stations: Path, low: float, high: float) -> GroundMotion:
+def without_response(motion: GroundMotion, stations: Places, low: float, high: float) -> GroundMotion:
     """Return a record, divided by its sensitivity already, without the rest of its instrument's response.
 
     Between `low` and `high` [Hz] it is the acceleration of the ground; beyond, cosine edges end at half and 1.25 times.
+    Stations are StationXML files or folders of them, of which the one that describes the channel is taken.
     """
     motion = checked_motion(motion)
     if "sensitivity" not in motion.metadata:
@@ -27,20 +29,37 @@ def without_response(motion: GroundMotion, stations: Path, low: float, high: flo
     low = checks.within("low", low, 0.0, nyquist, unit="Hz", open_low=True, open_high=True)
     high = checks.within("high", high, low, nyquist / ABOVE, unit="Hz", open_low=True, hint="1.25 of it below Nyquist")
     count = 1 << (2 * len(motion) - 1).bit_length()  # as many zeros behind it at least: nothing wraps round
-    channel = {key: motion.metadata.get(key, "*") for key in ("network", "station")}
-    channel["channel"] = motion.metadata["component"]
-    source = Source.of_path(stations)
-    request = {"channel": channel, "start": motion.metadata["starttime"], "step": motion.time_step, "count": count}
-    found, arrays = OBSPY.answer(source, request, source.content)
-    if not arrays:
-        what = f"it must describe {channel['channel']} once, with its response, found {found['channels']}"
-        raise source.error(None, what)
+    about = {key: motion.metadata.get(key, "") for key in ("network", "station", "location", "channel", "starttime")}
+    flat, file = _flat(about, stations, motion.time_step, count)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
-    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, arrays[0], 1.0), 0.0)  # Eq. 311
-    samples = np.fft.irfft(np.fft.rfft(motion.acceleration, count) * gain, count)[: len(motion)]
-    what = f"response of the instrument by {stations.name} removed from {low:g} to {high:g} Hz"
-    return motion.changed(what, acceleration=samples)
+    fields = {"acceleration": _without(motion.acceleration, flat, edge, count)}
+    if motion.vertical is not None:
+        about["channel"] = motion.metadata.get("vertical channel", "")
+        fields["vertical"] = _without(motion.vertical, _flat(about, stations, motion.time_step, count)[0], edge, count)
+    return motion.changed(f"response of the instrument by {file} removed from {low:g} to {high:g} Hz", **fields)
+
+
+def _without(samples: FloatArray, flat: Any, edge: FloatArray, count: int) -> FloatArray:
+    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, flat, 1.0), 0.0)  # Eq. 311
+    return np.asarray(np.fft.irfft(np.fft.rfft(samples, count) * gain, count)[: samples.size], dtype=np.float64)
+
+
+def _flat(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
+    """Return the response of a channel over its overall sensitivity at the frequencies of an FFT, and its file."""
+    sources = station_sources(stations, [about["station"]])
+    name = ".".join(about[key] for key in ("network", "station", "location", "channel"))
+    found, arrays = OBSPY.answer(
+        sources[0], {"channel": about, "step": step, "count": count}, *(one.content for one in sources)
+    )
+    check_stations(found, sources)
+    described = [{**one, "file": sources[one["place"]].name} for one in found["channels"]]
+    channel = the_channel(sources[0], described, name, about["starttime"])
+    source = sources[channel["place"]]
+    sensitivity_of(replace(source, doubts=[]), channel, name)  # of acceleration, or refused
+    if "array" not in channel:
+        raise source.error(None, f"{name}: the StationXML states no stages of a response; ask for level=response")
+    return arrays[channel["array"]], source.name
 
 
 def _edge(place: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@
 import io
 import math
 import warnings
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -21,23 +22,24 @@ def prepare() -> None:
         import_module("obspy.io.stationxml.core")
 
 
-def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
-    """Return descriptions of a file's traces, each with its own channels of a StationXML file, and their samples."""
+def answer(request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
+    """Return descriptions of a file's traces, each with its channel in StationXML files, and their samples.
+
+    A request for a channel has StationXML files alone.
+    """
     if "channel" in request:
-        return _response(request, content)
+        return _response(request, files)
+    content, *stations = files
     obspy = import_module("obspy")
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         for damage in _damage():
             warnings.simplefilter("error", damage)
         traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
-    inventory = None
-    if stations is not None:
-        try:
-            inventory = obspy.read_inventory(io.BytesIO(stations), format="STATIONXML")
-        except Exception as error:  # noqa: BLE001 - its layers raise nearly any class
-            return {"stations": str(error)[:120]}, []
-    described = [_described(trace, inventory) for trace in traces]
+    inventories, wrong = _inventories(stations)
+    if wrong:
+        return wrong, []
+    described = [_described(trace, inventories) for trace in traces]
     told = dict.fromkeys(" ".join(str(each.message).split())[:200] for each in said if not _is_of_programs(each))
     return {"traces": described, "warnings": list(told)}, [np.asarray(trace.data) for trace in traces]
 
@@ -54,17 +56,31 @@ def _is_of_programs(warning: warnings.WarningMessage) -> bool:
     )
 
 
-def _described(trace: Any, inventory: Any) -> dict[str, Any]:
+def _inventories(files: Sequence[bytes]) -> tuple[list[Any], dict[str, Any]]:
+    """Return StationXML files as ObsPy reads them, or which of them it cannot read, and why."""
+    obspy, read = import_module("obspy"), []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for place, content in enumerate(files):
+            try:
+                read.append(obspy.read_inventory(io.BytesIO(content), format="STATIONXML"))
+            except Exception as error:  # noqa: BLE001 - its layers raise nearly any class
+                return [], {"stations": str(error)[:120], "file": place}
+    return read, {}
+
+
+def _described(trace: Any, inventories: Sequence[Any]) -> dict[str, Any]:
     stats = trace.stats
     said = dict(stats.get("sac", {}))
+    about = {key: str(stats[key]) for key in ("network", "station", "location", "channel", "starttime")}
     return {
         "id": trace.id,
         "text": str(trace),
         "step": float(stats.delta),
-        "about": {key: str(stats[key]) for key in ("network", "station", "location", "channel", "starttime")},
+        "about": about,
         "sac": {key: _plain(value) for key, value in said.items()},
         "header": "\n".join(f"{key} = {said[key]}" for key in sorted(said)),
-        "channels": None if inventory is None else [_channel(one) for one in _channels(trace, inventory)],
+        "channels": [_described_channel(about, *one) for one in _channels(about, inventories)] if inventories else None,
     }
 
 
@@ -72,35 +88,61 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value if isinstance(value, (int, float)) else str(value)
 
 
-def _channels(trace: Any, inventory: Any) -> list[Any]:
-    stats = trace.stats
-    found = inventory.select(
-        network=stats.network,
-        station=stats.station,
-        location=stats.location,
-        channel=stats.channel,
-        time=stats.starttime,
-    )
-    return [channel for network in found for station in network for channel in station]
+def _location(code: Any) -> str:
+    return str(code or "").strip().strip("-")
 
 
-def _channel(channel: Any) -> dict[str, Any]:
+def _channels(about: dict[str, str], inventories: Sequence[Any]) -> list[tuple[int, Any]]:
+    """Return the channels of one network, station and code at whatever location and time, each with its file."""
+    return [
+        (place, channel)
+        for place, inventory in enumerate(inventories)
+        for network in inventory
+        for station in network
+        for channel in station
+        if (network.code, station.code, channel.code) == (about["network"], about["station"], about["channel"])
+    ]
+
+
+def _described_channel(about: dict[str, str], place: int, channel: Any) -> dict[str, Any]:
+    when = import_module("obspy").UTCDateTime(about["starttime"])
+    begins, ends = channel.start_date, channel.end_date
+    at_time = (begins is None or begins <= when) and (ends is None or when <= ends)
     total = channel.response and channel.response.instrument_sensitivity
     return {
+        "matches": at_time and _location(channel.location_code) == _location(about["location"]),
+        "place": place,
+        "location": _location(channel.location_code),
+        "from": str(begins or "")[:19],
+        "to": str(ends or "today")[:19],
+        "azimuth": None if channel.azimuth is None else float(channel.azimuth),
+        "dip": None if channel.dip is None else float(channel.dip),
         "rate": float(channel.sample_rate or math.nan),
         "sensitivity": None if not total else [float(total.value), str(total.input_units), str(total.output_units)],
     }
 
 
-def _response(request: dict[str, Any], content: bytes) -> tuple[dict[str, Any], list[Any]]:
-    """Return the response of a channel to acceleration, over its overall sensitivity, at the frequencies of an FFT."""
+def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str, Any], list[Any]]:
+    """Return descriptions of a channel, and the response of each over its sensitivity at the frequencies of an FFT."""
     warnings.simplefilter("ignore")
-    obspy = import_module("obspy")
-    inventory = obspy.read_inventory(io.BytesIO(content), format="STATIONXML")
-    found = inventory.select(**request["channel"], time=obspy.UTCDateTime(request["start"]))
-    channels = [channel for network in found for station in network for channel in station]
-    if len(channels) != 1 or not channels[0].response or not channels[0].response.instrument_sensitivity:
-        return {"channels": len(channels)}, []
-    response = channels[0].response
-    values, _ = response.get_evalresp_response(request["step"], request["count"], output="ACC")
-    return {"channels": 1}, [np.asarray(values / response.instrument_sensitivity.value, dtype=np.complex128)]
+    inventories, wrong = _inventories(files)
+    if wrong:
+        return wrong, []
+    described: list[dict[str, Any]] = []
+    arrays: list[Any] = []
+    for place, channel in _channels(request["channel"], inventories):
+        one = _described_channel(request["channel"], place, channel)
+        described.append(one)
+        if one["matches"] and one["sensitivity"] and channel.response.response_stages:
+            _in_one_unit(channel.response)
+            values, _ = channel.response.get_evalresp_response(request["step"], request["count"], output="ACC")
+            one["array"] = len(arrays)
+            arrays.append(np.asarray(values / one["sensitivity"][0], dtype=np.complex128))
+    return {"channels": described}, arrays
+
+
+def _in_one_unit(response: Any) -> None:
+    """Give a response one name for its unit of acceleration: ObsPy has factors for some of them, and not for others."""
+    total, first = response.instrument_sensitivity, response.response_stages[0]
+    if first.input_units == total.input_units:
+        total.input_units = first.input_units = "M/S**2"

@@ -16,6 +16,7 @@ from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.components import with_vertical
 from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
+from rocking.motions.formats.stations import Places
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 
@@ -121,6 +122,7 @@ def read_motion(
     vertical: str | None = None,
     *,
     vertical_path: str | PathLike[str] | None = None,
+    stations: Places | None = None,
 ) -> GroundMotion:
     """Return one component of a record file as a ground motion, with a second one as its vertical part if wanted.
 
@@ -143,6 +145,8 @@ def read_motion(
         Name of the vertical component, in any case; with `vertical_path` only needed where that file has several.
     vertical_path : path-like, optional
         Another file, which has the vertical component: of the same step and start; the longer one is cut.
+    stations : path-like or sequence of path-like, optional
+        StationXML files, or folders of them, by which the counts of a miniSEED file become accelerations.
 
     Returns
     -------
@@ -169,11 +173,11 @@ def read_motion(
     <GroundMotion 'three-components': 3801 samples at 0.01 s, peak 3.923 m/s2, with vertical>
     """
     source = Source.of_path(Path(path))
-    record = _read(source, format, units, time_step)
+    record = _read(source, format, units, time_step, stations)
     if vertical_path is not None:
         motion = _motion(source, record, _chosen(record, "component", component))
         beside = Source.of_path(Path(vertical_path))
-        other = _read(beside, format, units, time_step)
+        other = _read(beside, format, units, time_step, stations)
         upright = _chosen(other, "vertical", vertical)
         return _joined(motion, _motion(beside, other, upright), beside, same_file=beside.content == source.content)
     if vertical is None:
@@ -184,7 +188,11 @@ def read_motion(
         raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
     told = f"component {upright.name}, unit {upright.unit}"
     acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
-    part = GroundMotion(acceleration, upright.time_step, None, "", {"component": upright.name}, (told,))
+    about = {
+        "component": upright.name,
+        **{key: upright.metadata[key] for key in ["channel"] if key in upright.metadata},
+    }
+    part = GroundMotion(acceleration, upright.time_step, None, "", about, (told,))
     return with_vertical(_motion(source, record, level), part)
 
 
@@ -193,16 +201,11 @@ def motions_in(
     format: str | None = None,
     units: str | None = None,
     time_step: float | None = None,
-    stations: Path | None = None,
+    stations: Places | None = None,
 ) -> list[GroundMotion]:
-    """Return every component of a record file as a motion of its own; stations: StationXML, which counts need."""
+    """Return every component of a record file as a motion of its own; stations: StationXML files, which counts need."""
     source = Source.of_path(path)
-    if stations is None:
-        record = _read(source, format, units, time_step)
-    else:
-        from rocking.motions.formats.miniseed import MiniSeed
-
-        record = MiniSeed.with_response(stations).read(source)
+    record = _read(source, format, units, time_step, stations)
     return [_motion(source, record, part) for part in record.components]
 
 
@@ -263,13 +266,19 @@ def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, u
     write_record(Record(format, parts, metadata=metadata), path, format)
 
 
-def _read(source: Source, format: str | None, units: str | None, time_step: float | None) -> Record:
+def _read(
+    source: Source, format: str | None, units: str | None, time_step: float | None, stations: Places | None = None
+) -> Record:
     units = None if units is None else checks.one_of("units", units, ACCELERATION_UNITS)
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
     chosen: RecordFormat | None = None
     try:
         chosen = _recognised(source) if format is None else format_named(format)
+        if stations is not None and chosen.name == "miniseed":
+            from rocking.motions.formats.miniseed import MiniSeed
+
+            chosen = MiniSeed.with_response(stations)
         record = chosen.read(source, units, time_step)
     except RockingError:
         raise
@@ -289,6 +298,7 @@ def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     metadata = {**record.metadata, **part.metadata, **own}
     digest = hashlib.sha256(source.content).hexdigest()
     told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
+    told += f", counts by {metadata['stations']}" if "stations" in metadata else ""
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     name += " borehole" if metadata.get("position") == "borehole" else ""
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
@@ -303,7 +313,7 @@ def _direction(source: Source, record: Record, part: Component) -> directions.Di
     """Return the direction of a component by its record, and by the name of the file where it is alone in it."""
     sides = directions.settled([one.direction for one in record.components])
     side = sides[record.components.index(part)]
-    return directions.both(side, directions.of_file_name(source.name)) if len(sides) == 1 else side
+    return directions.both(directions.of_file_name(source.name), side) if len(sides) == 1 else side
 
 
 def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:

@@ -25,6 +25,7 @@ from rocking.motions.formats.directions import (
     settled,
 )
 from rocking.motions.formats.reader import delay, motions_in
+from rocking.motions.formats.stations import Places, is_station_file
 from rocking.motions.motion import GroundMotion
 
 PERPENDICULAR = 5.0  # azimuths of two components differ by a right angle, to this [degree]
@@ -122,7 +123,7 @@ def read_records(
     units: str | None = None,
     time_step: float | None = None,
     *,
-    stations: Path | None = None,
+    stations: Places | None = None,
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> RecordSet:
@@ -142,8 +143,9 @@ def read_records(
         Folder, looked through with all that are in it; pattern such as ``records/*.at2``; list of files; or one file.
     format, units, time_step : optional
         As in `read_motion`, for all files.
-    stations : Path, optional
-        StationXML file, by which the counts of miniSEED files become accelerations.
+    stations : path-like or sequence of path-like, optional
+        StationXML files, or folders of them, by which the counts of miniSEED files become accelerations: by network,
+        station, location, channel and date. Those among the files of `where` are used without being named.
     workers : int
         Processes that read many files.
     progress : callable, optional
@@ -170,15 +172,17 @@ def read_records(
     >>> len(records), [part is not None for part in records[0].parts]
     (1, [True, True, True])
     """
-    read = partial(_read, format=format, units=units, time_step=time_step, stations=stations)
     path = Path(where)
     rows = rows_of_list(path)
+    paths = [] if rows is not None else paths_of(where)
+    beside = [one for one in paths if is_station_file(one)]
+    read = partial(_read, format=format, units=units, time_step=time_step, stations=stations or beside or None)
     if rows is not None:
         names = list(dict.fromkeys(file for row in rows for file in row.files.values()))
         files = dict(zip(names, mapped(read, [path.parent / name for name in names], workers, progress), strict=True))
         found = _listed(rows, files)
     else:
-        paths = paths_of(where)
+        paths = [one for one in paths if one not in beside]
         found = paired(zip(paths, mapped(read, paths, workers, progress), strict=True))
     if not found.records:
         why = "; ".join(f"{name}: {reason}" for name, reason in found.left_out[:1]) or "it holds no file"

@@ -3,9 +3,11 @@
 SAC says nothing of its unit, so the user must. Checked on one file of the 2019 Ridgecrest earthquake.
 """
 
+import hashlib
 import math
 import struct
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
@@ -132,7 +134,7 @@ class Trace:
     about: dict[str, str]  # network, station, location, channel and time of the first sample
     sac: dict[str, Any]  # header of a SAC file
     header: str  # the same as text
-    # rates and sensitivities of the channels of a StationXML file that are its own
+    # channels of StationXML files of its codes: location, dates, rate, sensitivity, angles; None without such files
     channels: list[dict[str, Any]] | None
     samples: Any  # as they stand in the file
 
@@ -140,14 +142,17 @@ class Trace:
 OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obspy")
 
 
-def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
+def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **options: Any) -> list[Trace]:
     """Return the traces that ObsPy finds in a file, in a process of its own; its warnings are doubts of the file."""
     if find_spec("obspy") is None:
         need_obspy(form)
-    files = [source.content] if stations is None else [source.content, stations.content]
+    files = [source.content, *(one.content for one in stations)]
     found, arrays = OBSPY.answer(source, {"format": form, "options": options}, *files)
-    if "stations" in found and stations is not None:
-        raise stations.error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
+    check_stations(found, stations)
+    for each in found["traces"]:
+        for channel in each["channels"] or ():
+            own = stations[channel["place"]]
+            channel |= {"file": own.name, "sha256": hashlib.sha256(own.content).hexdigest()}
     for warning in found.get("warnings", ()):
         source.doubt(None, f"ObsPy warns: {warning}")
     if not found["traces"]:
@@ -156,6 +161,12 @@ def read_traces(source: Source, form: str, stations: Source | None = None, **opt
         if samples.dtype.kind not in "iuf":
             raise source.error(None, f"{said['id']} holds text, no samples")
     return [Trace(**said, samples=samples) for said, samples in zip(found["traces"], arrays, strict=True)]
+
+
+def check_stations(found: dict[str, Any], stations: Sequence[Source]) -> None:
+    """Refuse a StationXML file that ObsPy cannot read."""
+    if "stations" in found:
+        raise stations[found["file"]].error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
 
 
 def need_obspy(form: str) -> Any:

@@ -1,0 +1,95 @@
+"""StationXML files, by which the counts of recorders become accelerations: one, several, or those of folders."""
+
+import re
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats.record import Source
+
+_ROOT = b"FDSNStationXML"
+_TOP = 4096  # bytes within which the root of a StationXML file stands
+BETWEEN = "|"
+"""Mark between several files or folders in one text."""
+
+Places = str | PathLike[str] | Sequence[str | PathLike[str]]
+
+# what units of acceleration are called in StationXML, without blanks and in capitals, and what they are in m/s2
+_SPELT = re.compile(r"([NUMC]?)M/(?:S\*\*2|\(S\*\*2\)|S\^2|S\^\{2\}|S2|S/S|SEC\*\*2|SEC\^2|SEC2|SEC/SEC)")
+_FACTORS = {"": 1.0, "C": 1e-2, "M": 1e-3, "U": 1e-6, "N": 1e-9}
+_COUNTS = {"COUNTS", "COUNT", "DIGITALCOUNTS", "CT", "CTS"}
+_UNNAMED = {"NONE", "", "UNKNOWN", "UNDEFINED"}
+
+
+def is_station_file(path: Path) -> bool:
+    """Return whether a file is a StationXML file, by its ending and its first bytes."""
+    if path.suffix.lower() != ".xml" or not path.is_file():
+        return False
+    try:
+        with path.open("rb") as stream:
+            return _ROOT in stream.read(_TOP)
+    except OSError:
+        return False
+
+
+def station_files(places: Places) -> list[Path]:
+    """Return the StationXML files of places: files as they are named, and those of folders with all that are in them.
+
+    >>> station_files("a.xml|b.xml")
+    [PosixPath('a.xml'), PosixPath('b.xml')]
+    """
+    if isinstance(places, str):
+        places = [part.strip() for part in places.split(BETWEEN) if part.strip()]
+    found: list[Path] = []
+    for place in map(Path, [places] if isinstance(places, PathLike) else places):
+        inside = [path for path in sorted(place.rglob("*.xml")) if is_station_file(path)] if place.is_dir() else [place]
+        if not inside:
+            raise RecordError(f"{place}: the folder holds no StationXML file")
+        found += inside
+    return list(dict.fromkeys(found))
+
+
+def station_sources(places: Places, codes: Iterable[str]) -> list[Source]:
+    """Return the StationXML files of places in which one of some station codes stands; all where none does."""
+    sources = [_kept(path, path.stat().st_mtime_ns if path.is_file() else 0) for path in station_files(places)]
+    form = re.compile(rb"\bcode\s*=\s*[\"'](?:" + b"|".join(re.escape(code.encode()) for code in codes) + rb")[\"']")
+    return [source for source in sources if form.search(source.content)] or sources
+
+
+@lru_cache(maxsize=64)
+def _kept(path: Path, _changed: int) -> Source:
+    return Source.of_path(path)
+
+
+def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
+    """Return the overall sensitivity of a channel [counts/(m/s2)]; counts under no name are doubted."""
+    total = channel["sensitivity"]
+    if not total:
+        raise source.error(None, f"{name}: the StationXML states no overall sensitivity; ask for level=response")
+    before, after = ("".join(str(unit).upper().split()) for unit in total[1:])
+    spelt = _SPELT.fullmatch(before)
+    if spelt is None or not (after in _COUNTS or after in _UNNAMED):
+        raise source.error(None, f"{name}: sensitivity from M/S**2 to counts needed, found {before} to {after}")
+    if after in _UNNAMED:
+        source.doubt(None, f"{name}: the StationXML states a sensitivity to {after or 'no unit'}, taken as counts")
+    value = float(total[0]) / _FACTORS[spelt[1]]
+    if not 1e-12 < abs(value) < 1e15:
+        raise InvalidValueError(f"{name}: sensitivity must be within 1e-12 to 1e15 counts/(m/s2), got {value:g}")
+    return value
+
+
+def the_channel(source: Source, found: Sequence[dict[str, Any]], name: str, when: str) -> dict[str, Any]:
+    """Return the one description of a channel that StationXML files hold at a time; the same in two files is one."""
+    exact = [one for one in found if one["matches"]]
+    distinct = {repr({key: one[key] for key in ("rate", "sensitivity", "from")}): one for one in exact}
+    if len(distinct) == 1:
+        return next(iter(distinct.values()))
+    if not exact:
+        others = sorted({f"location {one['location'] or 'blank'}, {one['from']} to {one['to']}" for one in found})
+        beside = f"; they describe {'; '.join(others[:4])}" if others else ""
+        raise source.error(None, f"{name} at {when}: the StationXML files do not describe this channel{beside}")
+    files = ", ".join(sorted({one["file"] for one in exact}))
+    raise source.error(None, f"{name} at {when}: {len(distinct)} different descriptions in {files}; name one file")
