@@ -44,23 +44,18 @@ def test_nrml_needs_a_curve(open_page: Callable[..., Any], served: Any, shot: An
 def test_curves_that_cross_are_saved_with_one_dispersion(
     open_page: Callable[..., Any], served: Any, tmp_path: Path, shot: Any
 ) -> None:
-    """Curves that cross are refused in words, with a button beside them that saves curves that do not."""
+    """Curves that cross are replaced on the page, with the reason, and NRML contains the curves of the page."""
     made = finished(
         served, "curves that cross", fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "states": [0.5]},
         motions={"synthetic": "pulse-like", "count": 12, "seed": 7}, restitution={"model": "ked"},
     )  # fmt: skip
     page = open_page(view="studies")
     opened(page, made)
-    page.get_by_test_id("export-xml").click()
-    nested = page.get_by_test_id("export-nested")
-    expect(nested).to_be_visible()
-    words = page.locator("#status").inner_text()
-    assert "must not cross" in words
-    assert "crossing=" not in words
+    expect(page.get_by_test_id("adjusted")).to_contain_text("so that their curves do not cross.")
     shot(page, "studies-curves-cross")
-    root = ET.fromstring(saved(page, "export-nested", tmp_path).read_bytes())
+    root = ET.fromstring(saved(page, "export-xml", tmp_path).read_bytes())
     assert root.tag == f"{NRML}nrml"
-    expect(nested).to_be_hidden()
+    assert "so that their curves do not cross." in root.find(f".//{NRML}description").text
 
 
 def test_files_are_of_the_model_that_is_shown(open_page: Callable[..., Any], served: Any, tmp_path: Path) -> None:

@@ -252,7 +252,7 @@ def test_nrml_reproduces_the_curve(tmp_path, agreement):
     tag = "{http://openquake.org/xmlns/nrml/0.5}"
     root = ET.parse(path).getroot()
     params = root.findall(f".//{tag}params")
-    curves = model_of(found, "block <1>", method="common-dispersion").curves
+    curves = model_of(found, "block <1>", crossing="common-dispersion").curves
     words = ["rotation_above_0_2_alpha", "rotation_above_0_5_alpha", "overturned"]
     assert root.find(f".//{tag}limitStates").text.split() == words
     assert [curve.state for curve in curves] == list(found.fits)

@@ -33,6 +33,8 @@ _AS_TYPED = (
     (re.compile(r"\b(give|takes no) height= of the sensor"), r"\1 --set measurement.height= of the sensor"),
     (re.compile(r"\btrend=True"), "--set identify.trend=true"),
     (re.compile(r'\bcrossing="([\w-]+)"'), r"--crossing \1"),
+    (re.compile(r"\bmodel_of\(\.\.\., states=\) leaves"), "--states leaves"),
+    (re.compile(r"\bleave one out with states=$"), "leave one out with --states"),
     (re.compile(r"^threads must be"), "--threads must be"),
     (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),

@@ -118,7 +118,9 @@ def export(
     ] = None,
     crossing: Annotated[
         str | None,
-        typer.Option(help="Fragility curves that cross: refuse, or common-dispersion; what the job says if not given."),
+        typer.Option(
+            help="Fragility curves that cross: keep-uplift, common-dispersion or refuse; that of the job if not given."
+        ),
     ] = None,
     inputs: Inputs = None,
     as_json: AsJson = False,

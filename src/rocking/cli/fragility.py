@@ -1,7 +1,7 @@
 """`rocking fragility`: how likely a body is to rock or to overturn at a level of shaking."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
@@ -84,7 +84,7 @@ def fragility(
             ": FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C; with units, 0.05g:1g:20",
         ),
     ] = None,
-    states: Annotated[str, options.key(FragilityTable, "states", ": 0.2,0.5")] = "0.5",
+    states: Annotated[str, options.key(FragilityTable, "states", ": 0.2,0.5 or 0.5,overturning")] = "0.5",
     factor: Annotated[float | None, options.key(FragilityTable, "factor")] = None,
     restitution: options.Restitutions = None,
     sets: options.Set = None,
@@ -97,10 +97,11 @@ def fragility(
     crossing: Annotated[
         str,
         typer.Option(
-            help="Curves that cross, in files: refuse, or common-dispersion, one for all states, so that none cross.",
+            help="Curves that cross: keep-uplift, one dispersion for all states but rocking; common-dispersion, one for"
+            " all states, always; refuse, each state alone, and no files for FEMA P-58, PELICUN and OpenQuake.",
             rich_help_panel=options.OUTPUT,
         ),
-    ] = "refuse",
+    ] = "keep-uplift",
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
@@ -109,9 +110,10 @@ def fragility(
     from rocking.cli.arguments import Arguments, as_typed, document_file, typed
     from rocking.cli.fragility_answer import FragilityAnswer
     from rocking.cli.study import TABLES, problem_in
+    from rocking.studies.fragility.curves import Crossing
 
     exports = Exports.of(out, EXPORTS)
-    checks.one_of("--crossing", crossing, ("refuse", "common-dispersion"))
+    checks.one_of("--crossing", crossing, get_args(Crossing))
     length, written = None, ""
     if file := document_file(context, body, ("campaign", "fragility"), ["threads", "name", "crossing"]):
         problem = problem_in(file, "fragility", sets)
@@ -161,7 +163,7 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     wanted = measure_of(measure["measure"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
         raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
-    own: dict[str, Any] = {**measure, "states": row("--states", states, "1")[0].tolist()}
+    own: dict[str, Any] = {**measure, "states": _states(states)}
     limit_states(tuple(own["states"]))
     if factor is not None:
         if kind != "cloud":
@@ -180,6 +182,16 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     elif wanted.uplift is None and "levels" not in sets:
         raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
     return arguments.table("fragility", own), written
+
+
+def _states(text: str) -> list[float | str]:
+    """Return limit states: rotations over alpha as of every option of numbers, and names."""
+    from rocking.studies.fragility.subject import NAMED
+
+    words = [word.strip() for word in text.split(",")]
+    names, numbers = [word for word in words if word in NAMED], [word for word in words if word not in NAMED]
+    between = row("--states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
+    return [*between, *names]
 
 
 def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":

@@ -11,6 +11,7 @@ from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, Increme
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.statistics.lognormal import LognormalFit
+    from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
     from rocking.tables import Table
 
 
@@ -24,7 +25,7 @@ class FragilityAnswer:
     written: str  # unit that the levels were written in, empty if none; medians are printed in it
     length: str  # unit of lengths
     name: str | None = None  # of the body, in files
-    crossing: str = "refuse"  # what becomes of curves that cross, in files
+    crossing: Any = "keep-uplift"  # treatment of curves that cross
 
     @classmethod
     def of(
@@ -55,12 +56,19 @@ class FragilityAnswer:
         return (self.written, UNITS[unit][self.written]) if self.written else (unit, 1.0)
 
     @cached_property
-    def curves(self) -> Any:
-        """The curves, as files hold them."""
-        from rocking.studies.fragility.curves import model_of, nested
+    def curves(self) -> "FragilityModel":
+        """The curves, as files contain them and as they are shown."""
+        from rocking.studies.fragility.curves import model_of
 
-        model = model_of(self.first, self.name or type(self.problem.bodies[0]).__name__.lower())
-        return nested(model, "common-dispersion") if self.crossing == "common-dispersion" else model
+        name = self.name or type(self.problem.bodies[0]).__name__.lower()
+        return model_of(self.first, name, crossing=self.crossing)
+
+    @cached_property
+    def shown(self) -> "FragilityModel | None":
+        """The curves that are shown in place of those of each state alone; None where there are none."""
+        from rocking.studies.fragility.curves import shown_curves
+
+        return None if self.compared is not None else shown_curves(self.first, self.crossing)
 
     def check_crossing(self) -> None:
         """Refuse curves that cross, of which FEMA P-58 and OpenQuake can make nothing."""
@@ -79,8 +87,8 @@ class FragilityAnswer:
         head = (*first, *(f"reached {name} [-]" for name in states), *(f"fitted {name} [-]" for name in states))
         rows: list[tuple[str | int | float, ...]] = []
         for label, result in self.results.items():
-            fits = [result.fits.get(name) for name in states]
-            fitted = [fit.probability(result.levels) if fit is not None and fit.exists else None for fit in fits]
+            fits = {name: fit for name, fit in result.fits.items() if fit.exists} | self._adjusted()
+            fitted = [fits[name].probability(result.levels) if name in fits else None for name in states]
             for k, level in enumerate(result.levels.tolist()):
                 reached = [int(result.counts[name][k]) for name in states]
                 likely = ["" if values is None else float(values[k]) for values in fitted]
@@ -101,7 +109,7 @@ class FragilityAnswer:
         else:
             from rocking.plots.fragility import fragility_picture
 
-            figure = fragility_picture(self.first)
+            figure = fragility_picture(self.first, curves=self.shown)
         measure = self.first.subject.measure
         own = axis_label(measure.name, measure.unit)
         for axes in figure.axes if self.written else []:
@@ -124,7 +132,8 @@ class FragilityAnswer:
             "states": list(self.problem.fragility_table.states),
             "uplift_threshold": first.subject.uplift_threshold,
             "levels": first.levels,
-            "results": [_result_facts(one) for one in self.results.values()],
+            "crossing": {"method": self.crossing, "adjusted": "" if self.shown is None else self.shown.adjusted},
+            "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
             "comparison": None if compared is None else {"choices": compared.summary(), "verdict": compared.verdict},
         }
 
@@ -164,9 +173,10 @@ class FragilityAnswer:
 
     def _uplift(self) -> str:
         check = self.first.uplift
-        if check.threshold is None:
-            return str(check.verdict)
         unit, factor = self.unit
+        lowest = self.first.subject.lowest_uplift
+        if check.threshold is None:
+            return str(check.verdict) + ("" if lowest is None else f"; impossible below {lowest / factor:.4g} {unit}")
         return (
             f"certain above {check.threshold / factor:.4g} {unit}, impossible below; "
             f"{check.contradictions} of {check.checked} histories contradict it"
@@ -175,7 +185,12 @@ class FragilityAnswer:
     def _curve_rows(self, first: str, result: Any) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         unit, factor = self.unit
         rows: list[tuple[str, ...]] = []
+        adjusted = self._adjusted()
         for name, fit in result.fits.items():
+            if name in adjusted:
+                curve = adjusted[name]
+                rows.append((name, f"{curve.median / factor:.4g}", "", f"{curve.dispersion:.3g}", ""))
+                continue
             summary = fit.summary()
             median = "none" if fit.median is None else f"{fit.median / factor:.4g}"
             spread = "none" if fit.dispersion is None else f"{fit.dispersion:.3g}"
@@ -185,8 +200,27 @@ class FragilityAnswer:
             rows.append((name, median, middle, spread, wide))
         return (first, f"median [{unit}]", "95 %", "dispersion", "95 %"), rows
 
+    def _adjusted(self) -> dict[str, "FragilityCurve"]:
+        """Return the curves that are not those of each state alone, by state."""
+        return {} if self.shown is None else self.shown.shared
+
+    def _alone(self) -> list[str]:
+        """Return why curves are not those of each state alone, and these with their intervals."""
+        if self.shown is None or not self.shown.adjusted:
+            return []
+        unit, factor = self.unit
+        lines = [self.shown.adjusted]
+        for name in self._adjusted():
+            summary = self.first.fits[name].summary()
+            median, spread = _interval(summary["median_95"], factor), _interval(summary["dispersion_95"], 1.0)
+            lines.append(
+                f"{name} alone: median {summary['median'] / factor:.4g} {unit}, 95 % {median}; "
+                f"dispersion {summary['dispersion']:.3g}, 95 % {spread}"
+            )
+        return lines
+
     def _sentences(self) -> list[str]:
-        lines: list[str] = []
+        lines = self._alone()
         for label, result in self.results.items():
             before = f"{label}, " if self.compared is not None else ""
             lines += [f"{before}{text}" for text in _verdicts(result)]
@@ -235,7 +269,7 @@ class FragilityAnswer:
         ]
 
 
-def _result_facts(analysis: Any) -> dict[str, Any]:
+def _result_facts(analysis: Any, adjusted: "dict[str, FragilityCurve]") -> dict[str, Any]:
     summary = analysis.summary()
     facts = {
         "restitution": analysis.subject.parameters.label,
@@ -245,7 +279,7 @@ def _result_facts(analysis: Any) -> dict[str, Any]:
         "contact": analysis.responses.contact,
         "trials": analysis.trials,
         "reached": dict(analysis.counts),
-        "curves": {name: fit.summary() for name, fit in analysis.fits.items()},
+        "curves": {name: _curve_facts(fit.summary(), adjusted.get(name)) for name, fit in analysis.fits.items()},
     }
     if "regression" in summary:
         facts["regression"] = summary["regression"]
@@ -258,6 +292,13 @@ def _result_facts(analysis: Any) -> dict[str, Any]:
             "resurrected_motions_over_1_percent": analysis.resurrected(WIDE),
         }
     return facts
+
+
+def _curve_facts(alone: dict[str, Any], curve: "FragilityCurve | None") -> dict[str, Any]:
+    """Return a curve; one that is not that of its state alone has no intervals, and the other beside it."""
+    if curve is None:
+        return {**alone, "alone": None}
+    return {**alone, **curve.facts, "alone": alone}
 
 
 def _motions_line(facts: dict[str, Any]) -> str:

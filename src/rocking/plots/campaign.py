@@ -13,15 +13,14 @@ from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.transitions import transitions_of_many_picture
+from rocking.spec.document import ExportTable
+from rocking.studies.fragility.curves import shown_curves
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _OF_DATASETS: "dict[str, Callable[[Any], Figure]]" = {
     "overturning-map": overturning_map_picture, "rocking-spectrum": rocking_spectrum_picture,
-}  # fmt: skip
-_OF_ANALYSES: "dict[str, Callable[[Any], Figure]]" = {
-    "stripes": fragility_picture, "incremental": incremental_dynamic_analysis_picture, "cloud": fragility_picture,
 }  # fmt: skip
 WITHOUT = ("histories",)  # kinds of campaigns that have no picture
 
@@ -47,11 +46,19 @@ def campaign_picture(folder: JobFolder, restitution: str | None = None) -> "Figu
     if restitution is None and len(labels) > 1:
         return sensitivity_picture(comparison(folder, tuple(TYPES)))
     label = restitution or labels[0]
-    if kind in _OF_ANALYSES:
-        return _OF_ANALYSES[kind](analyses(folder)[label])
+    if folder.job.study.finish is not None:
+        return _fragility(folder, analyses(folder)[label])
     if folder.job.study.search is not None:
         return overturning_map_picture(datasets(folder)[label], answer(folder).value[1])
     return _OF_DATASETS[kind](datasets(folder)[label])
+
+
+def _fragility(folder: JobFolder, analysis: Any) -> "Figure":
+    """Draw a fragility analysis with the curves that are exported."""
+    if folder.job.document.campaign.kind == "incremental":
+        return incremental_dynamic_analysis_picture(analysis)
+    export = folder.job.document.export or ExportTable()
+    return fragility_picture(analysis, curves=shown_curves(analysis, export.crossing))
 
 
 def _transitions(folder: JobFolder, labels: list[str]) -> "Figure":

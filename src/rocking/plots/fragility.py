@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking.statistics.lognormal import LognormalFit
+    from rocking.studies.fragility.curves import FragilityModel
 
 _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
 """Data of more levels are gathered into groups of neighbouring levels, of as many outcomes at least; stripes stay
@@ -44,7 +45,7 @@ _APART = 2.2  # points of different states are drawn side by side, this far apar
 
 
 @in_journal_style
-def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
+def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityModel | None" = None) -> "Figure":
     """Draw a fragility analysis.
 
     Above: the share of the motions that reached each state, with exact binomial intervals, and the lognormal curve of
@@ -59,6 +60,9 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
         The analysis.
     level : float
         Confidence of intervals and bands [-].
+    curves : FragilityModel, optional
+        Curves from `model_of`. A curve that is not that of its state alone is drawn in its place, without a band, and
+        the reason stands below the panels.
 
     Returns
     -------
@@ -85,10 +89,13 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     figure, (upper, lower) = new_figure(SINGLE, 4.4, rows=2, sharex=True, height_ratios=[2.0, 1.0])
     levels = np.asarray(analysis.levels)
     fine = _fine(levels)
+    shared = {} if curves is None else curves.shared
     for place, name in enumerate(analysis.counts):
         _points(upper, analysis, name, place, level)
         fit = analysis.fits.get(name)
-        if fit is not None and fit.exists:
+        if name in shared:
+            upper.plot(fine, shared[name].probability(fine), linewidth=1.2, zorder=2, **look(place))
+        elif fit is not None and fit.exists:
             fitted(upper, fit, fine, place, level)
         elif fit is None:
             _step(upper, analysis.subject.uplift_threshold, fine, place)
@@ -101,7 +108,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     if geometric(levels):
         plain_log(lower, "x")
     _legends(upper, lower, analysis)
-    if verdicts := caption(analysis):
+    if verdicts := " ".join(filter(None, (caption(analysis), "" if curves is None else curves.adjusted))):
         figure.supxlabel(wrapped(verdicts, 80, 7), x=0.01, ha="left", fontsize=6, color=INK)
     return figure
 
@@ -217,7 +224,8 @@ def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
     mark: dict[str, Any] = {"markersize": 3.0, "markerfacecolor": "white"}
     curves = [stroke(symbol(name), marker=MARKS[k % 5], **mark, **look(k)) for k, name in enumerate(names)]
     legend_above(upper, 2, handles=curves, **options)
-    words = ["no rocking", *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
+    none = "no rocking" if names[0] == "rocking" else f"not {symbol(names[0])}"
+    words = [none, *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
     patches = [patch(color, each) for color, each in zip(state_colors(len(names)), words, strict=True)]
     legend_above(lower, 2, handles=patches, handlelength=1.2, **options)
 

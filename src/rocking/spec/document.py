@@ -287,7 +287,9 @@ class InventoryTable(JobTable):
 class ExportTable(JobTable):
     """How files are written, how often a study is repeated for intervals, and which measures are compared."""
 
-    crossing: Literal["refuse", "common-dispersion"] = _key("what becomes of curves that cross", "refuse")
+    crossing: Literal["keep-uplift", "common-dispersion", "refuse"] = _key(
+        "treatment of curves that cross", "keep-uplift"
+    )
     bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = _key("how often a study is repeated", 0)
     measures: Annotated[list[Text], Field(min_length=1)] | None = _key("measures of intensity that are compared")
     columns: list[Text] | None = _key("columns of the comparison")
@@ -317,7 +319,11 @@ class FragilityTable(JobTable):
 
     measure: Text = _key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = _key("levels of the measure [its unit]")
-    states: list[Positive] = _key("rotations over the slenderness angle that count [-]", [0.5])
+    states: list[Positive | Literal["rocking", "overturning"]] = _key(
+        "limit states: rotations over the slenderness angle [-], with rocking and overturning; where one of these two "
+        "names is given, the given states alone",
+        [0.5],
+    )
     tolerance: float | None = _key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
     factor: Positive | None = _key("factor on all motions of a cloud [-]")
 

@@ -71,7 +71,7 @@ def test_keys_are_stable(answered):
         answered(*SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
     )  # the second overturns nothing
     keys = ["body", "assumed", "motions", "gravity_m_s2", "linear", "analysis", "measure", "unit", "states",
-            "uplift_threshold", "levels", "results", "comparison"]  # fmt: skip
+            "uplift_threshold", "levels", "crossing", "results", "comparison"]  # fmt: skip
     assert list(many) == list(none) == keys
     first, second = many["results"][0], none["results"][0]
     wanted = ["restitution", "definition", "uplift", "failed", "contact", "trials", "reached", "curves"]
@@ -255,17 +255,65 @@ def test_every_file(run, tmp_path):
     assert paths["picture"].read_text(encoding="utf-8").startswith("<?xml")
 
 
-def test_curves_that_cross_are_no_file(run, answered, tmp_path):
-    """Curves of unlike dispersion cross: no NRML, and the option that helps is named; MATLAB gets them as fitted."""
-    curves = answered(*SIZE, *FAMILY, *LEVELS)["results"][0]["curves"]
+def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_path):
+    """Where curves cross, screen, JSON and files have one dispersion, the reason, and each state alone."""
+    answer = answered(*SIZE, *FAMILY, *LEVELS)
+    curves = answer["results"][0]["curves"]
     least, worst = curves["rotation > 0.5 alpha"], curves["overturned"]
-    assert worst["dispersion"] > 1.2 * least["dispersion"]
-    code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--out", tmp_path / "n.xml")
+    assert worst["alone"]["dispersion"] > 1.2 * least["alone"]["dispersion"]
+    assert worst["dispersion"] == least["dispersion"]
+    assert (worst["method"], worst["median_95"]) == ("common-dispersion", [None, None])
+    reason = answer["crossing"]["adjusted"]
+    assert reason.startswith("Fitted alone, curves cross: at ")
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--out", f"p58={tmp_path / 'p.csv'}")
+    assert (code, err) == (0, "")
+    words = " ".join(out.split())
+    assert reason in words
+    assert f"overturned alone: median {worst['alone']['median'] / G:.4g} g, 95 % " in words
+    rows = list(csv.DictReader((tmp_path / "p.csv").read_text(encoding="utf-8").splitlines()))
+    for row, curve in zip(rows, (least, worst), strict=True):
+        assert float(row["Median Demand"]) * G == pytest.approx(curve["median"], rel=1e-14)
+        assert float(row["Total Dispersion (Beta)"]) == curve["dispersion"]
+        assert f"{float(row['Median Demand']):.4g} {curve['dispersion']:.3g}" in words
+        assert reason in row["Data Quality and Relevance"]
+
+
+def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
+    """With refuse each state alone is shown, there is no NRML, and the option that helps is named."""
+    refuse = (*SIZE, *FAMILY, *LEVELS, "--crossing", "refuse")
+    curves = answered(*refuse)["results"][0]["curves"]
+    assert curves["overturned"]["dispersion"] > 1.2 * curves["rotation > 0.5 alpha"]["dispersion"]
+    assert curves["overturned"]["alone"] is None
+    code, _, err = run(*refuse, "--out", tmp_path / "n.xml")
     assert code == 2
     assert err.startswith("rocking: curves must not cross")
-    assert "--crossing common-dispersion fits one for all states" in err
+    assert "--crossing keep-uplift fits one for all states but rocking" in err
     assert list(tmp_path.iterdir()) == []
-    assert run(*SIZE, *FAMILY, *LEVELS, "--out", tmp_path / "m.mat")[0] == 0
+    assert run(*refuse, "--out", tmp_path / "m.mat")[0] == 0
+
+
+def test_states_are_chosen(run, answered, tmp_path):
+    """A state is left out of screen, JSON and files; a word that is no state is refused."""
+    whole, part = (answered(*SIZE, *FAMILY, *LEVELS, *more) for more in ((), ("--states", "overturning")))
+    assert list(part["results"][0]["reached"]) == list(part["results"][0]["curves"]) == ["overturned"]
+    alone = whole["results"][0]["curves"]["overturned"]["alone"]
+    assert part["results"][0]["curves"]["overturned"]["median"] == alone["median"]
+    assert part["crossing"]["adjusted"] == ""
+    file = tmp_path / "p.csv"
+    code, out, _ = run(*SIZE, *FAMILY, *LEVELS, "--states", "overturning", "--out", f"p58={file}")
+    assert code == 0
+    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    assert [row["Damage State Description"] for row in rows] == ["overturned"]
+    assert "rotation > 0.5" not in out
+    # the outcomes of the lesser state form a step, which no common dispersion describes
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,overturning", "--out", f"p58={file}")
+    assert code == 2
+    assert "They are kept, since no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
+    assert "leave one out with --states" in err
+    for bad in ("falling", "overturned", "0.5,0.2,rocking", "rocking,rocking", ""):
+        code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--states", bad)
+        assert code == 2, bad
+        assert "states" in err, bad
 
 
 def test_counts_as_csv(answered, tmp_path):

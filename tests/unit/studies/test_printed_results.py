@@ -27,15 +27,15 @@ def test_a_fragility_prints_its_curves(stripes):
     assert "180 histories over pga [m/s2]" in repr(stripes)
     for name, fit in stripes.fits.items():
         assert f"{name}: <LognormalFit: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}" in repr(stripes)
-        assert f"{name}: median {fit.median:.4g}" in repr(model_of(stripes, "leaning"))
+        assert f"{name}: median {fit.median:.4g}" in repr(model_of(stripes, "leaning", crossing="refuse"))
     assert len(repr(stripes)) < 400
 
 
 def test_states_of_a_model_are_chosen(stripes):
     """Rocking of a body that leans hardly overlaps with rest: one dispersion is refused, with the way out."""
     with pytest.raises(InvalidValueError, match=r"states are rocking, .* model_of\(\.\.\., states=\) leaves some out"):
-        model_of(stripes, "leaning", method="common-dispersion")
-    chosen = model_of(stripes, "leaning", method="common-dispersion", states=["rotation > 0.5 alpha", "Overturned"])
+        model_of(stripes, "leaning", crossing="common-dispersion")
+    chosen = model_of(stripes, "leaning", crossing="common-dispersion", states=["rotation > 0.5 alpha", "Overturned"])
     assert [curve.state for curve in chosen.curves] == ["rotation > 0.5 alpha", "overturned"]
     assert chosen.curves[0].dispersion == chosen.curves[1].dispersion
     with pytest.raises(InvalidValueError, match=r"states must be one of rocking, .* got 'rested'"):

@@ -123,6 +123,7 @@ AnalysisFacts: Any = shape(
     failed=int,
     states=list[str],
     points=(dict[str, PointsOfState], "by state"),
+    adjusted=(str, "why curves are not those of each state alone; empty where they are"),
     fits=(dict[str, FitFacts], "by state"),
     curves=(dict[str, CurveOfState], "by state"),
     sentences=list[str],

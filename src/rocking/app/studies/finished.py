@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rocking.campaigns.jobs.study import AdaptiveResult
 
 
-Crossing = Literal["refuse", "common-dispersion"]
+Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
 Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "svg", "xml"]
 

@@ -15,7 +15,9 @@ from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
+from rocking.spec.document import ExportTable
 from rocking.studies.boundaries import chains, edge_numbers, segments
+from rocking.studies.fragility.curves import Crossing, shown_curves
 from rocking.version import __version__
 
 NAME = f"result-{__version__}.json"  # another version may tell other things
@@ -196,20 +198,24 @@ def _middles(edges: np.ndarray, x: FloatArray, y: FloatArray) -> FloatArray:
 
 def fragility_result(study: OpenStudy) -> dict[str, Any]:
     """Return a fragility analysis."""
-    first = next(iter(study.analyses.values()))
+    first, export = next(iter(study.analyses.values())), study.job.document.export or ExportTable()
     measure = first.subject.measure
     return {
         "measure": {"name": measure.name, "unit": measure.unit, "words": measure.words},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
-        "analyses": [{"restitution": label, **_analysis(one)} for label, one in study.analyses.items()],
+        "analyses": [
+            {"restitution": label, **_analysis(one, export.crossing)} for label, one in study.analyses.items()
+        ],
     }
 
 
-def _analysis(analysis: Any) -> dict[str, Any]:
+def _analysis(analysis: Any, crossing: Crossing) -> dict[str, Any]:
     from rocking.plots.fragility import shares_of
 
+    shown = shown_curves(analysis, crossing)
+    shared = {} if shown is None else shown.shared
     levels = np.asarray(analysis.levels, dtype=np.float64)
     fits = {name: fit for name, fit in analysis.fits.items() if fit is not None}
     return {
@@ -218,9 +224,12 @@ def _analysis(analysis: Any) -> dict[str, Any]:
         "failed": int(getattr(analysis, "stripes", analysis).failed),
         "states": list(analysis.counts),
         "points": {name: shares_of(analysis, name) for name in analysis.counts},
-        "fits": {name: _fit(fit) for name, fit in fits.items()},
-        "curves": {name: _curve(fit, _fine(levels)) for name, fit in fits.items() if fit.exists},
-        "sentences": [f"{name}: {fit.verdict}" for name, fit in fits.items()],
+        "adjusted": "" if shown is None else shown.adjusted,
+        "fits": {name: _fit(fit, shared.get(name)) for name, fit in fits.items()},
+        "curves": {name: _curve(fit, _fine(levels), shared.get(name)) for name, fit in fits.items() if fit.exists},
+        "sentences": [
+            f"{name} alone: {fit.verdict}" if name in shared else f"{name}: {fit.verdict}" for name, fit in fits.items()
+        ],
         **(_cloud(analysis) if hasattr(type(analysis), "regression") else {}),
         **(_incremental(analysis) if hasattr(type(analysis), "first_crossings") else {}),
     }
@@ -235,12 +244,18 @@ def _fine(levels: FloatArray) -> FloatArray:
     return np.linspace(max(low - 0.06 * (high - low), 1e-3 * low), high + 0.06 * (high - low), _FINE)
 
 
-def _fit(fit: Any) -> dict[str, Any]:
+def _fit(fit: Any, shared: Any) -> dict[str, Any]:
     scarce = fit.counts.scarcity if fit.counts.is_clustered else ""
+    if shared is not None:
+        known = {"exists": True, "intervals_hold": False, "scarcity": ""}
+        return {**fit.summary(), **shared.facts, **known}
     return {**fit.summary(), "exists": fit.exists, "intervals_hold": fit.exists and not scarce, "scarcity": scarce}
 
 
-def _curve(fit: Any, fine: FloatArray) -> dict[str, Any]:
+def _curve(fit: Any, fine: FloatArray, shared: Any) -> dict[str, Any]:
+    if shared is not None:
+        drawn = {"x": fine, "probability": shared.probability(fine), "low": None, "high": None}
+        return {**drawn, "band": "no band: the curve shares one dispersion with other states"}
     curve = {"x": fine, "probability": fit.probability(fine), "low": None, "high": None}
     try:
         low, high = fit.band(fine, 0.95, "profile" if fit.counts.cluster_trials is None else "bootstrap")

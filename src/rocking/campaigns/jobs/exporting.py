@@ -30,7 +30,7 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import contact_sentence, lost_contact
 from rocking.spec.document import ExportTable
 from rocking.statistics.goodness import FEWEST
-from rocking.studies.fragility.curves import Crossing, check_crossing, nested
+from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.studies.fragility.measure_comparison import MeasureComparison
 from rocking.studies.sensitivity.comparison import Sensitivity
 from rocking.tables import (
@@ -126,9 +126,9 @@ def export(
         ``measures``, the ranking of intensity measures (.nc, too). The first of `exports_of` if not given.
     restitution : str, optional
         Label of the restitution whose fragility or measures are meant, where there are several.
-    crossing : {"refuse", "common-dispersion"}, optional
-        What to do with fragility curves that cross: NRML and FEMA P-58 refuse them, or all states get one dispersion in
-        every file. What the job says if not given; "refuse" if it says nothing.
+    crossing : {"keep-uplift", "common-dispersion", "refuse"}, optional
+        Treatment of fragility curves that cross, the same in every file, as in `model_of`. That of the job if not
+        given; "keep-uplift" if the job states none.
     bootstrap : int, optional
         Repetitions of the study for intervals and bands of fragility curves beside the usual ones, none if 0. What the
         job says if not given; none if it says nothing.
@@ -212,7 +212,7 @@ def checked(
         why = f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}{_WHY.get(what, "")}'
         raise InvalidValueError(f"nothing to export because {why}")
     if what in ANALYSES:
-        check_crossing("refuse" if crossing is None else crossing)
+        check_crossing("keep-uplift" if crossing is None else crossing)
     if what in _OF_ONE:
         label_of(what, restitution, list(folder.job.problem.restitutions))
     if bootstrap is not None and what not in ANALYSES:
@@ -271,9 +271,9 @@ def _write_fragility(
     every = analyses(folder)
     analysis = every[restitution] if restitution else next(iter(every.values()))
     repetitions = stated.bootstrap if bootstrap is None else bootstrap
-    model = model_of(analysis, campaign.name, bootstrap=repetitions, seed=campaign.seed)
-    if (crossing or stated.crossing) == "common-dispersion":
-        model = nested(model, "common-dispersion")
+    model = model_of(
+        analysis, campaign.name, crossing=crossing or stated.crossing, bootstrap=repetitions, seed=campaign.seed
+    )
     suffix = path.suffix.lower()
     if suffix == ".csv":
         files.to_csv(model, path, _CURVES[what])

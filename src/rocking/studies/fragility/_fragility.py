@@ -28,7 +28,7 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     *,
     analysis: str = "stripes",
     measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
+    states: Sequence[float | str] = (0.5,),
     factor: float | None = None,
     least: float | None = None,
     tolerance: float | None = None,
@@ -54,8 +54,9 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
         ceases to overturn the body.
     measure : str or IntensityMeasure
         A name of `rocking.motions.intensity.measures`, or ``sa(period)``; for levels one that grows with the motion.
-    states : sequence of float
-        Rotations over alpha that count as states of their own [-].
+    states : sequence of float or str
+        Limit states: rotations over alpha [-], with rocking and overturning. Where ``"rocking"`` or
+        ``"overturning"`` is given, the given states alone.
     factor : float, optional
         One factor on all motions of a cloud; 1 if not given [-].
     least : float, optional
@@ -112,7 +113,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     *,
     analysis: str = "stripes",
     measure: Any = "pga",
-    states: Sequence[float] = (0.5,),
+    states: Sequence[float | str] = (0.5,),
     factor: float | None = None,
     least: float | None = None,
     progress: Progress = None,

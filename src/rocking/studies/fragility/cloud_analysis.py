@@ -112,7 +112,7 @@ class CloudAnalysis(FragilityAnalysis):
         threshold = self.subject.uplift_threshold
         if threshold is not None:
             return np.asarray(levels > threshold, dtype=np.float64)
-        return np.asarray(self.fits["rocking"].probability(levels), dtype=np.float64)
+        return np.asarray(self.fit_of("rocking").probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
         """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels."""
@@ -131,7 +131,7 @@ class CloudAnalysis(FragilityAnalysis):
         limit = math.log(checks.positive("rotation", checks.within("rotation", rotation, self.least, 1e6, hint=hint)))
         # whatever overturned has rocked: where the curves cross, rocking is at least as probable
         rocks = self.probability_of_rocking(levels)
-        over = np.minimum(np.asarray(self.fits["overturned"].probability(levels), dtype=np.float64), rocks)
+        over = np.minimum(np.asarray(self.fit_of("overturning").probability(levels), dtype=np.float64), rocks)
         beyond = self.regression.probability_above(limit, np.log(levels)) * self.clear_share(levels)
         return {
             "no rocking": 1.0 - rocks,

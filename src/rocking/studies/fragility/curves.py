@@ -13,15 +13,17 @@ from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
-from rocking.statistics.ordered_probit import ORDERED_METHODS, OrderedMethod, nested_curves
-from rocking.studies.fragility.subject import Subject, checked_levels
+from rocking.statistics.ordered_probit import nested_curves
+from rocking.studies.fragility.subject import NAMED, Subject, checked_levels
 
 if TYPE_CHECKING:
     import xarray as xr
 
 CLAIMS = ("method", "verdict", "interval_method")  # what is said of each curve wherever it goes
-Crossing = Literal["refuse", "common-dispersion"]
+Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
+COMMON = "common-dispersion"  # method of curves that share one dispersion
+ROCKING = NAMED["rocking"].name
 TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
 
 
@@ -49,6 +51,8 @@ class FragilityCurve:
         How well it agrees with the outcomes; None where nobody asked.
     repeated : Repeated, optional
         Intervals from the bootstrap; None where nobody asked.
+    alone : FragilityCurve, optional
+        The curve fitted to this state alone, with its intervals; None where it is this curve.
 
     Raises
     ------
@@ -66,10 +70,19 @@ class FragilityCurve:
     interval_method: str = ""
     agreement: Agreement | None = None
     repeated: Repeated | None = None
+    alone: "FragilityCurve | None" = None
 
     def __post_init__(self) -> None:
         checks.positive(f"median of {self.state!r:.60}", self.median)
         checks.positive(f"dispersion of {self.state!r:.60}", self.dispersion)
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The curve by the names of `LognormalFit.summary`, which it replaces there; what it has not is None."""
+        absent = dict.fromkeys(("interval_method", "standard_errors", "log_likelihood"))
+        ends = {name: list(getattr(self, name) or (None, None)) for name in ("median_95", "dispersion_95")}
+        words = {name: getattr(self, name) for name in ("median", "dispersion", "method", "verdict")}
+        return {**absent, **ends, **words}
 
     def probability(self, level: Any) -> FloatArray:
         """Return the probability of the state at levels of the measure.
@@ -120,6 +133,8 @@ class FragilityModel:
         Provenance, plain values.
     without : dict of str to str
         States that have no curve, and why.
+    adjusted : str
+        Why curves are not those fitted to each state alone; empty where they are.
 
     Raises
     ------
@@ -138,6 +153,7 @@ class FragilityModel:
     uplift_threshold: float | None = None
     about: Mapping[str, Any] = field(default_factory=dict)
     without: Mapping[str, str] = field(default_factory=dict)
+    adjusted: str = ""
 
     def __post_init__(self) -> None:
         names = [curve.state for curve in self.curves]
@@ -152,6 +168,11 @@ class FragilityModel:
     def __repr__(self) -> str:
         curves = "; ".join(f"{c.state}: median {c.median:.4g}, dispersion {c.dispersion:.3g}" for c in self.curves)
         return f"<FragilityModel {self.name!r} over {self.measure} [{self.unit}]: {curves or 'no curve'}>"
+
+    @property
+    def shared(self) -> "dict[str, FragilityCurve]":
+        """Curves that share one dispersion, by state: they are not those fitted to each state alone."""
+        return {curve.state: curve for curve in self.curves if curve.method == COMMON}
 
     @property
     def highest(self) -> float:
@@ -180,13 +201,14 @@ class FragilityModel:
         }
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
         words |= {f"without_curve {state}": why for state, why in self.without.items()}
+        words |= {"adjusted": self.adjusted} if self.adjusted else {}
         about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
         labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
         return labelled
 
 
 def model_of(
-    analysis: Any, name: str, source: str = "", *, method: "OrderedMethod" = "separate", bootstrap: int = 0,
+    analysis: Any, name: str, source: str = "", *, crossing: Crossing = "keep-uplift", bootstrap: int = 0,
     seed: int = 0, states: Sequence[str] | None = None,
 ) -> FragilityModel:  # fmt: skip
     """Return the curves of an analysis, ready for export.
@@ -199,8 +221,11 @@ def model_of(
         Name of the body, as in an inventory.
     source : str
         Where the data come from; the definition of the analysis, if not given.
-    method : {"separate", "common-dispersion"}
-        Each state's own curve; or one dispersion for all states, so that no curves cross.
+    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+        Treatment of curves that cross. "keep-uplift": where they do, one dispersion for all states but rocking; the
+        curve of rocking is not changed where uplift is impossible below a level, and is left out where it still
+        crosses. "common-dispersion": one dispersion for all states, always. "refuse": the curve of each state alone,
+        which files for FEMA P-58, PELICUN and OpenQuake refuse if curves cross.
     bootstrap : int
         Repetitions of the study for intervals and bands beside the usual ones; none, if 0.
     seed : int
@@ -211,36 +236,46 @@ def model_of(
     Returns
     -------
     FragilityModel
-        States whose curve has no finite median and dispersion are left out; ``without`` says why.
+        States whose curve has no finite median and dispersion are left out; ``without`` contains the reasons, and
+        ``adjusted`` the reason of curves that are not those of each state alone.
 
     Raises
     ------
     InvalidValueError
-        If the method or a state is unknown, no state has a curve, or there is no common dispersion.
+        If `crossing` or a state is unknown, no state has a curve, or "common-dispersion" finds none.
     """
-    chosen = checks.one_of("method", method, ORDERED_METHODS)
+    check_crossing(crossing)
+    alone = _alone(analysis, name, source, states)
+    curves = [with_evidence(c, analysis.fits[c.state], analysis.levels, bootstrap, seed) for c in alone.curves]
+    return without_crossing(replace(alone, curves=tuple(curves)), crossing)
+
+
+def shown_curves(analysis: Any, crossing: Crossing = "keep-uplift") -> FragilityModel | None:
+    """Return the curves that files would contain, without their goodness of fit; None where there are none."""
+    try:
+        return without_crossing(_alone(analysis, "body"), crossing)
+    except InvalidValueError:  # files are refused with the reason
+        return None
+
+
+def _alone(analysis: Any, name: str, source: str = "", states: Sequence[str] | None = None) -> FragilityModel:
+    """Return the curve of each state alone."""
     wanted = list(analysis.fits) if states is None else [checks.one_of("states", s, analysis.fits) for s in states]
     subject: Subject = analysis.subject
     measure = subject.measure
-    curves, without = [], []
-    for state, fit in ((name, fit) for name, fit in analysis.fits.items() if name in wanted):
-        curve = curve_of(state, fit, measure.name, measure.unit)
-        if curve is None:
-            without.append(state)
-        else:
-            curves.append(with_evidence(curve, fit, analysis.levels, bootstrap, seed))
-    if not curves:
+    found = {s: curve_of(s, fit, measure.name, measure.unit) for s, fit in analysis.fits.items() if s in wanted}
+    without = [state for state, curve in found.items() if curve is None]
+    if len(without) == len(found):
         raise InvalidValueError(
             f"nothing to export: no state of {name!r:.60} has a lognormal curve; the histories must both reach a "
             f"state and miss it, at levels that overlap ({', '.join(without)})"
         )
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
-    model = FragilityModel(
-        name, measure.name, measure.unit, tuple(curves), analysis.levels, analysis.trials,
-        analysis.counts, source or analysis.definition, subject.uplift_threshold, about,
+    return FragilityModel(
+        name, measure.name, measure.unit, tuple(filter(None, found.values())), analysis.levels, analysis.trials,
+        analysis.counts, source or analysis.definition, subject.lowest_uplift, about,
         {state: analysis.fits[state].verdict_in(*_shown(measure.name, measure.unit)) for state in without},
     )  # fmt: skip
-    return model if chosen == "separate" else with_common_dispersion(model)
 
 
 def curve_of(state: str, fit: LognormalFit, measure: str = "", unit: str = "-") -> FragilityCurve | None:
@@ -272,6 +307,44 @@ def with_evidence(
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
 
 
+def without_crossing(model: FragilityModel, crossing: Crossing = "keep-uplift") -> FragilityModel:
+    """Return the model with curves that do not cross, by one of the treatments; by "refuse" the model as it is."""
+    match check_crossing(crossing):
+        case "common-dispersion":
+            return with_common_dispersion(model)
+        case "keep-uplift" if (excess := crosses(model)) is not None:
+            return _keeping_uplift(model, excess)
+    return model
+
+
+def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
+    """Return the model with one dispersion for the states that no level of uplift decides."""
+    why = f"Fitted alone, curves cross: {excess.words(model)}."
+    decided = tuple(c for c in model.curves if c.state == ROCKING and model.uplift_threshold is not None)
+    others = replace(model, curves=tuple(c for c in model.curves if c not in decided))
+    try:
+        found = with_common_dispersion(others) if crosses(others) is not None else others
+    except InvalidValueError:
+        states = ", ".join(curve.state for curve in others.curves)
+        return replace(model, adjusted=f"{why} They are kept, since no common dispersion fits the states {states}.")
+    joined = replace(found, curves=(*decided, *found.curves))
+    reasons = [why, found.adjusted]
+    if not decided:
+        return replace(joined, adjusted=" ".join(reasons))
+    if crosses(joined) is None:
+        reasons.append(f"The curve of {ROCKING} is not changed: {uplift_words(model)}.")
+    else:
+        reasons.append(f"The state {ROCKING} is left out, since its curve would still cross: {uplift_words(model)}.")
+        joined = replace(found, without={**model.without, ROCKING: reasons[-1]})
+    return replace(joined, adjusted=" ".join(filter(None, reasons)))
+
+
+def uplift_words(model: FragilityModel) -> str:
+    """Return below which level no motion lifts the body."""
+    unit, size = _shown(model.measure, model.unit)
+    return f"no motion lifts the body below {f'{(model.uplift_threshold or 0.0) * size:.4g} {unit}'.rstrip()}"
+
+
 def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     """Return the model with all states fitted again with one dispersion, from its counts."""
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
@@ -285,14 +358,19 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         names = ", ".join(curve.state for curve in model.curves)
         raise InvalidValueError(f"{error} The states are {names}: model_of(..., states=) leaves some out") from error
     unit, size = _shown(model.measure, model.unit)
+    states = ", ".join(curve.state for curve in model.curves)
+    adjusted = f"One dispersion was fitted to the states {states}, so that their curves do not cross."
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
         verdict = (
-            f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
+            f"One dispersion was fitted to several states, so that no curves cross; alone this state has median"
             f" {f'{curve.median * size:.4g} {unit}'.rstrip()}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
         )
-        curves.append(FragilityCurve(curve.state, median, dispersion, "common-dispersion", verdict.strip()))
-    return replace(model, curves=tuple(curves))
+        curves.append(FragilityCurve(curve.state, median, dispersion, COMMON, verdict.strip(), alone=curve))
+        if curve.state == ROCKING and model.uplift_threshold is not None:
+            share = float(curves[-1].probability(model.uplift_threshold))
+            adjusted += f" The curve of {ROCKING} gives {share:.2g} at the level of uplift: {uplift_words(model)}."
+    return replace(model, curves=tuple(curves), adjusted=adjusted)
 
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
@@ -312,6 +390,12 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
         variables[name] = ("state", value, {"units": "1", "long_name": words})
         variables[f"{name}_p_value"] = ("state", p_value, {"units": "1", "long_name": f"p-value: {words}"})
     variables["agreement"] = ("state", np.array([each.words for each in agreements]))
+    if any(curve.alone for curve in curves):
+        alone = [curve.alone or curve for curve in curves]
+        about = {"long_name": "of the curve fitted to the state alone"}
+        variables["median_alone"] = ("state", np.array([c.median for c in alone]), {"units": unit, **about})
+        variables["dispersion_alone"] = ("state", np.array([c.dispersion for c in alone]), {"units": "1", **about})
+        variables |= {f"{name}_alone": each for name, each in variables_of(alone, levels, unit).items()}
     if not any(curve.repeated for curve in curves):
         return variables
     each, meaning = [curve.repeated or Repeated() for curve in curves], " from the bootstrap"
@@ -335,6 +419,12 @@ class Excess:
     level: float  # where [unit of the measure]
     size: float  # by how much [-]
 
+    def words(self, model: FragilityModel) -> str:
+        """Return where and by how much, in words."""
+        unit, size = _shown(model.measure, model.unit)
+        level = f"{self.level * size:.4g} {unit}".rstrip()
+        return f"at {level} {self.worse!r} would be likelier than {self.lesser!r} by {self.size:.2g}"
+
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
     """Return where neighbouring curves are most out of order between two levels; None if they never are."""
@@ -351,17 +441,24 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
     return largest
 
 
-def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
-    """Return curves that do not cross up to the highest level: the model, or one of common dispersion if asked for."""
-    if check_crossing(crossing) == "common-dispersion":
-        return with_common_dispersion(model)
+def crosses(model: FragilityModel, highest: float | None = None) -> Excess | None:
+    """Return where curves cross by more than is allowed, above the level of uplift and up to the highest level."""
     worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)
-    if worst is None or worst.size <= TOLERANCE:
+    return None if worst is None or worst.size <= TOLERANCE else worst
+
+
+def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
+    """Return curves that do not cross up to the highest level, by one of the treatments of those that do."""
+    model = without_crossing(model, crossing)
+    if (worst := crosses(model, highest)) is None:
         return model
+    way_out = (
+        "no common dispersion fits these states: leave one out with states="
+        if model.adjusted
+        else 'their dispersions differ: crossing="keep-uplift" fits one for all states but rocking'
+    )
     raise InvalidValueError(
-        f"curves must not cross, but at {worst.level:.4g} {model.unit} {worst.worse!r} would be likelier than"
-        f" {worst.lesser!r} by {worst.size:.2g}, at most {TOLERANCE:g} is allowed; their dispersions differ:"
-        ' crossing="common-dispersion" fits one for all states'
+        f"curves must not cross, but {worst.words(model)}, at most {TOLERANCE:g} is allowed; {way_out}"
     )
 
 

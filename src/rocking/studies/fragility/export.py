@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -20,6 +21,7 @@ from rocking.studies.fragility.curves import (
     FragilityModel,
     check_crossing,
     nested,
+    uplift_words,
     variables_of,
 )
 from rocking.tables import Cell, Table, target_of
@@ -46,7 +48,10 @@ def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossin
 
 def _parameters(model: FragilityModel) -> Table:
     unit, ends = f"[{model.unit}]", ("from", "to")
-    evidence = {name: each[1].tolist() for name, each in variables_of(model.curves, model.levels.size, "").items()}
+    entries = [(c.state, c) for c in model.curves]
+    entries += [(f"{c.state}, alone", c.alone) for c in model.curves if c.alone is not None]
+    curves = [replace(curve, alone=None) for _, curve in entries]
+    evidence = {name: each[1].tolist() for name, each in variables_of(curves, model.levels.size, "").items()}
     intervals = {"median 95 %": ("median_95", unit), "dispersion 95 %": ("dispersion_95", "[-]")}
     repeated = {
         "median bootstrap 95 %": ("median_bootstrap_95", unit),
@@ -67,9 +72,9 @@ def _parameters(model: FragilityModel) -> Table:
         header[7]: float(model.levels[-1]), "histories": int(np.sum(model.trials)), "source": model.source,
     }  # fmt: skip
     rows = []
-    for k, c in enumerate(model.curves):
+    for k, (state, c) in enumerate(entries):
         cells = known | {
-            "state": c.state, header[3]: c.median, header[4]: c.dispersion, "method": c.method,
+            "state": state, header[3]: c.median, header[4]: c.dispersion, "method": c.method,
             "intervals by": c.interval_method, "verdict": c.verdict,
         }  # fmt: skip
         numbers = {
@@ -95,9 +100,10 @@ def _points(model: FragilityModel) -> Table:
         **{f"fitted {name} [-]": values for name, values in fitted.items()},
     }
     for curve in model.curves:
-        if curve.repeated is not None and curve.repeated.band is not None:
-            for end, values in zip(("from", "to"), curve.repeated.band, strict=True):
-                columns[f"bootstrap 95 % {end} {curve.state} [-]"] = values
+        fitted_alone, name = curve.alone or curve, f"{curve.state}{', alone' if curve.alone else ''}"
+        if fitted_alone.repeated is not None and fitted_alone.repeated.band is not None:
+            for end, values in zip(("from", "to"), fitted_alone.repeated.band, strict=True):
+                columns[f"bootstrap 95 % {end} {name} [-]"] = values
     rows = tuple(zip(*(values.tolist() for values in columns.values()), strict=True))
     return Table.of_rows("points", tuple(columns), rows)
 
@@ -123,8 +129,8 @@ def fema_p58_table(
     quality : str
         What the data are: a derivation by analysis, unless said otherwise. How each curve was fitted, and what can be
         claimed of it, stands after it.
-    crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross: no worse damage state may be likelier than a lesser one.
+    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+        Treatment of curves that cross, as in `model_of`: no worse damage state may be likelier than a lesser one.
 
     Returns
     -------
@@ -154,11 +160,11 @@ def fema_p58_table(
     demand, count = demand_parameter or model.measure, int(np.sum(model.trials))
     unit, size = exchange_unit(model.measure, model.unit)
     unit = "dimensionless" if unit == "-" else unit
+    about = (model.adjusted, "" if model.uplift_threshold is None else uplift_words(model))
     rows = tuple(
         (
             model.name, description, f"DS{k}", curve.state, curve.median * size, curve.dispersion, demand, unit,
-            "sequential", "; ".join(part for part in (quality, curve.method, curve.verdict) if part), model.source,
-            count,
+            "sequential", "; ".join(filter(None, (quality, curve.method, curve.verdict, *about))), model.source, count,
         )
         for k, curve in enumerate(model.curves, 1)
     )  # fmt: skip
@@ -207,8 +213,8 @@ def to_csv(
         The file.
     which : {"parameters", "points", "fema-p58", "pelicun"} or Table
         What to write; for PELICUN 3 a damage model of one component, against pga or sa(period), in g.
-    crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross, in the tables of FEMA P-58 and PELICUN.
+    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+        Treatment of curves that cross, as in `model_of`, in the tables of FEMA P-58 and PELICUN.
 
     Returns
     -------
@@ -225,8 +231,7 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "
     Parameters
     ----------
     model, path, crossing
-        As for `to_csv`. Where curves cross, the sheet of FEMA P-58 says why they are refused there, or all states get
-        one dispersion in it.
+        As for `to_csv`. Where curves cross and `crossing` is "refuse", the sheet of FEMA P-58 contains the reason.
 
     Returns
     -------
@@ -276,6 +281,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         "counted_states": np.array(list(model.reached), dtype=object),
         "exceeded": np.array([np.asarray(v, dtype=np.float64) for v in model.reached.values()]),
         "probability": np.array([c.probability(model.levels) for c in model.curves]),
+        "adjusted": model.adjusted,
         "provenance": json.dumps(dict(model.about)),
     }
     return structure_to_mat(structure, target_of(path), "fragility")
@@ -344,9 +350,9 @@ def to_nrml(
     highest : float, optional
         OpenQuake takes the measure for no larger than this; four dispersions above all medians and all levels, if
         not given [unit of the measure].
-    crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross between the ends of the file: no worse state may be likelier than a lesser
-        one, or the file gives states negative probabilities.
+    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+        Treatment of curves that cross between the ends of the file, as in `model_of`: no worse state may be likelier
+        than a lesser one, or the file gives states negative probabilities.
 
     Returns
     -------
@@ -409,8 +415,8 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
 
 def _description(model: FragilityModel, description: str, unit: str) -> str:
     claims = [f"{c.state}: {'; '.join(filter(None, (c.method, c.verdict)))}" for c in model.curves if c.method]
-    about = f"{model.measure} in {unit}"
-    return " | ".join([description or model.source or "fragility of a rocking body", about, *claims])
+    about = [f"{model.measure} in {unit}", *([model.adjusted] if model.adjusted else [])]
+    return " | ".join([description or model.source or "fragility of a rocking body", *about, *claims])
 
 
 def _identifier(name: str) -> str:

@@ -15,7 +15,7 @@ from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import regression
 from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
 from rocking.studies.fragility.curves import curve_of
-from rocking.studies.fragility.subject import Progress, fits_of
+from rocking.studies.fragility.subject import NAMED, Progress, fits_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,7 +154,7 @@ def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
 
 
 def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
-    line, worst, of = analysis.regression, analysis.states[-1], analysis.subject.measure
+    line, worst, of = analysis.regression, NAMED["overturning"], analysis.subject.measure
     dispersion = math.nan
     try:
         fit = fits_of(analysis.subject, [worst], analysis.motion_levels, analysis.responses)[worst.name]

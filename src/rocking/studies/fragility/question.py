@@ -40,7 +40,7 @@ class FragilityQuestion:
 
     @classmethod
     def of(
-        cls, subject: Subject, analysis: str = "stripes", levels: Any = None, states: Sequence[float] = (0.5,), *,
+        cls, subject: Subject, analysis: str = "stripes", levels: Any = None, states: Sequence[float | str] = (0.5,), *,
         factor: float | None = None, least: float | None = None, tolerance: float | None = None,
     ) -> Self:  # fmt: skip
         """Return what is asked, as `rocking.fragility` says it; nothing is computed but intensities."""

@@ -75,18 +75,25 @@ class Subject:
     def uplift_threshold(self) -> float | None:
         """Level above which every motion lifts the body, and below which none does; None if the measure has none.
 
-        There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions that does not
-        slide before.
+        There is one where `lowest_uplift` is a level, of a body with equal sides.
+        """
+        equal = math.isclose(
+            self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
+        )
+        return self.lowest_uplift if equal else None
+
+    @cached_property
+    def lowest_uplift(self) -> float | None:
+        """Level below which no motion lifts the body, that of its weaker side; None if the measure has none.
+
+        There is one for PGA, absolute or normalised, under horizontal motions of a body that does not slide before.
         """
         friction, gravity = self.settings.friction, self.settings.gravity
         if self.settings.mechanics == "space with friction":
             return None  # it depends on the direction
         if self.measure.uplift is None or (friction is not None and friction * gravity <= self.scale.threshold):
             return None
-        equal = math.isclose(
-            self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
-        )
-        return self.measure.uplift(self.scale) if equal and self.are_horizontal else None
+        return self.measure.uplift(self.scale) if self.are_horizontal else None
 
     @cached_property
     def names(self) -> list[str]:
@@ -167,14 +174,34 @@ class LimitState:
     level: float  # rotation over alpha to be exceeded: 0 for rocking at all, infinite for overturning [-]
 
 
-def limit_states(levels: Sequence[float] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return rocking, rotations beyond levels (over alpha, increasing [-]), overturned."""
+NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
+
+
+def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
+    """Return limit states, from the least: rotations over alpha (increasing [-]), ``rocking``, ``overturning``.
+
+    Numbers alone include rocking and overturning; where a name is among them, the states are those given.
+    """
+    given: Any = [levels] if isinstance(levels, str) else levels
+    names = [level for level in given if isinstance(level, str)] if isinstance(given, list | tuple) else []
+    if unknown := [name for name in names if name not in NAMED]:
+        raise InvalidValueError(f"states must be rotations over alpha, {' or '.join(NAMED)}, got {unknown[0]!r:.60}")
+    if len(set(names)) < len(names):
+        raise InvalidValueError(f"states must contain each name at most once, got {levels!r:.60}")
+    between = _rotations([level for level in given if not isinstance(level, str)] if names else given)
+    chosen = names or NAMED
+    return tuple(
+        state for state in (NAMED["rocking"], *between, NAMED["overturning"])
+        if state in between or any(NAMED[name] is state for name in chosen)
+    )  # fmt: skip
+
+
+def _rotations(levels: Any) -> tuple[LimitState, ...]:
     rotations = np.atleast_1d(np.asarray(levels))
     rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
     if rotations.ndim != 1 or np.any(np.diff(rotations) <= 0.0):
         raise InvalidValueError(f"states must be rotations over alpha, each above the one before, got {levels!r:.60}")
-    between = [LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations]
-    return LimitState("rocking", 0.0), *between, LimitState("overturned", math.inf)
+    return tuple(LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,6 +355,13 @@ class FragilityAnalysis(ABC):
     def fits(self) -> dict[str, LognormalFit]:
         """Lognormal curve of each state from the outcomes; none for rocking where a level decides it."""
         return fits_of(self.subject, self.states, self.history_levels, self.responses)
+
+    def fit_of(self, name: str) -> LognormalFit:
+        """Return the curve of ``rocking`` or ``overturning``, whether or not it is among the states."""
+        state = NAMED[name]
+        if state.name in self.fits:
+            return self.fits[state.name]
+        return fits_of(self.subject, [state], self.history_levels, self.responses)[state.name]
 
     @property
     def verdicts(self) -> dict[str, list[str]]:

@@ -16,7 +16,7 @@ from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.results import contours_of, packed, plain, result_of
 from rocking.app.work import Remembered
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility import fragility_analysis
+from rocking.studies.fragility import fragility_analysis, model_of
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)
@@ -128,7 +128,10 @@ def test_spectra_are_those_of_python(result):
 
 
 def test_fragility_is_that_of_python(result):
-    """Counts, medians, intervals and verdicts are those of the Python call; bands hold their curves."""
+    """Counts, medians, intervals and verdicts are those of the Python call; bands hold their curves.
+
+    Where curves cross, the page has those that are exported, the reason, and the verdict of each state alone.
+    """
     levels = [2.0, 4.0, 6.0, 8.0, 10.0]
     answer = result(
         "stripes", fragility={"levels": levels, "states": [0.5]}, restitution={"model": "ked"},
@@ -136,10 +139,26 @@ def test_fragility_is_that_of_python(result):
     )  # fmt: skip
     expected = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
     (mine,) = answer["analyses"]
-    for name, fit in expected.fits.items():
-        assert mine["fits"][name]["median"] == fit.median
-        assert mine["fits"][name]["median_95"] == fit.summary()["median_95"]
-        assert f"{name}: {fit.verdict}" in mine["sentences"]
+    exported = model_of(expected, "block")
+    assert exported.shared
+    assert mine["adjusted"] == exported.adjusted
+    for curve in exported.curves:
+        fit = expected.fits[curve.state]
+        assert mine["fits"][curve.state]["median"] == curve.median != fit.median
+        assert mine["fits"][curve.state]["median_95"] == [None, None]
+        assert (
+            mine["curves"][curve.state]["probability"] == curve.probability(mine["curves"][curve.state]["x"]).tolist()
+        )
+        assert f"{curve.state} alone: {fit.verdict}" in mine["sentences"]
+    one = result(
+        "stripes", fragility={"levels": levels, "states": ["overturning"]}, restitution={"model": "ked"},
+        motions={"synthetic": "pulse-like", "count": 20, "seed": 7},
+    )["analyses"][0]  # fmt: skip
+    fit = expected.fits["overturned"]
+    assert one["fits"]["overturned"]["median"] == fit.median
+    assert one["fits"]["overturned"]["median_95"] == fit.summary()["median_95"]
+    assert one["sentences"] == [f"overturned: {fit.verdict}"]
+    assert one["adjusted"] == ""
     assert mine["points"]["overturned"]["reached"] == expected.counts["overturned"].tolist()
     banded = [curve for curve in mine["curves"].values() if curve["low"] is not None]
     assert all((np.array(each["low"]) <= np.array(each["probability"]) + 1e-12).all() for each in banded)

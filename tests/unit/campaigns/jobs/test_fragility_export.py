@@ -77,7 +77,9 @@ def test_off_unless_asked_for(campaigns, tmp_path):
     one = export(plain, tmp_path / "a.csv", "fragility")
     assert "median bootstrap" not in one.read_text(encoding="utf-8")
     with one.open(encoding="utf-8") as file:
-        assert all(0.0 < float(row["deviance p-value [-]"]) <= 1.0 for row in csv.DictReader(file))
+        rows = [row for row in csv.DictReader(file) if row["method"] != "common-dispersion"]
+        assert all(0.0 < float(row["deviance p-value [-]"]) <= 1.0 for row in rows)
+        assert {row["state"].removesuffix(", alone") for row in rows} == {"rotation > 0.3 alpha", "overturned"}
     assert export(asked, tmp_path / "b.csv", "fragility", bootstrap=0).read_bytes() == one.read_bytes()
     called = export(plain, tmp_path / "c.csv", "fragility", bootstrap=99).read_bytes()
     assert called == to_csv(from_python(99, 6), tmp_path / "w.csv").read_bytes() != one.read_bytes()
@@ -171,15 +173,17 @@ def crossed(finished, text):
     [("fragility", "r.xml", to_nrml), ("fema-p58", "r.csv", partial(to_csv, which="fema-p58"))],
 )
 def test_common_dispersion(crossed, tmp_path, what, name, write):
-    """Refused as it stands; with the option, the bytes of the Python export with the same option."""
+    """Refused on request; without and with the option, the bytes of the Python export with the same option."""
     folder = crossed()
     with pytest.raises(InvalidValueError, match="curves must not cross"):
-        export(folder, tmp_path / name, what)
+        export(folder, tmp_path / name, what, crossing="refuse")
     assert not list(tmp_path.glob("r.*"))
-    found = export(folder, tmp_path / name, what, crossing="common-dispersion")
-    model = model_of(next(iter(analyses(folder).values())), SMALL)
-    wanted = write(model, tmp_path / f"w{name}", crossing="common-dispersion")
-    assert found.read_bytes() == wanted.read_bytes()
+    (analysis,) = analyses(folder).values()
+    for crossing in ("keep-uplift", "common-dispersion"):
+        found = export(folder, tmp_path / name, what, crossing=crossing).read_bytes()
+        assert found == write(model_of(analysis, SMALL, crossing=crossing), tmp_path / f"w{name}").read_bytes()
+        if crossing == "keep-uplift":
+            assert found == export(folder, tmp_path / name, what).read_bytes()
 
 
 def test_the_job_may_say_crossing(crossed, tmp_path):
@@ -194,7 +198,9 @@ def test_the_job_may_say_crossing(crossed, tmp_path):
 def test_refusals_of_crossing(crossed, text, tmp_path):
     """It is about curves only, and there are two ways."""
     folder = crossed()
-    with pytest.raises(InvalidValueError, match="crossing must be one of refuse, common-dispersion, got 'maybe'"):
+    with pytest.raises(
+        InvalidValueError, match="crossing must be one of keep-uplift, common-dispersion, refuse, got 'maybe'"
+    ):
         export(folder, tmp_path / "r.xml", "fragility", crossing="maybe")
     with pytest.raises(InvalidValueError, match="it is about curves"):
         export(folder, tmp_path / "r.nc", crossing="refuse")

@@ -9,7 +9,6 @@ const FILES = [
 const FRAGILITIES = new Set(["stripes", "incremental", "cloud"]);
 
 const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
-const CROSS = "These curves cross, which the file cannot hold. With one dispersion for all states they do not.";
 
 /** @param {any} found @param {number} k */
 const hasFit = (found, k) => Object.keys(found.analyses?.[k]?.curves ?? {}).length > 0;
@@ -21,21 +20,12 @@ export const Exports = ({ app, study, found, chosen }) => {
   const fragility = FRAGILITIES.has(study.kind);
   const curveless = fragility && found.analyses.every((/** @type {unknown} */ _, /** @type {number} */ k) => !hasFit(found, k));
   const offered = FILES.filter(([suffix]) => suffix !== "xml" || fragility);
-  /** @param {string} suffix @param {string} [more] */
-  const fetched = (suffix, more = "") => {
-    const place = suffix === "xml" ? `?restitution=${chosen.restitution}` : "";
-    return app.download(`/api/studies/${study.id}/export.${suffix}${place}${more}`, undefined, `study.${suffix}`);
-  };
-  const nest = async () => {
-    await fetched("xml", "&crossing=common-dispersion");
-    said.value = "";
-  };
   /** @param {string} suffix */
   const save = async (suffix) => {
     said.value = suffix === "xml" && !hasFit(found, chosen.restitution) ? NO_FIT : "";
     if (said.value) return;
-    const refused = await fetched(suffix);
-    if (/must not cross/.test(refused?.message ?? "")) said.value = CROSS;
+    const place = suffix === "xml" ? `?restitution=${chosen.restitution}` : "";
+    await app.download(`/api/studies/${study.id}/export.${suffix}${place}`, undefined, `study.${suffix}`);
   };
   return html`
     <div class="study-exports">
@@ -45,7 +35,6 @@ export const Exports = ({ app, study, found, chosen }) => {
           disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}<//>`)}</div>
       <div aria-live="polite">
         ${said.value && html`<${Note} words=${said.value} />`}
-        ${said.value === CROSS && html`<${Button} data-testid="export-nested" onClick=${nest}>Save with one dispersion<//>`}
       </div>
       ${curveless && html`<p class="quiet" data-testid="no-nrml">${NO_FIT}</p>`}
     </div>`;

@@ -35,6 +35,7 @@ const Analysis = ({ found, analysis }) => {
       <${Curve} key=${state} state=${state} curve=${analysis.curves[state] ?? NO_CURVE} points=${points} index=${index} x=${x} />
       ${reasons.has(state) && html`<div data-testid="no-curve">
         <${Note} words=${whyNone(reasons.get(state), state, found.uplift_threshold, unit)} /></div>`}`)}
+    ${analysis.adjusted && html`<div data-testid="adjusted"><${Note} words=${plainWords(analysis.adjusted)} /></div>`}
     ${analysis.resurrection && html`<${Note} words=${analysis.resurrection} />`}
     ${analysis.sentences.filter((each) => !told.has(each)).map((each) => html`<${Note} key=${each} words=${withUnit(each, unit)} />`)}
     ${found.definition && html`<p class="quiet">${plainWords(found.definition)}</p>`}
