@@ -108,6 +108,11 @@ class Mutant(NamedTuple):
         seal = hashlib.sha256((ROOT / self.path).read_bytes()).hexdigest()[:8]
         return f"{self.path}:{self.first} {self.operator} {self.occurrence} {seal}"
 
+    @property
+    def lines(self) -> range:
+        """Its lines."""
+        return range(self.first, self.last + 1)
+
     def code(self) -> str:
         """The module with the error in it."""
         made = mutate_code(
@@ -261,7 +266,7 @@ def verdict(mutant: Mutant, worker: Worker, covering: Covering, noticed: Counter
     Tests that noticed other errors in the same file come first.
     """
     began, text = time.monotonic(), (ROOT / mutant.path).read_text(encoding="utf-8")
-    tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
+    tests = covering.tests(mutant.path, mutant.lines)
     tests.sort(key=lambda test: -noticed[test])
     left, failed = staged(tests, covering.durations), ""
     while left and not failed:
@@ -292,7 +297,7 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
             return entry is not None
         if (mutant.path, mutant.change()[1]) in reasons:
             return True
-        tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
+        tests = covering.tests(mutant.path, mutant.lines)
         return bool(entry.get("tests") == covering.seal(tests))
 
     left = [mutant for mutant in chosen if not stands(mutant)]
@@ -488,6 +493,9 @@ def main() -> None:
     parser.add_argument("--hours", type=float, default=3.0, help="stop after this; the next call goes on")
     parser.add_argument("--packages", nargs="+", choices=CORE, metavar="NAME", help=f"of {', '.join(CORE)} [all]")
     parser.add_argument("--no-engines", action="store_true", help="leave out the compiled engines")
+    parser.add_argument(
+        "--forks", type=float, metavar="SECONDS", help="judge in forks first, each by tests of so many seconds"
+    )
     asked = parser.parse_args()
     folder = ROOT / "build/mutants"
     folder.mkdir(parents=True, exist_ok=True)
@@ -495,11 +503,17 @@ def main() -> None:
     record(folder, [test for name in asked.packages or () for test in by_hand()["tests"][name]], asked.workers)
     chosen, every = sample(asked.seed, asked.count, packages)
     made = [] if asked.no_engines else engines(folder, asked.workers)
+    if asked.forks:
+        numbers = map(str, (asked.seed, asked.count, asked.forks))
+        command = [sys.executable, "-m", "benchmarks.mutant_forks", *numbers, *packages]
+        subprocess.run(command, cwd=ROOT, check=True)
     known = run(chosen, folder, asked.workers, asked.hours)
     made += planted(folder)
     command = f"python -m benchmarks.mutants --seed {asked.seed} --count {asked.count}"
     if asked.packages:
-        command += f" --no-engines --packages {shlex.join(asked.packages)}"
+        command += (
+            f" --forks {asked.forks:g}" * bool(asked.forks) + f" --no-engines --packages {shlex.join(asked.packages)}"
+        )
     raise SystemExit(not page(chosen, every, known, made, command, whole=not asked.packages))
 
 

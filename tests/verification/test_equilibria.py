@@ -367,6 +367,33 @@ def test_a_body_set_down_stands_on_its_pose():
     assert body.settled().base.vertices.shape == (3, 2)
 
 
+@pytest.mark.verifies("closed form", "distances along rays of a triangle", within="1e-12", control="within")
+def test_uplift_of_a_triangular_base_differs_by_azimuth():
+    """Uplift towards an azimuth takes g d / h with the distance d from the centre to the base's border along the ray.
+
+    The distance solves c + d u = a + s (b - a) for the edge that the ray crosses. The control mirrors the azimuth.
+    """
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.7, 0.9)])
+    pose = Solid(extrusion(corners.tolist(), 3.0)).equilibria().settling((0.0, 0.0, -1.0))
+    centre = corners.mean(axis=0)
+    assert pose.height == pytest.approx(1.5, abs=1e-12)
+
+    def distance(azimuth):
+        ray, found = np.array([math.cos(azimuth), math.sin(azimuth)]), []
+        for a, b in pairwise([*corners, corners[0]]):
+            along, place = np.linalg.solve(np.stack([ray, a - b], axis=1), a - centre)
+            if along > 0.0 and 0.0 <= place <= 1.0:
+                found.append(along)
+        (only,) = found
+        return only
+
+    azimuths = [0.3, 1.2, 2.5, 4.0, -0.8]
+    wanted = [g * distance(each) / 1.5 for each in azimuths]
+    np.testing.assert_allclose(pose.uplift_acceleration(azimuths), wanted, rtol=1e-12)
+    mirrored = [g * distance(-each) / 1.5 for each in azimuths]
+    assert np.abs(np.array(mirrored) / wanted - 1.0).min() > 0.01
+
+
 @pytest.mark.verifies("closed form", "a plate on four feet", within="1e-12")
 def test_a_base_wider_by_a_tolerance():
     """Four feet of 1 mm under a plate: within that they count, and beyond a wider plate does."""
