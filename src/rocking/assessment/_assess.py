@@ -312,6 +312,8 @@ def assess(
             flat, different, margin, gravity, {name: chosen[name] for name in worst}, falls=falls <= margin
         ),
         gravity=gravity, standing=standing,
+        outside={name: each.outside(sides, shaking) for name, each in CODE_METHODS.items()},
+        vertical=int(shaking.vertical.sum()),
     )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -146,6 +146,10 @@ class BodyAssessment:
         Acceleration of gravity [m/s2].
     standing : StandingSolid, optional
         The solid that it is about; none of a plane body.
+    outside : dict of str to str
+        By code method, what excludes the body or motions from its domain; empty where nothing does.
+    vertical : int
+        Number of motions with a vertical part.
     """
 
     body: Body
@@ -161,6 +165,8 @@ class BodyAssessment:
     remedies: Remedies
     gravity: float = g
     standing: StandingSolid | None = None
+    outside: Mapping[str, str] = field(default_factory=dict)
+    vertical: int = 0
 
     @cached_property
     def lowest(self) -> Lowest:
@@ -395,6 +401,8 @@ class BodyAssessment:
             "refused": dict(self.refused),
             "with_friction": {"friction": self.friction, **vars(self.sliding), "lowest": self.sliding.lowest},
             "code_methods": dict(self.capacities),
+            "code_methods_outside": dict(self.outside),
+            "motions_with_vertical": self.vertical,
             "remedies": asdict(self.remedies),
             "prediction": self.prediction.as_dict(),
             **({} if self.standing is None else {"solid": self.standing.as_dict()}),

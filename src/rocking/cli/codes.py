@@ -179,6 +179,7 @@ class CodesAnswer:
                     (body, *(_share(found.called_safe(name, k, j)) for name in names))
                     for k, body in enumerate(found.bodies)
                 ], ("body",))  # fmt: skip
+        self._told(page)
         page.line()
         page.line(
             "safe: called so, or outside its domain; D/C: median of demand over capacity; capacity/truth: median of "
@@ -188,6 +189,24 @@ class CodesAnswer:
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
+
+    def _told(self, page: Page) -> None:
+        """Write why rows are empty, and which methods do not consider vertical motion."""
+        from rocking.studies.code_methods.methods import NOT_CONSIDERED
+
+        found = self.found
+        if any(found.outside.values()) or found.vertical:
+            page.line()
+        for name, why in found.outside.items():
+            if why:
+                page.line(f"{name}: outside its domain: {why}")
+        if found.vertical:
+            blind = [one.name for one in found.methods if one.vertical_motion == NOT_CONSIDERED]
+            page.line(f"Vertical motion: in {found.vertical} of {len(found.motions)} motions.")
+            page.line(f"! {', '.join(blind)}: {NOT_CONSIDERED}")
+            for one in found.methods:
+                if one.name not in blind:
+                    page.line(f"{one.name}: {one.vertical_motion}")
 
 
 def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:

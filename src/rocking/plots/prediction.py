@@ -1,6 +1,6 @@
 """What is foreseen of a body, what decides it, whether it was right, and how far the body is from overturning."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from rocking.plots.style import (
     DASHED,
     DOUBLE,
     GREY,
+    INK,
     PALE,
     in_journal_style,
     legend_below,
@@ -269,10 +270,15 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
 def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     axes.axvline(1.0, color="black", linestyle=DASHED, linewidth=0.8)
     ends = [1.0]
-    for row, capacity in enumerate(found.capacities.values()):
+    for row, (name, capacity) in enumerate(found.capacities.items()):
         ratio = capacity / least
         ratio = ratio[np.isfinite(ratio) & (ratio > 0.0)]
         axes.plot(ratio, np.full(ratio.size, row), "o", color=COLORS[5], markersize=3.0)
+        if not ratio.size:
+            outside = f"outside: {found.outside.get(name, '')}".removesuffix(": ")
+            words = "no factor overturns" if np.isfinite(capacity).any() else outside
+            place: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "left", "va": "center"}
+            axes.text(0.02, row, words, fontsize=6.5, color=INK, **place)
         ends += ratio.tolist()
     axes.axvspan(1.0, 1.5 * max(ends), color=PALE, linewidth=0.0, zorder=0)
     axes.set_xlim(min(ends) / 1.5, 1.5 * max(ends))

@@ -1,6 +1,7 @@
 """The report of an assessment: verdict, margins, probability, what governs, what to do, codes, assumptions, sources."""
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -212,15 +213,21 @@ def _codes(found: BodyAssessment) -> ReportTable:
     rows = [
         (
             CODE_METHODS[name].title,
-            *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")),
+            *(
+                (f"{safe} of {of}", str(fell), f"{least:.3g}")
+                if of
+                else (f"outside its domain: {found.outside.get(name, '')}".removesuffix(": "), "-", "-")
+            ),
+            re.split("[:,]", CODE_METHODS[name].vertical_motion)[0],
         )
         for name, of, safe, fell, least in found.code_rows
     ]
     note = (
-        "Of these overturn: with some model. Up to: the least factor on any motion that it still calls safe. Left out: "
+        "Of these overturn: with some model. Up to: the least factor on any motion that it still calls safe. Vertical "
+        f"motion: in {found.vertical} of {len(found.motions)} motions. Left out: "
         f"{'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
     )
-    return table("", ["method", "calls safe", "of these overturn", "up to [-]"], rows, note)
+    return table("", ["method", "calls safe", "of these overturn", "up to [-]", "vertical motion"], rows, note)
 
 
 def _about(found: BodyAssessment) -> list[Block]:

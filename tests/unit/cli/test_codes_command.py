@@ -2,6 +2,7 @@
 
 import csv
 
+import numpy as np
 import pytest
 
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
@@ -22,7 +23,7 @@ def test_a_grid_of_bodies(printed, answered, tmp_path):
     assert found["left_out"] == LEFT_OUT
     with file.open(newline="", encoding="utf-8") as rows:
         table = {(row["method"], row["body"], row["level"]): row for row in csv.DictReader(rows)}
-    assert len(table) == 6 * 2 * 2
+    assert len(table) == 8 * 2 * 2
     for name, said in found["methods"].items():
         assert f"\n{name} " in page
         assert said["reading"] == CODE_METHODS[name].reading
@@ -45,7 +46,10 @@ def test_one_body_under_one_motion(printed, answered):
     rows = {line.split()[0]: line.split()[1] for line in page.splitlines() if line.split()[:1]}
     assert (rows["static"], rows["italian-linear"]) == ("no", "yes")
     assert (rows["asce-43"], rows["kaneko-hayashi"], rows["housner-pulse"]) == ("outside", "outside", "yes")
+    assert "asce-43: outside its domain: unequal sides\nkaneko-hayashi: outside its domain: not a rectangle\n" in page
+    assert "vertical" not in page
     found = answered(*body, "sine:amplitude=3.5,period=0.5")
+    assert found["methods"]["asce-43"]["outside"] == "unequal sides"
     assert found["worse_side_counts"] == [True]
     ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
     assert ratio == pytest.approx(3.5 / (9.80665 * 0.28 / 0.9), rel=1e-6)
@@ -57,7 +61,7 @@ def test_a_giant_that_nothing_overturns(printed):
     """It is said in words that none overturned, not as a ratio of zero."""
     page = printed("--height", 1e3, "--width", 100, *FAMILY)
     assert "0 of 6 overturned" in page
-    assert page.count("  none overturned        -\n") == 6
+    assert page.count("  none overturned        -\n") == 8
 
 
 def test_levels_in_another_measure(answered):
@@ -92,3 +96,23 @@ def test_a_solid_is_refused(refuses, tmp_path):
     file = tmp_path / "crate.toml"
     file.write_text('units = "m"\n[[solid.part]]\nbox = { width = 0.3, depth = 0.3, height = 1.2 }\n', encoding="utf-8")
     refuses((file, *FAMILY), "code methods know plane bodies")
+
+
+def test_vertical_motion_is_in_the_answer(printed, answered, tmp_path):
+    """Of a motion with a falling ground each method states its treatment, and the static limit includes it."""
+    time = np.arange(1301) * 1e-3
+    for name, values in (
+        ("h", np.where(time < 0.5, 0.0, 0.6 * 9.80665)),
+        ("v", np.where(time < 0.4, 0.0, -0.2 * 9.80665)),
+    ):
+        rows = "\n".join(f"{at:.3f},{value:.9f}" for at, value in zip(time, values, strict=True))
+        (tmp_path / f"{name}.csv").write_text(f"time [s],acceleration [m/s2]\n{rows}\n", encoding="utf-8")
+    words = ("--width", 0.6096, "--height", 0.9144, "--motion", f"x={tmp_path / 'h.csv'}")
+    page = printed(*words, "--motion", f"z={tmp_path / 'v.csv'}")
+    assert "! italian-linear, ishiyama, kaneko-hayashi, housner-pulse: does not consider vertical motion" in page
+    assert "asce-43: outside its domain: vertical motion" in page
+    found = answered(*words, "--motion", f"z={tmp_path / 'v.csv'}")
+    assert found["motions_with_vertical"] == 1
+    ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
+    assert ratio == pytest.approx((0.6 + 0.2 / 1.5) * 1.5, rel=1e-8)
+    assert answered(*words)["methods"]["static"]["called_safe"][0][0]["ratio"] == pytest.approx(0.9, rel=1e-8)

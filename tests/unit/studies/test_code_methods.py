@@ -7,11 +7,13 @@ import pytest
 from scipy.stats import binom
 
 import rocking as rk
+from rocking.conventions import g
 from rocking.errors import InvalidValueError
+from rocking.motions.components import with_vertical
 from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.comparison import CodeComparison
-from rocking.studies.code_methods.methods import BodySides
+from rocking.studies.code_methods.methods import NOT_CONSIDERED, BodySides, Shaking
 from rocking.studies.remedies import Margins
 
 SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
@@ -172,3 +174,78 @@ def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():
     ways = [Margins.of(LARGE, pushes, r, "pga", None, {}).least_each for r in (pair, 0.9)]
     assert [len(each) for each in ways] == [2, 1]
     assert ways[0][0][0] != pytest.approx(ways[0][1][0], rel=0.01)
+
+
+F3 = np.linspace(0.0, 1.0, 1001)
+WIDE_BLOCK = rk.Block(width=0.6096, height=0.9144)
+
+
+def with_fall(along, up):
+    """A motion of two components at 1 kHz."""
+    return with_vertical(rk.GroundMotion(along, 1e-3), rk.GroundMotion(up, 1e-3))
+
+
+@pytest.mark.verifies("closed form", "moments about the foot at each instant", within="1e-12")
+def test_a_falling_ground_is_in_the_static_limit():
+    """0.6 g along and 0.2 g down at once: demand over capacity (0.6 + 0.2 b/h) / (b/h) = 1.1, not 0.9."""
+    along, up = np.where((F3 > 0.3) & (F3 < 0.6), 0.6 * g, 0.0), np.where(F3 > 0.2, -0.2 * g, 0.0)
+    slope = 0.6096 / 0.9144
+    static, sides = CODE_METHODS["static"], BodySides.of([WIDE_BLOCK])
+    motions = {
+        "down": with_fall(along, up), "up": with_fall(along, -up), "alone": rk.GroundMotion(along, 1e-3),
+        "apart": with_fall(along, np.where(F3 > 0.7, -0.2 * g, 0.0)),
+    }  # fmt: skip
+    demand = {name: 1.0 / float(static.capacity(sides, Shaking.of([motion]))[0, 0]) for name, motion in motions.items()}
+    assert demand["down"] == pytest.approx((0.6 + 0.2 * slope) / slope, rel=1e-12)
+    assert demand["up"] == pytest.approx((0.6 - 0.2 * slope) / slope, rel=1e-12)
+    assert demand["apart"] == pytest.approx(0.6 / slope, rel=1e-12)
+    assert demand["alone"] == pytest.approx(0.6 / slope, rel=1e-12)
+    # moments at the limit itself: the scaled motion just lifts the weaker side of a leaning body
+    leaning = rk.Block(width=0.8, height=2.2, centre=(0.52, 0.9), mass=650.0, depth=1.2)
+    factor = float(static.capacity(BodySides.of([leaning]), Shaking.of([with_fall(along, up)]))[0, 0])
+    assert factor * 0.6 * g * 0.9 == pytest.approx((g - factor * 0.2 * g) * 0.28, rel=1e-12)
+
+
+@pytest.mark.verifies("closed form", "the two load combinations, moment by moment", within="1e-12")
+@pytest.mark.parametrize(("name", "force", "dead"), [("asce-7-strength", 1.0, 0.9), ("asce-7-allowable", 0.7, 0.6)])
+def test_asce_7_balances_its_combination(name, force, dead):
+    """At the factor that it allows the moments of F_p and of the reduced weight are equal, by the worse side."""
+    body = rk.Block(width=0.8, height=2.2, centre=(0.52, 0.9), mass=650.0, depth=1.2)
+    motion = rk.GroundMotion([0.0, 2.0, -3.0, 0.0], 0.1)
+    factor = float(CODE_METHODS[name].capacity(BodySides.of([body]), Shaking.of([motion]))[0, 0])
+    design = 2.5 * factor * 3.0 / g  # S_DS
+    pushes = force * 0.4 * design * 650.0 * g * 0.9
+    assert pushes == pytest.approx((dead - force * 0.2 * design) * 650.0 * g * 0.28, rel=1e-12)
+    assert factor < float(CODE_METHODS["static"].capacity(BodySides.of([body]), Shaking.of([motion]))[0, 0])
+
+
+def test_each_method_states_its_treatment_of_vertical_motion():
+    """What considers vertical motion changes with the vertical part; what does not, is marked; the rest is outside."""
+    along, up = np.where((F3 > 0.3) & (F3 < 0.6), 0.6 * g, 0.0), np.where(F3 > 0.2, -0.2 * g, 0.0)
+    sides = BodySides.of([rk.Block(width=0.3, height=0.9144)])
+    flat, falling = Shaking.of([rk.GroundMotion(along, 1e-3)]), Shaking.of([with_fall(along, up)])
+    for name, method in CODE_METHODS.items():
+        before, after = (float(method.capacity(sides, each)[0, 0]) for each in (flat, falling))
+        if name == "static":
+            assert method.vertical_motion.startswith("considered")
+            assert after < before
+        elif name == "asce-43":
+            assert method.outside(sides, falling) == "vertical motion"
+            assert math.isnan(after)
+        else:
+            assert before == after
+            known = "by its own rule" if name.startswith("asce-7") else NOT_CONSIDERED
+            assert method.vertical_motion.startswith(known)
+        assert method.outside(sides, flat) == ""
+
+
+def test_what_is_outside_has_a_reason():
+    """Each exclusion has its name, and a body inside has none."""
+    leaning = rk.Block(width=0.8, height=2.2, centre=(0.52, 0.9), mass=650.0, depth=1.2)
+    shaking = Shaking.of([rk.GroundMotion([0.0, 1.0, 0.0], 0.1)])
+    words = {name: method.outside(BodySides.of([leaning]), shaking) for name, method in CODE_METHODS.items()}
+    assert {name: why for name, why in words.items() if why} == {
+        "asce-43": "unequal sides", "kaneko-hayashi": "not a rectangle",
+    }  # fmt: skip
+    wide = BodySides.of([WIDE_BLOCK])
+    assert CODE_METHODS["housner-pulse"].outside(wide, shaking) == "slenderness angle above 20 degrees"

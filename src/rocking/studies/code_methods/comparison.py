@@ -1,8 +1,8 @@
 """Code methods beside histories: what each says of bodies, and what then happens to them under a set of motions."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +23,7 @@ from rocking.studies.remedies import Margins
 MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
 REPETITIONS, TAIL = 1000, 0.025
 AT_MOST = 1.0 + 1e-9  # a demand that is all of the capacity passes: the clauses say "at least" [-]
+FACTS = "title", "reference", "domain", "reading", "example", "vertical_motion"  # words of each method
 QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
 
 
@@ -98,6 +99,10 @@ class CodeComparison:
         Whether the worse side of a body counts.
     restitution : str
         Of the histories, in words.
+    outside : dict of str to str
+        By method, what excludes bodies or motions from its domain; empty where nothing does.
+    vertical : int
+        Number of motions with a vertical part.
     """
 
     methods: tuple[CodeMethod, ...]
@@ -110,6 +115,8 @@ class CodeComparison:
     overturned: FloatArray
     asymmetric: BoolArray
     restitution: str
+    outside: Mapping[str, str] = field(default_factory=dict)
+    vertical: int = 0
 
     def called_safe(self, method: str, body: int | slice = slice(None), level: int | slice = slice(None)) -> CalledSafe:
         """Return how many a method calls safe, of all bodies and levels or of one, and how many of these overturn.
@@ -190,9 +197,11 @@ class CodeComparison:
             "motions": list(self.motions),
             "levels": list(self.levels),
             "restitution": self.restitution,
+            "motions_with_vertical": self.vertical,
             "methods": {
                 one.name: {
-                    **{name: getattr(one, name) for name in ("title", "reference", "domain", "reading", "example")},
+                    **{name: getattr(one, name) for name in FACTS},
+                    "outside": self.outside.get(one.name, ""),
                     "bias": [vars(self.bias(one.name, k)) for k in numbers],
                     "called_safe": [
                         [_facts(self.called_safe(one.name, k, j)) for j in range(len(self.levels))] for k in numbers
@@ -248,7 +257,7 @@ def compare_code_methods(
     bodies : Body or sequence of Body
         Plane bodies.
     motions : GroundMotion, Pulse, MotionSet or a sequence
-        The motions; the methods see their horizontal part alone.
+        The motions; each method's `vertical_motion` is its treatment of their vertical part.
     restitution : as for `simulate`
         Of the histories.
     levels : array_like, optional
@@ -303,4 +312,6 @@ def compare_code_methods(
         overturned=np.stack([each.overturned for each in cases], axis=1),
         asymmetric=np.array([len(each.least_each) > 1 for each in cases]),
         restitution=cases[0].label,
+        outside={each.name: each.outside(sides, shaking) for each in chosen},
+        vertical=int(shaking.vertical.sum()),
     )

@@ -104,9 +104,23 @@ class Shaking:
         parts = [getattr(each, "vertical", None) for each in self.motions]
         return np.array([[part is not None and bool(np.any(part))] for part in parts])
 
+    def lifting(self, slope: FloatArray) -> FloatArray:
+        """Return the largest |horizontal| - slope * vertical acceleration of each motion, by slope [m/s2].
+
+        Vertical is positive upwards: a ground that falls reduces the weight of the body.
+        """
+        found = np.broadcast_to(self.acceleration, (len(self.motions), *slope.shape)).copy()
+        for k in np.flatnonzero(self.vertical):
+            along, up = np.abs(self.motions[k].acceleration), np.asarray(self.motions[k].vertical)
+            found[k] = (along - slope[..., None] * up).max(axis=-1)
+        return found
+
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
         """Return pseudo-spectral accelerations of every motion [m/s2] at periods [s] and a damping ratio [-]."""
         return np.array([response_spectrum(each, periods, damping).pseudo_acceleration for each in self.motions])
+
+
+NOT_CONSIDERED = "does not consider vertical motion"
 
 
 class CodeMethod(ABC):
@@ -122,14 +136,26 @@ class CodeMethod(ABC):
     domain: ClassVar[str]
     reading: ClassVar[str]  # how sure we are that this is what the source says
     example: ClassVar[str] = "none of the source was at hand"  # with what numbers of the source it was compared
+    vertical_motion: ClassVar[str] = NOT_CONSIDERED  # treatment of vertical motion
 
     @abstractmethod
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion at which the limit is reached, fitting (motions, bodies, 2) [-]."""
 
+    def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
+        """Return what the domain excludes, by its name: where it is the case, fitting (motions, bodies)."""
+        return {}
+
     def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Return whether a body under a motion is in the domain, fitting (motions, bodies)."""
-        return np.ones((1, 1), dtype=np.bool_)
+        """Return whether a body under a motion is in the domain, of shape (motions, bodies)."""
+        excluded = np.zeros((len(shaking.motions), len(sides.slope)), dtype=np.bool_)
+        for each in self.exclusions(sides, shaking).values():
+            excluded |= each
+        return ~excluded
+
+    def outside(self, sides: BodySides, shaking: Shaking) -> str:
+        """Return what excludes bodies or motions from the domain, in words; empty where nothing does."""
+        return ", ".join(name for name, each in self.exclusions(sides, shaking).items() if np.any(each))
 
     def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion up to which a body is safe, by its worse side; NaN outside the domain."""
@@ -144,13 +170,50 @@ class StaticOverturning(CodeMethod):
     name = "static"
     title = "static overturning (West)"
     reference = "West's criterion, a = g b/h: equilibrium of moments about the foot"
-    domain = "any body; says when it lifts, so it is safe for every horizontal motion"
+    domain = "any body; says when it lifts, so it is safe for every motion"
+    vertical_motion = "considered: the vertical acceleration changes the weight at each sample"
     reading = "certain: it is the equilibrium of moments about the foot"
     example = "closed form: the acceleration of uplift"
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 294."""
-        return sides.uplift / shaking.acceleration  # Eq. 294
+        """Eq. 335, which is Eq. 294 without vertical motion."""
+        demand = shaking.lifting(sides.slope)
+        with np.errstate(divide="ignore"):
+            return np.asarray(sides.uplift / np.maximum(demand, 0.0))  # Eq. 335
+
+
+class AsceComponents(CodeMethod):
+    """ASCE/SEI 7-22, chapter 13: overturning of a nonstructural component on the ground, strength level."""
+
+    name = "asce-7-strength"
+    title = "ASCE/SEI 7-22 chapter 13, strength level"
+    reference = "ASCE/SEI 7-22, Eqs. 13.3-1 to 13.3-3 with combination 7 of 2.3.6: F_p against (0.9 - 0.2 S_DS) D"
+    domain = (
+        "body on the ground (H_f = R_mu = 1), I_p = 1, C_AR / R_po = 1, since an unanchored body has no overstrength; "
+        "that the PGA of the motion is 0.4 S_DS is our choice; chapter 13 requires that components are anchored"
+    )
+    reading = (
+        "medium: equations, limits, values at grade and load combinations are those of public design aids of the 2022 "
+        "edition, which agree; the text of the standard itself was not at hand"
+    )
+    vertical_motion = "by its own rule, 0.2 S_DS D upwards, whatever the vertical motion is"
+    demand: ClassVar[float] = 1.0  # factor on F_p [-]
+    dead: ClassVar[float] = 0.9  # factor on the weight [-]
+
+    def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
+        """Eq. 336."""
+        relief = self.demand * 0.2 * 2.5 * sides.slope  # S_DS = 2.5 PGA / g
+        return self.dead * sides.uplift / ((self.demand + relief) * shaking.acceleration)  # Eq. 336
+
+
+class AsceComponentsAllowable(AsceComponents):
+    """ASCE/SEI 7-22, chapter 13, with the combinations of allowable stress design."""
+
+    name = "asce-7-allowable"
+    title = "ASCE/SEI 7-22 chapter 13, allowable stress"
+    reference = "ASCE/SEI 7-22, Eqs. 13.3-1 to 13.3-3 with combination 10 of 2.4.5: 0.7 F_p against (0.6 - 0.14 S_DS) D"
+    demand = 0.7
+    dead = 0.6
 
 
 class ItalianLinearKinematic(CodeMethod):
@@ -190,10 +253,12 @@ class AsceRocking(CodeMethod):
         "for sliding (lowest frequency); if any up to alpha would do, limits would be up to several times as high"
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
+    vertical_motion = "outside its domain as read (F_V = 1)"
 
-    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Symmetric, and without vertical motion."""
-        return np.asarray(sides.symmetric & ~shaking.vertical)
+    def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
+        """Unequal sides, vertical motion, and impacts without a coefficient."""
+        stops = np.asarray((self.restitution(sides) <= 0.0).any(axis=1))
+        return {"unequal sides": ~sides.symmetric, "vertical motion": shaking.vertical, "C_R not above 0": stops}
 
     @staticmethod
     def restitution(sides: BodySides) -> FloatArray:
@@ -252,7 +317,7 @@ class IshiyamaCriteria(CodeMethod):
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 300; both must be passed."""
-        lifts = sides.uplift / shaking.acceleration
+        lifts = sides.uplift / shaking.acceleration  # Eq. 294
         return np.maximum(lifts, self.velocity(sides) / shaking.velocity)
 
 
@@ -268,9 +333,9 @@ class KanekoHayashi(CodeMethod):
         "be confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
     )
 
-    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Rectangles."""
-        return sides.rectangle
+    def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
+        """All but rectangles."""
+        return {"not a rectangle": ~sides.rectangle}
 
     @staticmethod
     def acceleration(sides: BodySides, frequency: FloatArray) -> FloatArray:
@@ -302,9 +367,9 @@ class HousnerPulse(CodeMethod):
 
     widest = math.radians(20.0)  # alpha [rad]
 
-    def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Slender on the weaker side."""
-        return np.asarray(sides.angle.min(axis=1) <= self.widest)
+    def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
+        """Slenderness angles above 20 degrees on the weaker side."""
+        return {"slenderness angle above 20 degrees": np.asarray(sides.angle.min(axis=1) > self.widest)}
 
     @staticmethod
     def acceleration(sides: BodySides, duration: FloatArray) -> FloatArray:
@@ -321,7 +386,7 @@ CODE_METHODS: dict[str, CodeMethod] = {
     method.name: method
     for method in (
         StaticOverturning(), ItalianLinearKinematic(), AsceRocking(), IshiyamaCriteria(), KanekoHayashi(),
-        HousnerPulse(),
+        HousnerPulse(), AsceComponents(), AsceComponentsAllowable(),
     )
 }  # fmt: skip
 """Every method, by name."""
