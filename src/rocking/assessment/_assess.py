@@ -267,7 +267,7 @@ def assess(
         restitution = [restitution]
     whole = several(motions)
     given = FRICTION[0] if friction is None else friction
-    coefficient = float(Uncertain.of("friction", given, *FRICTION[1:]).quantile(np.array([0.5]))[0])
+    coefficient = Uncertain.of("friction", given, *FRICTION[1:]).median
     options = {"gravity": gravity, "threads": threads, "progress": progress}
     space: SolidHistories | None = None
     moving: Sequence[Any]

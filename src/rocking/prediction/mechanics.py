@@ -31,6 +31,11 @@ class Uncertain:
     quantile: Callable[[FloatArray], FloatArray]  # values that are not exceeded with probabilities
     fixed: bool = False  # whether it is one number
 
+    @property
+    def median(self) -> float:
+        """Median; of an even number of values the mean of the middle two."""
+        return float(self.quantile(np.array([0.5 - 1e-12, 0.5])).mean())
+
     @classmethod
     def of(cls, name: str, given: Any, low: float, high: float, unit: str = "-") -> "Uncertain":
         """Return what was given; low, high: least and largest value that make sense, where distributions are cut.
@@ -157,7 +162,7 @@ class Mechanics(ABC):
             self.inputs[name] = Uncertain.of(name, otherwise if told is None else told, low, high, unit)
             if told is None:
                 self.assumed.append(f"{name}: {self.inputs[name].words} ({self.why[name]})")
-        plausibility.warn(plausibility.of_friction(float(self.inputs["friction"].quantile(np.array([0.5]))[0])))
+        plausibility.warn(plausibility.of_friction(self.inputs["friction"].median))
 
     @property
     def widths(self) -> dict[str, int]:

@@ -8,6 +8,7 @@ from scipy.stats import beta
 
 import rocking as rk
 from rocking.prediction._predict import _chance
+from rocking.prediction.mechanics import Uncertain
 from rocking.prediction.plane import PlaneMechanics, whole_settings
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -50,6 +51,22 @@ def test_bodies_between_count_as_a_binomial_share_of_their_variance():
     """Means 0, .5, .5, 1 of 10 motions: p (1 - p) N / s^2 = .25 * 4 / .125 = 8 of 40 histories."""
     found = _chance(bodies(0, 5, 5, 10, motions=10), 0)
     assert (found.low, found.high) == pytest.approx(exact(0.5, 8.0), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "median"),
+    [
+        ({"values": [0.3, 0.6]}, 0.45),
+        ([0.2, 0.9, 0.4, 0.5], 0.45),
+        ([0.2, 0.9, 0.4], 0.4),
+        ((0.3, 0.8), 0.55),
+        ({"median": 0.5, "dispersion": 0.2}, 0.5),
+        (0.7, 0.7),
+    ],
+)
+def test_the_median_of_an_input(given, median):
+    """Of an even number of values the mean of the middle two; of a range its middle."""
+    assert Uncertain.of("friction", given, 0.01, 10.0).median == pytest.approx(median, rel=1e-9)
 
 
 def test_no_restitution_creates_energy():
