@@ -19,13 +19,41 @@ ABOUT = 0.05
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:([.,])([0-9]+))?(?:[eE][+-]?[0-9]+)?")
 # three digits after the mark could be thousands, unless what is before cannot be
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
+# what can only be thousands: blanks, apostrophes, the same mark twice, or one mark before the other
+_GROUPED = re.compile(
+    r"(?<![0-9.,'])(?:[1-9](?: [0-9]{3})+(?:[.,][0-9]+)?"
+    r"|[1-9][0-9]{0,2}(?:(?:[\u00a0\u202f\u2009'\u2019][0-9]{3})+(?:[.,][0-9]+)?"
+    r"|(?:\.[0-9]{3}){2,}(?:,[0-9]+)?|(?:,[0-9]{3}){2,}(?:\.[0-9]+)?|\.[0-9]{3},[0-9]+|,[0-9]{3}\.[0-9]+))"
+    r"(?![0-9.,'\"])"
+)
+
+
+def without_thousands(text: str) -> str:
+    """Return text whose numbers have no separators of thousands, where these can be nothing else.
+
+    >>> (
+    ...     without_thousands("1.234,5"),
+    ...     without_thousands("2 350 mm"),
+    ...     without_thousands("1.234"),
+    ...     without_thousands("4' 6"),
+    ... )
+    ('1234,5', '2350 mm', '1.234', "4' 6")
+    """
+    return _GROUPED.sub(lambda match: _ungrouped(match[0]), text)
+
+
+def _ungrouped(number: str) -> str:
+    last = re.search(r"[.,][0-9]+$", number)
+    mark = last[0] if last and number.count(last[0][0]) == 1 else ""
+    return re.sub(r"[^0-9]", "", number.removesuffix(mark)) + mark
 
 
 class DecimalMark:
     """What separates the decimals in a table, found in all of its numbers together.
 
     ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand, and so could ``1.234``. Either is taken only
-    where the same mark stands for decimals elsewhere in the table and the other does not. Where commas part the fields,
+    where the same mark stands for decimals elsewhere in the table and the other does not; or parts thousands in a
+    number such as ``1.234,5``. Where commas part the fields,
     decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
 
     >>> mark = DecimalMark(["12,5", "1,234", "7 cm"])
@@ -34,16 +62,18 @@ class DecimalMark:
     """
 
     def __init__(self, cells: Iterable[str], *, comma_delimited: bool = False) -> None:
-        marks = set()
+        marks, groups = set(), set()
         for cell in cells:
-            for match in _NUMBER.finditer(cell[:_LONGEST]):
+            groups |= {match[0].lstrip("0123456789")[0] for match in _GROUPED.finditer(cell[:_LONGEST])}
+            for match in _NUMBER.finditer(without_thousands(cell[:_LONGEST])):
                 if match[1] and not _THOUSANDS.fullmatch(match[0]):
                     marks.add(match[1])
         self.commas, self.points, self.comma_delimited = "," in marks, "." in marks, comma_delimited
+        self.groups = groups - marks
 
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell, in the unit of the column."""
-        text = cell.strip()
+        text = without_thousands(cell.strip())
         match = _NUMBER.fullmatch(text)
         if not match:
             raise InvalidValueError(
@@ -56,6 +86,8 @@ class DecimalMark:
             else not self.commas and (self.points or self.comma_delimited)
         )
         if _THOUSANDS.fullmatch(text) and not settled:
+            if match[1] in self.groups:
+                return checks.number(name, float(text.replace(match[1], "")))
             digits = text.replace(match[1], "")
             decimal = text.replace(",", ".")
             raise InvalidValueError(
@@ -120,7 +152,7 @@ def measure(
     def quantity(text: str, beside: str = "") -> float:
         return _quantity(title, text, factor, mark, units, beside)
 
-    text = _tidied(cell)
+    text = _tidied(without_thousands(cell))
     across = text.startswith(("ø", "dm "))
     text, about = _without_about(re.sub(r"^(?:ø|dm )\s*", "", text))
     if match := _GIVE_OR_TAKE.fullmatch(text):
@@ -230,7 +262,7 @@ def parts(
     >>> {side: one.value for side, one in found.items()}
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
-    text, about = _without_about(_tidied(cell if isinstance(cell, str) else f"{cell:.10g}"))
+    text, about = _without_about(_tidied(without_thousands(cell if isinstance(cell, str) else f"{cell:.10g}")))
     if match := _TWICE.fullmatch(text):
         found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
         if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):

@@ -1,4 +1,4 @@
-"""What the columns of a list hold: by the words of its header, in the language that knows most of them."""
+"""What the columns of a list contain: by the words of its header, of one or more rows, in the language of most."""
 
 # ruff: noqa: RUF001 - signs and words of other alphabets are meant
 
@@ -9,6 +9,7 @@ import tomllib
 import unicodedata
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
 
 WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("header_words.toml").read_text("utf-8"))
-"""Words of lists in seven languages: of headers, by what the column holds, and of cells."""
+"""Words of lists in eight languages: of headers, by what the column holds, and of cells."""
 
 SIZES = ("width", "depth", "height", "length", "diameter")
 LENGTHS = (*SIZES, "base", "base_width", "base_depth", "base_diameter", "pedestal", "centre_of_mass_height")
@@ -31,7 +32,14 @@ TEXTS = ("name", "note", "body_file", "units", "shape", "consequence", "photo", 
 
 _MEASURES = (*LENGTHS, "weight")
 _FIELDS = {"weight": ("mass",), "base": ("base_width", "base_depth"), "base_diameter": ("base_width", "base_depth")}
-_FILLERS = frozenset({"in", "en", "σε", "ca", "max", "maximal", "total", "gesamt", "approx", "about"})
+# of a group of columns and a column in it
+_IN_GROUP = {
+    ("base", "width"): "base_width", ("base", "depth"): "base_depth", ("base", "length"): "base_depth",
+    ("base", "diameter"): "base_diameter", ("base", "height"): "", ("width", "base"): "base_width",
+    ("depth", "base"): "base_depth", ("diameter", "base"): "base_diameter", ("height", "base"): "",
+    ("centre_of_mass_height", "height"): "centre_of_mass_height", ("pedestal", "diameter"): "pedestal",
+    **{("pedestal", side): "" for side in SIZES if side != "diameter"},
+}  # fmt: skip
 
 
 def plain(text: str) -> str:
@@ -40,7 +48,14 @@ def plain(text: str) -> str:
     >>> plain("  Höhe (cm)"), plain("Ø-Base_mm"), plain("YÜKSEKLİK")
     ('hohe cm', 'ø base mm', 'yukseklik')
     """
-    small = text.lower().replace("⌀", "ø").replace("ı", "i").replace("ς", "σ").replace("center", "centre")
+    small = (
+        text.lower()
+        .replace("⌀", "ø")
+        .replace("ı", "i")
+        .replace("ς", "σ")
+        .replace("œ", "oe")
+        .replace("center", "centre")
+    )
     letters = "".join(c for c in unicodedata.normalize("NFKD", small) if not unicodedata.combining(c))
     return " ".join(re.findall(r"[^\W_]+", letters))
 
@@ -62,6 +77,14 @@ _MEASURED = {
 }
 _TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token in word.split() if len(token) > 3}
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
+_FILLERS = frozenset(words_of(WORDS["fillers"]))
+_OTHERS, _WITHOUT = words_of(WORDS["others"]), words_of(WORDS["without"])
+_INSTEAD = {word: stem for stem, text in WORDS["instead"].items() for word in words_of(text)}
+_PHRASES: dict[str, set[str]] = {}  # of all languages
+for _words in _HEADERS.values():
+    for _word, _field in _words.items():
+        _PHRASES.setdefault(_word, set()).add(_field)
+_TRANSLATED = re.compile(r"[/|\n\u2013\u2014]| - ")
 
 
 @dataclass(frozen=True)
@@ -80,6 +103,7 @@ class Header:
 
     columns: tuple[InventoryColumn | None, ...]  # None for one that is not read
     language: str
+    titles: tuple[str, ...]  # of all columns
 
     @property
     def known(self) -> set[str]:
@@ -97,24 +121,65 @@ class Header:
         return missing + [each for each in wanted if each not in known]
 
 
-def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
-    """Return what words of a title name in one language, and its unit."""
-    if whole := fields.get(" ".join(words)):
-        return whole, ""
+def _bare(words: Sequence[str]) -> tuple[list[str], str]:
+    """Return the words of a title without its unit, which is the last of them, and the unit."""
     kept = list(words)
     while kept and kept[-1] in _FILLERS - UNITS.keys():
         kept.pop()
     unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # at the end: a foot width is no width in feet
+    return kept, unit
+
+
+def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
+    """Return what words of a title name in one language, and its unit."""
+    if whole := fields.get(" ".join(words)):
+        return whole, ""
+    kept, unit = _bare(words)
     bare = [word for word in kept if word not in _FILLERS]
     stem = fields.get(" ".join(kept)) or fields.get(" ".join(bare), "")
     return (stem, unit) if stem in {*_MEASURES, "size"} or not unit else ("", "")
 
 
 def _stem(title: str, language: str) -> tuple[str, str]:
-    """Return what a title names, in a language or any other, and its unit; nothing of one that is not known."""
+    """Return what a title names, in a language or any other or two of them, and its unit; nothing of an unknown one."""
     words = plain(title).split()
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
-    return next((found for fields in tables if (found := _stem_in(words, fields))[0]), ("", ""))
+    found = next((found for fields in tables if (found := _stem_in(words, fields))[0]), ("", ""))
+    return found if found[0] else _translated(title)
+
+
+def stem_of(title: str, language: str) -> str:
+    """Return what a title names, or nothing."""
+    return _Level.of(title, language).stem
+
+
+def _translated(title: str) -> tuple[str, str]:
+    """Return what a title in more than one language names, and its unit, as of ``Breite / Larghezza (cm)``."""
+    words, unit = _bare(plain(title).split())
+    fields = _phrased(words)
+    if not fields:
+        parts = [plain(part).split() for part in _TRANSLATED.split(title)]
+        known = [part_fields for part in parts if (part_fields := _phrased(part))]
+        unknown = [word for part in parts if not _phrased(part) for word in part]
+        if known and not any(word in _OTHERS or word in _TELLING for word in unknown):
+            fields = set.intersection(*known)
+    if len(fields) != 1:
+        return "", ""
+    (stem,) = fields
+    return (stem, unit) if stem in {*_MEASURES, "size"} or not unit else ("", "")
+
+
+def _phrased(words: Sequence[str]) -> set[str]:
+    """Return which fields words name that are phrases of any language one after another, all of the same field."""
+    ends: list[set[str]] = [{""}, *(set() for _ in words)]
+    for k, word in enumerate(words):
+        if word in _FILLERS or (word in UNITS and "" not in ends[k]):  # a unit follows what it is of
+            ends[k + 1] |= ends[k]
+        for j in range(k + 1, min(k + 5, len(words)) + 1):
+            ends[j] |= {
+                field for field in _PHRASES.get(" ".join(words[k:j]), ()) if "" in ends[k] or field in ends[k]
+            }  # fmt: skip
+    return ends[-1] - {""}
 
 
 def order_of(title: str, language: str = "en") -> tuple[str, ...]:
@@ -123,7 +188,7 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     >>> order_of("Maße (HxBxT) in cm"), order_of("height*width*depth"), order_of("Maße")
     (('height', 'width', 'depth'), ('height', 'width', 'depth'), ())
     """
-    words = plain(re.sub(r"[×✕*/]", " x ", title)).split()
+    words = plain(re.sub(r"[×✕*/]|(?<=\b\w)\s?[-\u2013]\s?(?=\w\b)", " x ", title)).split()
     joined = re.compile(r"[a-zø](?:x[a-zø]){1,2}")
     tokens = [
         token for word in words for token in (" x ".join(word[::2]).split() if joined.fullmatch(word) else [word])
@@ -133,7 +198,7 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     for k, token in enumerate(tokens):
         side = side_of(token, language)
         if side and (not run or (k > 1 and tokens[k - 1] == "x")):
-            run.append(side)
+            run.append("width" if side == "length" in run else side)  # a longer and a shorter one: L x l
         elif token != "x":
             run = [side] if side else []
         best = max(best, list(run), key=len)
@@ -148,51 +213,170 @@ def side_of(token: str, language: str = "en") -> str:
     return found if found in SIZES else ""
 
 
-def header_of(titles: Sequence[str], mapped: Mapping[str, str] | None = None) -> Header:
+Titles = Sequence[str | Sequence[str]]
+"""What stands above each column: a title, or a title for each row of the header, groups of columns first."""
+
+
+def levels_of(title: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the titles of a column, each on one line and once."""
+    levels = [" ".join(each.split(" ")).strip() for each in ((title,) if isinstance(title, str) else title)]
+    return tuple(dict.fromkeys(each for each in levels if each))
+
+
+def title_of(title: str | Sequence[str]) -> str:
+    """Return what a column is called.
+
+    >>> title_of(("Maße (cm)", "Breite"))
+    'Maße (cm): Breite'
+    """
+    return " ".join(": ".join(levels_of(title)).split())
+
+
+def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header:
     """Return what the titles of a list mean, in the language that knows most; mapped: what the user says of some.
 
-    >>> found = header_of(["Objekt", "Höhe (cm)", "Breite cm", "Tiefe in cm"])
+    >>> found = header_of(["Objekt", "Höhe (cm)", ("Maße (cm)", "Breite"), ("Maße (cm)", "Tiefe")])
     >>> found.language, [each.fields[0] for each in found.columns]
     ('de', ['name', 'height', 'width', 'depth'])
     """
-    own = {plain(title): target for title, target in (mapped or {}).items()}
-    meant = [own.get(plain(title), title) for title in titles]
-    words = [plain(title).split() for title in meant]
-    hits = {language: sum(bool(_stem_in(each, fields)[0]) for each in words) for language, fields in _HEADERS.items()}
-    language = max(hits, key=lambda each: hits[each])
-    columns = [_column(title, target, language) for title, target in zip(titles, meant, strict=True)]
+    language = _language_of(titles)
+    named, targets = [title_of(title) for title in titles], _targets(titles, mapped or {})
+    columns = [
+        _column(name, levels_of(title), language) if target is None else _column(name, (target,), language)
+        for title, name, target in zip(titles, named, targets, strict=True)
+    ]
     known = {field for each in columns if each for field in each.fields}
-    if "length" in known:
-        side = next((way for way in ("width", "depth") if way not in known), "length")
-        columns = [
-            each and replace(each, fields=tuple(side if f == "length" else f for f in each.fields)) for each in columns
-        ]
+    for field in {"number", "name"} - known:
+        free = [k for k, each in enumerate(columns) if each is None and targets[k] is None]
+        instead = (
+            k for k in free if field in {_INSTEAD.get(plain(each)) for each in (named[k], *levels_of(titles[k]))}
+        )
+        if (place := next(instead, None)) is not None:
+            columns[place] = InventoryColumn(field, (field,), 1.0, named[place])
+    columns = _sided(columns)
     stems = [each.stem if each else "" for each in columns]
     for k, each in enumerate(columns):
         if each and each.stem not in _MEASURES and each.stem in stems[:k]:
             columns[k] = None  # the first of several is taken
-    return Header(tuple(columns), language)
+    return Header(tuple(columns), language, tuple(named))
 
 
-def _column(title: str, meant: str, language: str) -> InventoryColumn | None:
-    stem, unit = _stem(meant, language)
-    order = order_of(meant, language)
-    if order:
-        stem = "size"
-        unit = unit or next(
-            (UNITS[word] for word in reversed(plain(meant).split()) if word in UNITS and len(word) > 1), ""
-        )
+def _sided(columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:
+    """Return columns with each length as the side that is not given."""
+    known = {field for each in columns if each for field in each.fields}
+    free = [way for way in ("width", "depth") if way not in known]
+    for k, each in enumerate(columns):
+        if each and "length" in each.fields and free:
+            side = free.pop(0)
+            columns[k] = replace(each, fields=tuple(side if f == "length" else f for f in each.fields))
+    return columns
+
+
+def _targets(titles: Titles, mapped: Mapping[str, str]) -> list[str | None]:
+    """Return what the user says of each column: by its whole title, or by its own one below that of a group."""
+    own = {plain(title): target for title, target in mapped.items()}
+    lowest = [plain((levels_of(title) or ("",))[-1]) for title in titles]
+    return [
+        own.get(plain(title_of(title)), own.get(last) if lowest.count(last) == 1 else None)
+        for title, last in zip(titles, lowest, strict=True)
+    ]
+
+
+def _language_of(titles: Titles) -> str:
+    """Return the language of most titles, as they are written; of equals that which stands first."""
+    parts = list(dict.fromkeys(
+        (place, part)
+        for title in titles for level in levels_of(title)
+        for place, part in enumerate(filter(None, map(str.strip, re.split(r"[/|()\[\]\n\u2013\u2014]| - ", level))))
+    ))  # fmt: skip
+
+    def votes(fields: Mapping[str, str]) -> tuple[int, int, int]:
+        places = [place for place, part in parts if _stem_in(plain(part).split(), fields)[0]]
+        tokens = {token for word in fields for token in word.split() if len(token) > 2}
+        return len(places), -sum(places), sum(token in tokens for _, part in parts for token in plain(part).split())
+
+    return max(_HEADERS, key=lambda each: votes(_HEADERS[each]))
+
+
+@dataclass(frozen=True)
+class _Level:
+    """One title of a column."""
+
+    stem: str
+    unit: str
+    order: tuple[str, ...]
+    words: tuple[str, ...]  # without its unit
+
+    @classmethod
+    @lru_cache(maxsize=4096)
+    def of(cls, title: str, language: str) -> "_Level":
+        stem, unit = _stem(title, language)
+        order = order_of(title, language)
+        words, last = _bare(plain(title).split())
+        if order:
+            stem = "size"
+            unit = unit or next(
+                (UNITS[word] for word in reversed(plain(title).split()) if word in UNITS and len(word) > 1), ""
+            )
+        stated = not words or set(words) <= _FILLERS  # nothing but a unit
+        return cls(stem, unit or (last if stated and not stem else ""), order, tuple(words))
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether it says nothing of what the column holds, as a unit, or that it is of the object itself."""
+        return not self.stem and (set(self.words) <= _FILLERS or bool(_WITHOUT.intersection(self.words)))
+
+    @property
+    def is_other(self) -> bool:
+        """Whether it is of something that is not the object."""
+        return not self.stem and bool(_OTHERS.intersection(self.words)) and not _WITHOUT.intersection(self.words)
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether it looks like a measure and is not understood."""
+        return not self.stem and bool(_TELLING.intersection(self.words)) and not _WITHOUT.intersection(self.words)
+
+
+def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn | None:
+    """Return what a column is by its titles, of a group and of its own; None of one that is not understood."""
+    levels = [_Level.of(text, language) for text in texts]
+    last = levels[-1] if levels else None
+    if last and len(levels) > 1 and UNITS.get(plain(texts[-1])) in _units_of(levels[-2].stem):
+        levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), words=())
+    stem = ""
+    for each in levels:
+        stem = stem if each.is_neutral else _IN_GROUP.get((stem, each.stem), each.stem)
+    words = [each.words for each in levels if each.words]
+    both = next((found for order in (words, words[::-1]) if len(words) > 1 and (found := _joined(order, language))), "")
+    stem = both or stem
     if not stem:
         return None
-    if stem in _MEASURES or stem == "size":
-        if unit and unit not in (WEIGHTS if stem == "weight" else LENGTH_UNITS):
-            return None
-        fields = order or () if stem == "size" else _FIELDS.get(stem, (stem,))
-        return InventoryColumn(stem, fields, FACTORS[unit] if unit else None, title.strip())
-    return InventoryColumn(stem, (stem,), 1.0, title.strip())
+    if stem not in {*_MEASURES, "size"}:
+        return InventoryColumn(stem, (stem,), 1.0, title)
+    if not both and stem != "weight" and any(each.is_other or each.is_doubtful for each in levels):
+        return None
+    own = next(each for each in reversed(levels) if each.stem or both)
+    if own.unit and own.unit not in _units_of(stem):
+        return None
+    unit = next((each.unit for each in reversed(levels) if each.unit in _units_of(stem)), "")
+    order = next((each.order for each in reversed(levels) if each.order), ())
+    fields = order if stem == "size" else _FIELDS.get(stem, (stem,))
+    return InventoryColumn(stem, fields, FACTORS[unit] if unit else None, title)
 
 
-def check_header(header: Header, titles: Sequence[str], source: str, dismissed: Collection[str] = ()) -> None:
+def _units_of(stem: str) -> Collection[str]:
+    """Return the units that a measure may have."""
+    return WEIGHTS if stem == "weight" else LENGTH_UNITS if stem in {*LENGTHS, "size"} else ()
+
+
+def _joined(titles: Sequence[Sequence[str]], language: str) -> str:
+    """Return what the titles of a group and of its column name together, as of ``Basis`` above ``Breite``."""
+    words = [word for title in titles for word in title]
+    tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
+    return next((fields[whole] for fields in tables if (whole := " ".join(words)) in fields), "")
+
+
+def check_header(header: Header, titles: Titles, source: str, dismissed: Collection[str] = ()) -> None:
     """Refuse a field that two columns give, and an unknown column that looks like a measure: it might decide."""
     fields = [field for each in header.columns if each and each.stem != "size" for field in each.fields]
     for each in fields:
@@ -206,8 +390,11 @@ def check_header(header: Header, titles: Sequence[str], source: str, dismissed: 
         )
     passed = {plain(title) for title in dismissed}
     for title, column in zip(titles, header.columns, strict=True):
-        if column is None and plain(title) not in passed:
-            _refuse_measure(title.strip(), source, header.language)
+        levels = levels_of(title)
+        if column is not None or passed.intersection(map(plain, (title_of(title), *levels[-1:]))):
+            continue
+        if len(levels) == 1 or not any(_Level.of(each, header.language).is_other for each in levels[:-1]):
+            _refuse_measure(title_of(title), source, header.language)
 
 
 def _remedy(title: str) -> str:
@@ -261,7 +448,7 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
         text = {own: ours for own, _, ours in parts}
     found = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
     for own, ours in found.items():
-        if not own or (ours and _column(own, ours, "en") is None):
+        if not own or (ours and _column(own, (ours,), "en") is None):
             raise InvalidValueError(
                 f"columns: {own!r:.60} cannot be {ours!r:.60}; ours are {', '.join((*TEXTS, 'count', 'friction'))}, "
                 f"and with a unit, as in width_cm: {', '.join(_MEASURES)}, or an order: height x width x depth cm"

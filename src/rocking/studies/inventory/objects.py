@@ -72,6 +72,8 @@ class InventoryObject:
         Half the width of the interval of a size that is not known well, by the name of the field [m].
     remarks : tuple of str
         What was assumed of it, or left aside, in one sentence each.
+    number : str
+        Its inventory number, possibly nothing.
 
     Raises
     ------
@@ -103,6 +105,7 @@ class InventoryObject:
     photo: Path | None = None
     approximate: Mapping[str, float] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    number: str = ""
 
     def __post_init__(self) -> None:
         word: object = self.name
@@ -128,6 +131,11 @@ class InventoryObject:
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
         object.__setattr__(self, "count", checks.whole("count", self.count, 1, 1_000_000))
+
+    @property
+    def label(self) -> str:
+        """Its inventory number and its name, which tell it from others of the same name."""
+        return labelled(self.number, self.name)
 
     def base(self, direction: Direction) -> float:
         """Return the size of the base in a direction.
@@ -281,11 +289,32 @@ class InventoryObject:
 
 @dataclass(frozen=True)
 class NotAssessed:
-    """A row that could not be assessed."""
+    """A row that could not be assessed, or is no object."""
 
     row: int  # line of the file [-]
-    name: str  # what the row says the object is called, possibly nothing
+    name: str  # what the row says the object is called, possibly nothing; all that it says where it is no object
     reason: str  # why not, in one sentence
+    number: str = ""  # its inventory number, possibly nothing
+    note: str = ""  # what the list notes about it
+
+    @property
+    def label(self) -> str:
+        """Its inventory number and its name."""
+        return labelled(self.number, self.name)
+
+    @classmethod
+    def of(cls, item: InventoryObject, reason: str) -> "NotAssessed":
+        """Return an object as one that could not be assessed."""
+        return cls(item.row, item.name, reason, item.number, item.note)
+
+
+def labelled(number: str, name: str) -> str:
+    """Return an inventory number and a name; one of them where the other is missing or the same.
+
+    >>> labelled("A-17", "Vase"), labelled("A-17", "A-17")
+    ('A-17 Vase', 'A-17')
+    """
+    return " ".join(dict.fromkeys(filter(None, (number, name))))
 
 
 def _length(name: str, value: float) -> float:

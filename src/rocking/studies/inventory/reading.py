@@ -1,5 +1,6 @@
 """Inventories from files: their columns by the words of the header, each row checked by itself."""
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,16 +17,17 @@ from rocking.studies.inventory.columns import (
     UNITS,
     WEIGHTS,
     WORDS,
-    Header,
     InventoryColumn,
     check_header,
-    header_of,
     mapping_of,
+    order_of,
     plain,
+    stem_of,
     words_of,
 )  # fmt: skip
+from rocking.studies.inventory.headers import FoundHeader, find_header, text_of
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
-from rocking.studies.inventory.rows import RowValues, body_of
+from rocking.studies.inventory.rows import RowKinds, RowValues, body_of
 from rocking.studies.inventory.sheets import (
     ENCODINGS,
     MOST_BYTES,
@@ -39,8 +41,7 @@ from rocking.studies.inventory.sheets import (
     texts_in,
 )  # fmt: skip
 
-_HIGHEST_HEADER = 50  # rows of titles above it
-_TOTALS = words_of(WORDS["totals"])
+_STATING = words_of(WORDS["stating"])
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,10 @@ class Inventory:
         Name of the file, with its table if it has several, or its encoding if that was assumed.
     language : str
         In which its header is written, and its report is: ``en``, ``de``, ``it`` and more.
+    not_objects : tuple of NotAssessed
+        Rows that are no objects: titles, headings, sums, remarks, and the header again.
+    stated : tuple of str
+        What the list states beside its table and was used: a unit, or the order of measures.
     """
 
     objects: tuple[InventoryObject, ...]
@@ -66,6 +71,8 @@ class Inventory:
     ignored: tuple[str, ...] = ()
     source: str = "objects"
     language: str = "en"
+    not_objects: tuple[NotAssessed, ...] = ()
+    stated: tuple[str, ...] = ()
 
 
 def read_inventory(
@@ -112,8 +119,8 @@ def read_inventory(
     if sheets is None:
         texts = [(text, name) for text, name in texts_in(content, path.name, encoding)]
         return _of_texts(texts, path.name, mapped, find)
-    lists = [(_header_at([cells for _, cells in sheet.rows], mapped), sheet) for sheet in sheets]
-    whole = [(found, sheet) for found, sheet in lists if found and not found[1].missing]
+    lists = [(find_header(sheet, mapped), sheet) for sheet in sheets]
+    whole = [(found, sheet) for found, sheet in lists if found and not found.header.missing]
     if len(whole) > 1:
         names = ", ".join(sheet.source for _, sheet in whole)
         raise InvalidValueError(
@@ -121,8 +128,8 @@ def read_inventory(
         )
     if not whole:
         raise _no_header(path.name, [(found, sheet.rows) for found, sheet in lists])
-    ((at, header), sheet) = whole[0]
-    return _Reader(sheet, at, header, mapped, find).inventory()
+    found, sheet = whole[0]
+    return _Reader(sheet, found, mapped, find).inventory()
 
 
 def parse_inventory(
@@ -169,38 +176,25 @@ def _of_texts(
     texts: Sequence[tuple[str, str]], source: str, mapped: Mapping[str, str], find: Callable[[str], Path] | None
 ) -> Inventory:
     """Return the inventory of a text that may be read in several ways: that of which most columns are understood."""
-    ways = [
-        (_header_at(first, mapped), lines, delimiter, f"{source} ({name})" if name in ENCODINGS else source)
-        for text, name in texts for delimiter, first, lines in tables_of(text)
-    ]  # fmt: skip
-    whole = [way for way in ways if way[0] and not way[0][1].missing]
+    ways = []
+    for text, name in texts:
+        for delimiter, first, lines in tables_of(text):
+            beginning = Sheet(source, [(k, list(row)) for k, row in enumerate(first) if any(map(str.strip, row))])
+            called = f"{source} ({name})" if name in ENCODINGS else source
+            ways.append((find_header(beginning, mapped), lines, delimiter, called))
+    whole = [(way[0], *way[1:]) for way in ways if way[0] and not way[0].header.missing]
     if not whole:
         raise _no_header(source, [(way[0], [(1, list(row)) for row in way[1].splitlines()[:1]]) for way in ways])
-    found, lines, delimiter, called = max(whole, key=lambda way: len(way[0][1].known) if way[0] else 0)
+    _, lines, delimiter, called = max(whole, key=lambda way: (len(way[0].header.known), way[0].measures))
     rows: list[Row] = [(line, list(cells)) for line, cells in rows_of(lines, delimiter, source)]
-    again = _header_at([cells for _, cells in rows], mapped)
+    sheet = Sheet(called, [row for row in rows if any(map(text_of, row[1]))], delimiter)
+    found = find_header(sheet, mapped)
     assert found is not None
-    assert again is not None
-    return _Reader(Sheet(called, rows, delimiter), *again, mapped, find).inventory()
+    return _Reader(sheet, found, mapped, find).inventory()
 
 
-_Found = tuple[int, Header] | None
-
-
-def _header_at(rows: Sequence[Sequence[Cell]], mapped: Mapping[str, str]) -> _Found:
-    """Return the first row that names what a list must have, or the one that names most, and what it means."""
-    best: _Found = None
-    for at, row in enumerate(rows[:_HIGHEST_HEADER]):
-        found = header_of([text_of(cell) for cell in row], mapped)
-        if not found.missing:
-            return at, found
-        if best is None or len(found.known) > len(best[1].known):
-            best = at, found
-    return best
-
-
-def _no_header(source: str, tried: Sequence[tuple[_Found, Sequence[Row]]]) -> InvalidValueError:
-    best = max((found[1] for found, _ in tried if found), key=lambda header: len(header.known), default=None)
+def _no_header(source: str, tried: Sequence[tuple[FoundHeader | None, Sequence[Row]]]) -> InvalidValueError:
+    best = max((found.header for found, _ in tried if found), key=lambda header: len(header.known), default=None)
     if best and len(best.known) > 1:
         titles = ", ".join(f"{each.title!r:.40} as {each.stem}" for each in best.columns if each)
         return InvalidValueError(
@@ -214,38 +208,34 @@ def _no_header(source: str, tried: Sequence[tuple[_Found, Sequence[Row]]]) -> In
     )
 
 
-def text_of(cell: Cell) -> str:
-    """Return what a cell shows.
-
-    >>> text_of(12.0), text_of(" a ")
-    ('12', 'a')
-    """
-    if isinstance(cell, str):
-        return cell.strip()
-    return str(int(cell)) if cell == int(cell) else repr(cell)
-
-
 @dataclass
 class _Reader:
     """A table, its header, and what is known of its cells."""
 
     sheet: Sheet
-    at: int  # which row is the header
-    header: Header
+    found: FoundHeader
     mapped: Mapping[str, str]
     find: Callable[[str], Path] | None
 
     def inventory(self) -> Inventory:
-        source, titles = self.sheet.source, [text_of(cell) for cell in self.sheet.rows[self.at][1]]
-        if odd := [own for own in self.mapped if plain(own) not in map(plain, titles)]:
+        self.header, source, titles = self.found.header, self.sheet.source, self.found.header.titles
+        named = {plain(each) for levels in self.found.titles for each in (*levels, ": ".join(levels))}
+        if odd := [own for own in self.mapped if plain(own) not in named]:
             raise InvalidValueError(
                 f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}"
             )
-        self.rows = [(line, row) for line, row in self.sheet.rows[self.at + 1 :] if any(text_of(cell) for cell in row)]
-        self._take_units()
+        below = self.sheet.rows[self.found.end :]
+        kinds = RowKinds(self.sheet, self.found, below)
+        reasons = [kinds.reason(*row) for row in below]
+        self.rows = [row for row, reason in zip(below, reasons, strict=True) if not reason]
+        above = [(*row, "above the header") for row in self.sheet.rows[: self.found.first]]
+        others = [(*row, reason) for row, reason in zip(below, reasons, strict=True) if reason]
+        passed = tuple(NotAssessed(line, _said(cells), reason) for line, cells, reason in [*above, *others])
+        stated = self._take_stated(passed)
         self._check_units()
         wordless = [title for k, title in enumerate(titles) if not any(map(str.isdigit, "".join(self._column(k))))]
-        check_header(self.header, titles, source, [*wordless, *(own for own, ours in self.mapped.items() if not ours)])
+        dismissed = [*wordless, *(own for own, ours in self.mapped.items() if not ours)]
+        check_header(self.header, self.found.titles, source, dismissed)
         columns = self.header.columns
         numbers = (
             text for k, column in enumerate(columns) if column and column.stem not in TEXTS for text in self._column(k)
@@ -253,16 +243,15 @@ class _Reader:
         self.mark = DecimalMark(numbers, comma_delimited=self.sheet.delimiter == ",")
         objects, refused = [], []
         for line, row in self.rows:
-            if self._is_total(row):
-                continue
             try:
                 objects.append(self._object(line, row))
             except RockingError as error:
-                refused.append(NotAssessed(line, self._text(row, "name") or self._text(row, "number"), str(error)))
+                number, name, note = (self._text(row, stem) for stem in ("number", "name", "note"))
+                refused.append(NotAssessed(line, name or number, str(error), number, note))
         if not objects and not refused:
             raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
         ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
-        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language)
+        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language, passed, stated)
 
     def _column(self, place: int) -> Iterator[str]:
         """Yield the texts of a column; numbers of spreadsheets have no mark."""
@@ -275,19 +264,25 @@ class _Reader:
         pairs = zip(self.header.columns, row, strict=False)
         return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
 
-    def _take_units(self) -> None:
-        """Take a row below the header that holds nothing but units as those of its columns."""
-        words = [plain(text_of(cell)) for cell in self.rows[0][1]] if self.rows else []
-        units = [UNITS.get(word, "") for word in words]
-        bare = all(unit or not word for word, unit in zip(words, units, strict=True))
-        if not any(units) or not bare or len(words) != len(self.header.columns):
-            return
-        self.header = replace(self.header, columns=tuple(
-            replace(column, factor=FACTORS[unit]) if column and unit and column.factor is None
-            and unit in (WEIGHTS if column.stem == "weight" else LENGTH_UNITS) else column
-            for column, unit in zip(self.header.columns, units, strict=True)
-        ))  # fmt: skip
-        del self.rows[0]
+    def _take_stated(self, lines: Sequence[NotAssessed]) -> tuple[str, ...]:
+        """Take units and an order that lines beside the table state, such as ``Alle Maße in cm (H x B x T)``."""
+        columns, said = list(self.header.columns), []
+        unit_of, order = _stated(lines, self.header.language)
+        for kind, stems in ((LENGTH_UNITS, {*LENGTHS, "size"}), (WEIGHTS, {"weight"})):
+            bare = [k for k, each in enumerate(columns) if each and each.stem in stems and each.factor is None]
+            stated = {unit: line for unit, line in unit_of.items() if unit in kind}
+            if len(stated) == 1 and bare and "units" not in self.header.known:
+                ((unit, line),) = stated.items()
+                said.append(f"line {line} of the list states the unit {unit}")
+                for k in bare:
+                    columns[k] = replace(_known(columns[k]), factor=FACTORS[unit])
+        for k, each in enumerate(columns):
+            if each and each.stem == "size" and not each.fields and len(order) == 1:
+                ((sides, line),) = order.items()
+                said.append(f"line {line} of the list states the order {' x '.join(sides)}")
+                columns[k] = replace(each, fields=sides)
+        self.header = replace(self.header, columns=tuple(columns))
+        return tuple(said)
 
     def _check_units(self) -> None:
         """Refuse lengths without a unit; weights without one decide nothing, and are not read, nor is a pedestal."""
@@ -305,14 +300,9 @@ class _Reader:
                 columns[k] = None
         self.header = replace(self.header, columns=tuple(columns))
 
-    def _is_total(self, row: Sequence[Cell]) -> bool:
-        first = plain(next(filter(None, map(text_of, row)), ""))
-        pairs = zip(self.header.columns, row, strict=False)
-        measured = any(column and column.stem in {*SIZES, "size"} and text_of(cell) for column, cell in pairs)
-        return not measured and any(first == word or first.startswith(f"{word} ") for word in _TOTALS)
-
     def _object(self, line: int, row: Sequence[Cell]) -> InventoryObject:
         columns = self.header.columns
+        row = row[: len(columns)] if not any(map(text_of, row[len(columns) :])) else row
         if len(row) != len(columns):
             hint = "a decimal comma between commas?" if len(row) > len(columns) else "a separator missing?"
             raise InvalidValueError(f"it has {len(row)} fields, the header {len(columns)}; {hint}")
@@ -376,9 +366,8 @@ class _Reader:
                 title = next((c.title for c in self.header.columns if c and each in c.fields), each)
                 raise InvalidValueError(next(filter(None, map(found.unknown.get, ways)), f"{title} is empty"))
         line = language(self.header.language)("report.columns.line")
-        number = fields.pop("number", None) or f"{line} {fields['row']}"  # names what has no name
         if not fields.get("name"):
-            fields["name"] = number
+            fields["name"] = fields.get("number") or f"{line} {fields['row']}"
             remarks.append("it has no name")
         found.settle_words(self.find)
         size = {each: fields[each] for each in ("width", "depth", "height")}
@@ -388,3 +377,29 @@ class _Reader:
             except InvalidValueError as error:
                 del fields[each]
                 remarks.append(f"{each.replace('mass', 'weight')} was left aside: {error}")
+
+
+def _said(cells: Sequence[Cell]) -> str:
+    """Return what a row says, shortened."""
+    return f"{' | '.join(filter(None, map(text_of, cells))):.100}"
+
+
+def _known(column: InventoryColumn | None) -> InventoryColumn:
+    assert column is not None
+    return column
+
+
+def _stated(lines: Sequence[NotAssessed], language: str) -> tuple[dict[str, int], dict[tuple[str, ...], int]]:
+    """Return the units and the orders of measures that lines state, and which line does."""
+    units: dict[str, int] = {}
+    orders: dict[tuple[str, ...], int] = {}
+    for each in lines:
+        words = plain(each.name).split()
+        if not any(word in _STATING or stem_of(word, language) in {*LENGTHS, "size", "weight"} for word in words):
+            continue
+        for before, word in itertools.pairwise(["", *words]):
+            if word in UNITS and not word.isdigit() and (len(word) > 1 or before in {"in", "en"}) and word != "in":
+                units.setdefault(UNITS[word], each.row)
+        if len(order := order_of(each.name, language)) == 3:
+            orders.setdefault(order, each.row)
+    return units, orders

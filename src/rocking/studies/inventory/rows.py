@@ -1,7 +1,9 @@
 """What a row of a list says: its measures, its shape, and what of it is no more than a remark."""
 
+import itertools
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -9,11 +11,103 @@ from rocking.bodies import Block, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory.cells import CellMeasure, is_missing
-from rocking.studies.inventory.columns import WORDS, plain, words_of
-from rocking.studies.inventory.sheets import Cell
+from rocking.studies.inventory.columns import SIZES, WORDS, plain, stem_of, words_of
+from rocking.studies.inventory.headers import FoundHeader, text_of
+from rocking.studies.inventory.sheets import Cell, Row, Sheet
 
 _SHAPES = {word: shape for shape, text in WORDS["shapes"].items() for word in words_of(text)}
 _CONSEQUENCES = {word: level for level, text in WORDS["consequences"].items() for word in words_of(text)}
+
+
+_TOTALS, _FOOTERS, _HEADINGS = (words_of(WORDS[name]) for name in ("totals", "footers", "headings"))
+_LONGEST_NAME = 80
+_REMARK = "a remark or a signature"
+
+
+class RowKinds:
+    """Which rows below a header are no objects: headings, sums, remarks, and the header again."""
+
+    def __init__(self, sheet: Sheet, found: FoundHeader, rows: Sequence[Row]) -> None:
+        self.sheet, self.header = sheet, found.header
+        self.titles = [{plain(level) for level in levels} for levels in found.titles]
+        self.above = {plain(_whole(cells)) for _, cells in sheet.rows[: found.first]}
+        measured = [row for row in rows if self._is_measured(row[1])]
+        self.last = measured[-1][0] if measured else 0
+        self.shapes = {_shape(self._text(cells, "number")) for _, cells in measured} - {""}
+        self.numbered = bool(measured) and sum(bool(self._text(cells, "number")) for _, cells in measured) > 0.8 * len(
+            measured
+        )
+        lines = [sheet.rows[found.end - 1][0], *(line for line, _ in rows)]
+        self.after_gap = {line for before, line in itertools.pairwise(lines) if line > before + 1}
+
+    def reason(self, line: int, cells: Sequence[Cell]) -> str:
+        """Return why a row is no object; nothing of one that may be."""
+        texts = {k: plain(text) or text_of(cell) for k, cell in enumerate(cells) if (text := text_of(cell))}
+        if sum(self._is_title(k, text) for k, text in texts.items()) >= 0.7 * len(texts) or (
+            plain(_whole(cells)) in self.above
+        ):
+            return "the header again"
+        first, measured = next(iter(texts.values())), self._is_measured(cells)
+        number = self._text(cells, "number")
+        if first in _TOTALS or (not measured and _begins(first, _TOTALS)):
+            return "a sum or an average"
+        if measured:
+            return ""
+        if len(texts) == 1 and _begins(first, _HEADINGS) and line < self.last:
+            return "a heading"
+        if number and _shape(number) in self.shapes and (len(texts) > 1 or any(map(str.isalpha, number))):
+            return ""
+        return self._reason_unmeasured(line, cells, texts)
+
+    def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> str:
+        """Return why a row without measures, and without a number like the others, is no object."""
+        first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
+        stems, alone = {self._stem(k) for k in texts}, len(texts) == 1
+        if _begins(first, _FOOTERS) or own.startswith("*") or "___" in _whole(cells):
+            return _REMARK
+        if not stems & {"name", "number"}:
+            return "neither name nor number nor measure"
+        if alone and stems == {"number"} and first.replace(" ", "").isdigit():
+            return "nothing but a number"
+        apart = self.numbered or line in self.after_gap
+        merged = any((line, k) in self.sheet.spans for k in texts)
+        if line > self.last:
+            return _REMARK if apart or merged or own.endswith(":") or _begins(first, _HEADINGS) else ""
+        return "a heading" if alone and (apart or merged or "name" not in stems or len(own) > _LONGEST_NAME) else ""
+
+    def _is_title(self, place: int, text: str) -> bool:
+        known = self._stem(place)
+        return place < len(self.titles) and (
+            text in self.titles[place] or bool(known and known == stem_of(text, self.header.language))
+        )
+
+    def _stem(self, place: int) -> str:
+        column = self.header.columns[place] if place < len(self.header.columns) else None
+        return column.stem if column else ""
+
+    def _text(self, cells: Sequence[Cell], stem: str) -> str:
+        return next((text_of(cell) for k, cell in enumerate(cells) if self._stem(k) == stem), "")
+
+    def _is_measured(self, cells: Sequence[Cell]) -> bool:
+        return any(self._stem(k) in {*SIZES, "size", "body_file"} and text_of(cell) for k, cell in enumerate(cells))
+
+
+def _whole(cells: Sequence[Cell]) -> str:
+    """Return what a row says."""
+    return " ".join(filter(None, map(text_of, cells)))
+
+
+def _begins(text: str, words: Collection[str]) -> bool:
+    return any(text == word or text.startswith(f"{word} ") for word in words)
+
+
+def _shape(text: str) -> str:
+    """Return what numbers of a list have in common.
+
+    >>> _shape("A-17"), _shape("1932.4 b")
+    ('A-9', '9.9 a')
+    """
+    return re.sub(r"[^\W\d_]+", lambda match: "A" if match[0].isupper() else "a", re.sub(r"\d+", "9", text))
 
 
 class RowValues:

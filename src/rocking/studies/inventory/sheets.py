@@ -7,8 +7,8 @@ import itertools
 import re
 import warnings
 import zipfile
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from datetime import date, time
 from typing import Any
 from xml.parsers import expat
@@ -41,6 +41,7 @@ class Sheet:
     source: str  # of which file, and which table or encoding of it
     rows: list[Row]
     delimiter: str = ""  # of text
+    spans: Mapping[tuple[int, int], int] = field(default_factory=dict)  # columns merged from a line and place on
 
 
 def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
@@ -69,12 +70,12 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
         ) from error
     several = len(found) > 1
     return (
-        Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source))
+        Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source), spans=_spans(merged))
         for name, rows, merged in found
     )
 
 
-_Merged = list[tuple[int, int, int]]  # first line, column, and last line
+_Merged = list[tuple[int, int, int, int]]  # first line and column, last line and column
 
 
 def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, Iterable[Row], _Merged]]:
@@ -84,9 +85,9 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
             continue
         text = archive.read(sheet._worksheet_path)
         marks = itertools.islice(
-            re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):[A-Z]{1,3}(\d{1,7})"', text), _MOST_MERGED
+            re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):([A-Z]{1,3})(\d{1,7})"', text), _MOST_MERGED
         )
-        merged = [(int(mark[2]), _place(mark[1]), int(mark[3])) for mark in marks]
+        merged = [(int(mark[2]), _place(mark[1]), int(mark[4]), _place(mark[3])) for mark in marks]
         yield sheet.title, _held(_lines(sheet)), merged
 
 
@@ -191,9 +192,10 @@ class _OpenDocument:
     def _close(self) -> None:
         given, text = self.cell or {}, "".join(self.text).strip()
         self.cell = None
-        spanned = int(given.get("table:number-rows-spanned", 1))
-        if spanned > 1 and self.tables:
-            self.tables[-1][2].append((self.line + 1, len(self.row), self.line + spanned))
+        down, across = (int(given.get(f"table:number-{way}-spanned", 1)) for way in ("rows", "columns"))
+        if max(down, across) > 1 and self.tables and len(self.tables[-1][2]) < _MOST_MERGED:
+            place = len(self.row)
+            self.tables[-1][2].append((self.line + 1, place, self.line + down, place + across - 1))
         value: Cell = text
         if given.get("office:value-type") in {"float", "currency"} and not text.startswith("#"):
             value = _cell(float(given.get("office:value", "nan")))
@@ -217,12 +219,21 @@ def _filled(rows: Iterable[Row], merged: _Merged, source: str) -> list[Row]:
     _check_number(rows, source)
     width = max((len(cells) for _, cells in rows), default=0)
     table = {line: cells + [""] * (width - len(cells)) for line, cells in rows}
-    for first, place, last in merged:
+    for first, place, last, _ in merged:
         if first in table and place < width:
             for line in range(first + 1, min(last, first + _MOST_MERGED) + 1):
                 if line in table:
                     table[line][place] = table[first][place]
     return list(table.items())
+
+
+def _spans(merged: _Merged) -> dict[tuple[int, int], int]:
+    """Return how many columns are merged from a line and place on."""
+    return {
+        (line, first): last - first + 1
+        for top, first, bottom, last in merged if last > first
+        for line in range(top, min(bottom, top + _MOST_MERGED) + 1)
+    }  # fmt: skip
 
 
 def _check_number(rows: list[Row], source: str) -> None:
