@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from rocking import checks
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.columns import FACTORS, UNITS, WORDS, plain, side_of, words_of
+from rocking.studies.inventory.columns import FACTORS, UNITS, WORDS, order_of, plain, side_of, words_of
 from rocking.studies.inventory.sheets import Cell, Shown
 
 ABOUT = 0.05
@@ -61,7 +61,9 @@ class DecimalMark:
     1.234
     """
 
-    def __init__(self, cells: Iterable[str], *, comma_delimited: bool = False) -> None:
+    def __init__(
+        self, cells: Iterable[str], *, comma_delimited: bool = False, columns: Mapping[str, Sequence[str]] | None = None
+    ) -> None:
         marks, groups = set(), set()
         for cell in cells:
             groups |= {match[0].lstrip("0123456789")[0] for match in _GROUPED.finditer(cell[:_LONGEST])}
@@ -70,6 +72,7 @@ class DecimalMark:
                     marks.add(match[1])
         self.commas, self.points, self.comma_delimited = "," in marks, "." in marks, comma_delimited
         self.groups = groups - marks
+        self.columns = columns or {}  # the texts of each column, by its title
 
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell, in the unit of the column."""
@@ -86,7 +89,7 @@ class DecimalMark:
             else not self.commas and (self.points or self.comma_delimited)
         )
         if _THOUSANDS.fullmatch(text) and not settled:
-            if match[1] in self.groups:
+            if match[1] in self.groups or self._settles(name, text):
                 return checks.number(name, float(text.replace(match[1], "")))
             digits = text.replace(match[1], "")
             decimal = text.replace(",", ".")
@@ -95,7 +98,27 @@ class DecimalMark:
             )
         return checks.number(name, float(text.replace(",", ".")))
 
+    def is_settled_by_column(self, name: str, cell: str) -> bool:
+        """Return whether only the other numbers of its column say that a mark in a number parts thousands."""
+        text = cell.strip()
+        mark = re.sub(r"[0-9+-]", "", text)
+        proven = mark in self.groups or (self.commas and not self.points if mark == "," else not self.commas and (
+            self.points or self.comma_delimited))  # fmt: skip
+        return bool(_THOUSANDS.fullmatch(text)) and not proven and self._settles(name, text)
 
+    def _settles(self, name: str, text: str) -> bool:
+        """Return whether the other numbers of a column are near a number with thousands, and far from its decimals."""
+        others = [
+            float(each.replace(",", "."))
+            for each in self.columns.get(name, ()) if _NUMBER.fullmatch(each) and not _THOUSANDS.fullmatch(each)
+        ]  # fmt: skip
+        decimal = float(text.replace(",", "."))
+        return len(others) >= _ENOUGH and all(
+            1.0 / _NEAR < 1000.0 * decimal / other < _NEAR and other > _NEAR * decimal for other in others if other
+        )
+
+
+_ENOUGH, _NEAR = 3, 30.0  # numbers of a column that settle another, and how far they may be from it [-]
 _LONGEST = 200
 _SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
 _OTHERWISE = 0.5  # two sizes that are no size and what it might be instead [-]
@@ -250,6 +273,7 @@ _PARTS = re.compile(
     r"\s*[x×✕*;]\s*|\s*,\s+(?=[^\W\d])|\s+(?!(?:[cm]?m|in)\b)(?=[^\W\d]{1,12}\s*[.:=]?\s*(?:[cm]?m\s+)?\d)"
 )
 _LABEL = re.compile(r"(ø|[^\W\d]+)\s*[.:=]?\s*(?=[~≈(\[]|\d|(?:ca|circa|etwa|[cm]?m)\b)")
+_ORDER = re.compile(r"[(\[]?([^\W\d]+(?:\s*[x×✕*/]\s*[^\W\d]+){1,2})[)\]]?\s*$")
 _TWICE = re.compile(r"([^()]*\d[^()]*)\(([^()]*\d\s*x[^()]*)\)")
 
 
@@ -262,18 +286,22 @@ def parts(
     >>> {side: one.value for side, one in found.items()}
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
-    text, about = _without_about(_tidied(without_thousands(cell if isinstance(cell, str) else f"{cell:.10g}")))
+    text = _tidied(without_thousands(cell if isinstance(cell, str) else f"{cell:.10g}"))
+    if (own := _ORDER.search(text)) and (of_cell := order_of(own[1], language)):  # 40 x 30 x 120 cm (B x T x H)
+        text, order = text[: own.start()].strip(), of_cell
+    text, about = _without_about(text)
     if match := _TWICE.fullmatch(text):
         found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
         if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):
             raise InvalidValueError(f"{title} says two sizes, got {text[:60]!r}")
         return found
-    pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", text)) if piece]
+    apart = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", " x ", text) if text.count("/") + 1 == len(order) == 3 else text
+    pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", apart)) if piece]
     labels = []
     for k, piece in enumerate(pieces):
         label = _LABEL.match(piece)
         side = side_of(plain(label[1]), language) if label else ""
-        labels.append(side)
+        labels.append("width" if side == "length" in labels else side)  # a longer and a shorter one: L 90, l 40
         pieces[k] = piece[label.end() :] if label and side else piece
     said = set(labels) | ({"width", "depth"} if "diameter" in labels else set())
     left = [side for side in order or ("height",) if side not in said] if order or "diameter" in labels else []

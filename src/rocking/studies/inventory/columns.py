@@ -145,7 +145,13 @@ def _stem(title: str, language: str) -> tuple[str, str]:
     words = plain(title).split()
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
     found = next((found for fields in tables if (found := _stem_in(words, fields))[0]), ("", ""))
-    return found if found[0] else _translated(title)
+    if found[0] or (found := _translated(title))[0]:
+        return found
+    if any(word.startswith("inv") for word in words) and all(word.startswith("inv") or len(word) < 4 for word in words):
+        return "number", ""  # N. d'inv., Inv.-Nr. alt
+    bare = re.sub(r"\([^()]*\)|\[[^\[\]]*\]", " ", title)
+    stem = _stem(bare, language)[0] if plain(bare) != plain(title) else ""
+    return ("", "") if stem in {*_MEASURES, "size"} else (stem, "")  # brackets may say of which part a measure is
 
 
 def stem_of(title: str, language: str) -> str:
@@ -173,7 +179,9 @@ def _phrased(words: Sequence[str]) -> set[str]:
     """Return which fields words name that are phrases of any language one after another, all of the same field."""
     ends: list[set[str]] = [{""}, *(set() for _ in words)]
     for k, word in enumerate(words):
-        if word in _FILLERS or (word in UNITS and "" not in ends[k]):  # a unit follows what it is of
+        if word in _FILLERS or (
+            word in UNITS and word not in _TELLING and "" not in ends[k]
+        ):  # a unit follows what it is of
             ends[k + 1] |= ends[k]
         for j in range(k + 1, min(k + 5, len(words)) + 1):
             ends[j] |= {
@@ -209,7 +217,7 @@ def side_of(token: str, language: str = "en") -> str:
     """Return which measure a letter or word stands for."""
     if token == "ø":
         return "diameter"
-    found = WORDS["sides"].get(token) or _stem(token, language)[0]
+    found = _HEADERS[language].get(token) or WORDS["sides"].get(token) or _stem(token, language)[0]
     return found if found in SIZES else ""
 
 
@@ -253,12 +261,25 @@ def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header
         )
         if (place := next(instead, None)) is not None:
             columns[place] = InventoryColumn(field, (field,), 1.0, named[place])
-    columns = _sided(columns)
+    columns = _sided(_in_order(titles, columns))
     stems = [each.stem if each else "" for each in columns]
     for k, each in enumerate(columns):
         if each and each.stem not in _MEASURES and each.stem in stems[:k]:
             columns[k] = None  # the first of several is taken
     return Header(tuple(columns), language, tuple(named))
+
+
+def _in_order(titles: Titles, columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:
+    """Return columns below one title of their order, as ``Maße (B x T x H)`` above three of them, each as its side."""
+    levels, found = [levels_of(title) for title in titles], list(columns)
+    for first, column in enumerate(columns):
+        if column is None or column.stem != "size" or levels[first] in levels[:first]:
+            continue
+        places = [k for k, each in enumerate(levels) if each == levels[first]]
+        if len(places) == len(column.fields):
+            for k, side in zip(places, column.fields, strict=True):
+                found[k] = replace(column, stem=side, fields=(side,))
+    return found
 
 
 def _sided(columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:

@@ -4,7 +4,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rocking.studies.inventory.columns import SIZES, UNITS, Header, InventoryColumn, header_of, levels_of, plain
+from rocking.studies.inventory.columns import (
+    SIZES,
+    UNITS,
+    Header,
+    InventoryColumn,
+    header_of,
+    levels_of,
+    order_of,
+    plain,
+)  # fmt: skip
 from rocking.studies.inventory.sheets import Cell, Sheet
 
 _HIGHEST = 50  # rows of titles above it
@@ -43,11 +52,19 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[FoundHeader
         for end in range(first + 1, min(first + _TALLEST, len(rows)) + 1):
             if end > first + 1 and any(text[:1].isdigit() for text in rows[end - 1][1]):
                 break  # a row of numbers
-            titles = _titles(rows[first:end], sheet.spans)
+            if end > first + 1 and _is_title_line(rows[first][1], rows[end - 1][1]):
+                break
+            titles = _ordered(_titles(rows[first:end], sheet.spans), [cells for _, cells in sheet.rows[end:][:_SAMPLE]])
             header = header_of(titles, mapped)
             if header.known:
                 measures = 0 if header.missing else _measures(header, sheet, end)
                 yield FoundHeader(first, end, header, titles, measures)
+
+
+def _is_title_line(texts: Sequence[str], below: Sequence[str]) -> bool:
+    """Return whether a row is one text that begins where the table does: a title of all, and of no group of columns."""
+    places = [k for k, text in enumerate(texts) if text]
+    return len(places) == 1 and places[0] <= next((k for k, text in enumerate(below) if text), 0)
 
 
 def _titles(rows: Sequence[tuple[int, list[str]]], spans: Mapping[tuple[int, int], int]) -> tuple[tuple[str, ...], ...]:
@@ -56,6 +73,18 @@ def _titles(rows: Sequence[tuple[int, list[str]]], spans: Mapping[tuple[int, int
     table = [texts + [""] * (width - len(texts)) for _, texts in rows]
     spread = [_spread(table, k, line, spans) for k, (line, _) in enumerate(rows)]
     return tuple(levels_of([row[place] for row in spread]) for place in range(width))
+
+
+def _ordered(titles: tuple[tuple[str, ...], ...], below: Sequence[Sequence[Cell]]) -> tuple[tuple[str, ...], ...]:
+    """Return titles with one of an order, such as ``Maße (B x T x H)``, above each of as many columns of numbers."""
+    found = list(titles)
+    for first, levels in enumerate(titles):
+        places = range(first + 1, first + max(1, max((len(order_of(each)) for each in levels), default=0)))
+        if places and places.stop <= len(titles) and not any(titles[k] for k in places):
+            rows = [[text_of(cells[k]) for k in places] for cells in below if len(cells) >= places.stop]
+            if any(all(text[:1].isdigit() for text in row) for row in rows):
+                found[places.start : places.stop] = [levels] * len(places)
+    return tuple(found)
 
 
 def _spread(table: list[list[str]], k: int, line: int, spans: Mapping[tuple[int, int], int]) -> list[str]:

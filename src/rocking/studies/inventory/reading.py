@@ -237,10 +237,9 @@ class _Reader:
         dismissed = [*wordless, *(own for own, ours in self.mapped.items() if not ours)]
         check_header(self.header, self.found.titles, source, dismissed)
         columns = self.header.columns
-        numbers = (
-            text for k, column in enumerate(columns) if column and column.stem not in TEXTS for text in self._column(k)
-        )
-        self.mark = DecimalMark(numbers, comma_delimited=self.sheet.delimiter == ",")
+        texts = {each.title: [*self._column(k)] for k, each in enumerate(columns) if each and each.stem not in TEXTS}
+        every = (text for column in texts.values() for text in column)
+        self.mark = DecimalMark(every, comma_delimited=self.sheet.delimiter == ",", columns=texts)
         objects, refused = [], []
         for line, row in self.rows:
             try:
@@ -327,8 +326,7 @@ class _Reader:
         elif stem == "size":
             self._read_size(found, column, cell, factor)
         elif stem in LENGTHS and stem != "pedestal":
-            one = measure(title, cell, factor, self.mark)
-            found.take(("diameter",) if one.across and stem in {"width", "depth"} else fields, one, title, cell)
+            self._read_length(found, column, cell, factor)
         else:
             try:
                 if stem == "pedestal":
@@ -338,6 +336,13 @@ class _Reader:
                     found.fields[fields[0]] = measure(title, cell, scale, self.mark, units).value
             except InvalidValueError as error:
                 found.remarks.append(f"{stem} was left aside: {error}")
+
+    def _read_length(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
+        title, stem, one = column.title, column.stem, measure(column.title, cell, factor, self.mark)
+        if isinstance(cell, str) and self.mark.is_settled_by_column(title, cell):
+            found.remarks.append(f"{title} {cell!r:.40}: the mark is read as one of thousands, as its column has it")
+        is_diameter = one.across and stem in {"width", "depth"}
+        found.take(("diameter",) if is_diameter else column.fields, one, title, cell)
 
     def _read_size(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         try:

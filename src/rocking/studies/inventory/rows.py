@@ -31,7 +31,7 @@ class RowKinds:
         self.sheet, self.header = sheet, found.header
         self.titles = [{plain(level) for level in levels} for levels in found.titles]
         self.above = {plain(_whole(cells)) for _, cells in sheet.rows[: found.first]}
-        measured = [row for row in rows if self._is_measured(row[1])]
+        measured = [row for row in rows if self._is_measured(row[1]) and not self._is_sum_or_title(row[1])]
         self.last = measured[-1][0] if measured else 0
         self.shapes = {_shape(self._text(cells, "number")) for _, cells in measured} - {""}
         self.numbered = bool(measured) and sum(bool(self._text(cells, "number")) for _, cells in measured) > 0.8 * len(
@@ -42,19 +42,17 @@ class RowKinds:
 
     def reason(self, line: int, cells: Sequence[Cell]) -> str:
         """Return why a row is no object; nothing of one that may be."""
-        texts = {k: plain(text) or text_of(cell) for k, cell in enumerate(cells) if (text := text_of(cell))}
-        if sum(self._is_title(k, text) for k, text in texts.items()) >= 0.7 * len(texts) or (
-            plain(_whole(cells)) in self.above
-        ):
-            return "the header again"
+        texts = _texts(cells)
         first, measured = next(iter(texts.values())), self._is_measured(cells)
-        number = self._text(cells, "number")
+        if self._is_title_row(cells):
+            return "the header again"
         if first in _TOTALS or (not measured and _begins(first, _TOTALS)):
             return "a sum or an average"
         if measured:
             return ""
         if len(texts) == 1 and _begins(first, _HEADINGS) and line < self.last:
             return "a heading"
+        number = self._text(cells, "number")
         if number and _shape(number) in self.shapes and (len(texts) > 1 or any(map(str.isalpha, number))):
             return ""
         return self._reason_unmeasured(line, cells, texts)
@@ -75,6 +73,14 @@ class RowKinds:
             return _REMARK if apart or merged or own.endswith(":") or _begins(first, _HEADINGS) else ""
         return "a heading" if alone and (apart or merged or "name" not in stems or len(own) > _LONGEST_NAME) else ""
 
+    def _is_sum_or_title(self, cells: Sequence[Cell]) -> bool:
+        return next(iter(_texts(cells).values())) in _TOTALS or self._is_title_row(cells)
+
+    def _is_title_row(self, cells: Sequence[Cell]) -> bool:
+        texts = _texts(cells)
+        again = sum(self._is_title(k, text) for k, text in texts.items())
+        return again >= 0.7 * len(texts) or plain(_whole(cells)) in self.above
+
     def _is_title(self, place: int, text: str) -> bool:
         known = self._stem(place)
         return place < len(self.titles) and (
@@ -90,6 +96,11 @@ class RowKinds:
 
     def _is_measured(self, cells: Sequence[Cell]) -> bool:
         return any(self._stem(k) in {*SIZES, "size", "body_file"} and text_of(cell) for k, cell in enumerate(cells))
+
+
+def _texts(cells: Sequence[Cell]) -> dict[int, str]:
+    """Return the words of the cells that are not empty, by their places."""
+    return {k: plain(text) or text for k, cell in enumerate(cells) if (text := text_of(cell))}
 
 
 def _whole(cells: Sequence[Cell]) -> str:

@@ -122,7 +122,7 @@ LISTS = {
             4: ("D7", "Kiste, bemalt", 0.4, 0.3, 1.2, 1), 5: ("D8", "Schale", 0.355, 0.355, 0.12, 1),
             6: ("D9", "Büste", 0.45, 0.32, 0.78, 1),
         },
-        others=(1,),
+        others=(1, 2),
     ),
     # two languages
     "bilingual": KeptList(
