@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _SHAKING = "How it shakes"
 _MOST_PLANNED = 5
+_MOST_REASONS = 5
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 
@@ -72,6 +73,8 @@ def inventory(
     problem = problem_in(file, "inventory", sets) if file is not None else _problem(context)
     with bar("motions", quiet=as_json) as progress:
         assessment = problem.answer(progress)
+    if not assessment.verdicts:
+        raise InvalidValueError(nothing_assessed(assessment))
     written, left_out = _write(assessment, targets)
     deliver(InventoryAnswer(assessment), as_json=as_json)
     if not as_json:
@@ -79,6 +82,14 @@ def inventory(
             print(f"wrote {path}")
         for sentence in left_out:
             print(f"left out: {sentence}")
+
+
+def nothing_assessed(assessment: "Assessment") -> str:
+    """Return why no object of a list was assessed: the rows and reasons, and what the header was taken for."""
+    rows = assessment.not_assessed
+    reasons = "; ".join(f"line {each.row}: {each.reason}" for each in rows[:_MOST_REASONS])
+    more = f"; and {len(rows) - _MOST_REASONS} more lines" if len(rows) > _MOST_REASONS else ""
+    return f"{assessment.source}: no object could be assessed, no report is written; {reasons}{more}"
 
 
 def _check(targets: list[Path]) -> None:
@@ -163,7 +174,7 @@ class InventoryAnswer:
             notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "noted")]
             page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
         for refused in assessment.not_assessed:
-            reason, name = say.translated(refused.reason), refused.name or say("sheet.no_name")
+            reason, name = say.translated(refused.reason), refused.label or say("sheet.no_name")
             page.line(f"     {say('sheet.terminal_refused', name=name, row=refused.row, reason=reason)}")
         if plan := assessment.plan:
             page.line(f"\n{say('plan.heading')}")
@@ -174,6 +185,11 @@ class InventoryAnswer:
         lights = assessment.thresholds.sentences(say.code).items()
         page.line("\n" + "\n".join(f"{say(f'light.{light.word}').upper()}: {text}" for light, text in lights))
         page.line(assessment.thresholds.conventions(say.code)[0])
+        if others := table.passed_over(assessment):
+            lines = "; ".join(f"{', '.join(map(str, rows))} ({why})" for why, rows in others)
+            page.line(say("sheet.terminal_others", lines=lines))
+        if words := table.stated(assessment):
+            page.line(words)
         if assessment.ignored:
             page.line(say("sheet.terminal_ignored", columns=", ".join(assessment.ignored)))
         if say.asked != say.code:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rocking.plots.ground_motion import selection_picture as selection_picture
     from rocking.plots.ground_motion import spectra_picture as spectra_picture
     from rocking.plots.identification import identification_picture as identification_picture
+    from rocking.plots.inventory import inventory_distribution as inventory_distribution
     from rocking.plots.inventory import inventory_picture as inventory_picture
     from rocking.plots.overturning_map import overturning_map_picture as overturning_map_picture
     from rocking.plots.overturning_map import refined_map_picture as refined_map_picture

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ROW, _MARGIN = 0.235, 1.05
-_MOST = 60
+MOST = 60
+"""Objects of a picture."""
+
+_HEIGHT, _BINS = 2.1, 20  # of the distribution [in, -]
 _LIGHTS = {Light.RED: ("#B2182B", "s"), Light.AMBER: ("#F4A300", "^"), Light.GREEN: ("#1B7F5C", "o")}
 """Colour and shape: the letter beside it says the same, for who sees no colours."""
 
@@ -26,8 +29,8 @@ _PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1)
 
 
 @in_journal_style
-def inventory_picture(assessment: Assessment) -> "Figure":
-    """Draw an inventory, the worst object on top.
+def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
+    """Draw an inventory, or its worst objects, the worst on top.
 
     Left: the share of the motions that overturn each object, with its interval, and the light as a shape with its
     letter. Right: the level acceleration below which it stays still, beside the peak acceleration of the shaking where
@@ -37,16 +40,18 @@ def inventory_picture(assessment: Assessment) -> "Figure":
     ----------
     assessment : Assessment
         As of `rocking.studies.inventory.assess`.
+    most : int
+        Number of objects that are drawn, the worst; the title states how many there are [-].
 
     Returns
     -------
     matplotlib.figure.Figure
-        Two panels side by side, two columns wide, a row an object.
+        Two panels side by side, two columns wide, one row per object.
 
     Raises
     ------
     InvalidValueError
-        If it is no assessment, or of too many objects for a picture.
+        If it is no assessment, without an object, or `most` is not 1 to 60.
 
     Examples
     --------
@@ -59,11 +64,7 @@ def inventory_picture(assessment: Assessment) -> "Figure":
     'share of motions that overturn it [-]'
     """
     checks.of_kind("assessment", assessment, Assessment, "of an inventory")
-    verdicts, say = assessment.verdicts, words_of(assessment)
-    if not 1 <= len(verdicts) <= _MOST:
-        raise InvalidValueError(
-            f"a picture holds 1 to {_MOST} objects, got {len(verdicts)}; the report has room for all"
-        )
+    verdicts, say = _verdicts(assessment)[: checks.whole("most", most, 1, MOST)], words_of(assessment)
     figure, (left, right) = new_figure(
         DOUBLE, _MARGIN + _ROW * len(verdicts), columns=2, sharey=True, width_ratios=[1.5, 1.0]
     )
@@ -74,19 +75,79 @@ def inventory_picture(assessment: Assessment) -> "Figure":
         _share(left, row, verdict, say)
         right.plot(verdict.uplift_acceleration / g, row, "|", color=INK, markersize=7.0, markeredgewidth=1.6)
         right.hlines(row, 0.0, verdict.uplift_acceleration / g, color=GREY, linewidth=1.0)
-    left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.name), 30, 1) for each in verdicts])
+    left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.label), 34, 1) for each in verdicts])
     left.set(xlim=(-0.1, 1.03), ylim=(len(verdicts) - 0.5, -0.5), xticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
     left.set_xlabel(say("picture.share"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
     right.set_xlim(left=0.0)
     right.set_xlabel(say("picture.still"))
-    level = assessment.hazard.level
+    _finish(figure, right, assessment, len(verdicts))
+    return figure
+
+
+@in_journal_style
+def inventory_distribution(assessment: Assessment) -> "Figure":
+    """Draw how many objects of an inventory are overturned how often, and lifted by which acceleration, by light.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        As of `rocking.studies.inventory.assess`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels side by side, two columns wide, of the quantities of `inventory_picture`; all objects are counted.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no assessment, or without an object.
+
+    Examples
+    --------
+    >>> from rocking.studies.inventory import Inventory, InventoryObject, assess
+    >>> from rocking.studies.inventory.hazard import Hazard, IntensityLevel
+    >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
+    >>> vases = [InventoryObject(name="vase", width=0.12, depth=0.12, height=h) for h in (0.3, 0.6)]
+    >>> figure = inventory_distribution(assess(Inventory(tuple(vases)), hazard))
+    >>> sum(bar.get_height() for bar in figure.axes[0].patches)
+    2.0
+    """
+    checks.of_kind("assessment", assessment, Assessment, "of an inventory")
+    verdicts, say = _verdicts(assessment), words_of(assessment)
+    figure, (left, right) = new_figure(DOUBLE, _HEIGHT, columns=2, sharey=False, width_ratios=[1.5, 1.0])
+    limits = [each.uplift_acceleration / g for each in verdicts]
+    shares = [each.worse.overturned_share for each in verdicts]
+    for panel, values, most in ((left, shares, 1.0), (right, limits, max(limits))):
+        groups = [[one for one, each in zip(values, verdicts, strict=True) if each.light is light] for light in _LIGHTS]
+        colors = [color for color, _ in _LIGHTS.values()]
+        panel.hist(groups, bins=_BINS, range=(0.0, most), stacked=True, color=colors, edgecolor="white", linewidth=0.4)
+        panel.yaxis.get_major_locator().set_params(integer=True)
+        panel.set_ylabel(say("picture.objects"))
+    left.set_xlabel(say("picture.share"))
+    left.axvline(assessment.thresholds.overturning_red, **_RED)
+    right.set_xlabel(say("picture.still"))
+    _finish(figure, right, assessment, len(verdicts))
+    return figure
+
+
+def _verdicts(assessment: Assessment) -> tuple[Verdict, ...]:
+    if not assessment.verdicts:
+        raise InvalidValueError("a picture of an inventory must have an object with a verdict, got none")
+    return assessment.verdicts
+
+
+def _finish(figure: "Figure", right: "Axes", assessment: Assessment, shown: int) -> None:
+    """Draw what both pictures have: the peak of the shaking, the title, the legend."""
+    level, say = assessment.hazard.level, words_of(assessment)
     if level is not None and level.kind == "PGA":
         right.axvline(level.value / g, **_PEAK)
     shaking = f"{assessment.hazard.words(say.code)}; {say.translated(assessment.hazard.source)}"
+    of_all = len(assessment.verdicts)
+    shaking += f"; {say('picture.shown', shown=shown, count=of_all)}" if shown < of_all else ""
     figure.suptitle(plain(shaking), x=0.01, ha="left", fontsize=7)
     _legend(figure, assessment)
-    return figure
 
 
 def _share(axes: "Axes", row: int, verdict: Verdict, say: Language) -> None:

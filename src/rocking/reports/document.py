@@ -243,7 +243,7 @@ def write_html(document: Document, pictures: Path, path: Path) -> None:
 
 def render_pdf(document: Document, pictures: Path, path: Path) -> None:
     """Write a report as PDF."""
-    path.write_bytes(_pdf(document, "report.typ", pictures, []))
+    path.write_bytes(_pdf(document, "report.typ", pictures, _fonts() if any(pictures.glob("*.svg")) else []))
 
 
 Content = tuple[Document, dict[str, Callable[[], Any]]]
@@ -266,14 +266,19 @@ def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], 
 
 def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
     """Return the report of a response as PDF, the same for the same content."""
-    from matplotlib import get_data_path
-
     with TemporaryDirectory(prefix="rocking-report-") as name:
         folder = Path(name)
         for stem, data in pictures.items():
             (folder / f"{stem}.svg").write_bytes(data)
         # its words in any script come from the fonts of the system; those of the pictures are always there
-        return _pdf(document, "response.typ", folder, [str(Path(get_data_path()) / "fonts" / "ttf")])
+        return _pdf(document, "response.typ", folder, _fonts())
+
+
+def _fonts() -> list[str]:
+    """Return where the fonts of the pictures are."""
+    from matplotlib import get_data_path
+
+    return [str(Path(get_data_path()) / "fonts" / "ttf")]
 
 
 def _pdf(document: Document, template: str, folder: Path, fonts: list[str]) -> bytes:

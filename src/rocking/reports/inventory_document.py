@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from rocking.conventions import g
 from rocking.language import Language
-from rocking.reports.document import Cell, Document, Paragraph, ReportSection, made_with, table
+from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, made_with, table
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
@@ -20,6 +20,7 @@ from rocking.studies.inventory.table import (
     rounded_down,
     sentence,
     sliding,
+    stated,
     words_of,
 )
 
@@ -27,14 +28,25 @@ MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
 """Colour of a light; its letter and its word stand beside."""
 
 _MOST_NAMED = 5
+MOST_DRAWN = 25
+"""Objects in the picture at the head; beyond it a second one shows how all are distributed."""
+
+GLANCE, SHARES = "glance", "shares"
+"""Stems of the pictures at the head."""
 
 
-def inventory_document(assessment: Assessment, photos: Mapping[int, str] | None = None) -> Document:
-    """Return the report of an inventory; photos: names of small pictures by the place of the object."""
+def inventory_document(
+    assessment: Assessment, photos: Mapping[int, str] | None = None, pictures: Sequence[str] = ()
+) -> Document:
+    """Return the report of an inventory; photos: names of small pictures by the place of the object.
+
+    Pictures are the stems of those that are drawn, of `GLANCE` and `SHARES`.
+    """
     say, sections = words_of(assessment), _Sections(assessment, photos or {})
     level = assessment.hazard.words(say.code)
     every = [
-        sections.ranking(), sections.plan(), sections.refused(), sections.numbers(), sections.meaning(),
+        sections.glance(pictures), sections.ranking(), sections.plan(), sections.refused(), sections.others(),
+        sections.numbers(), sections.meaning(),
         sections.shaking(), ReportSection(say("report.limits"), [Paragraph(each) for each in limits(assessment)]),
     ]  # fmt: skip
     return Document(
@@ -53,14 +65,13 @@ def inventory_document(assessment: Assessment, photos: Mapping[int, str] | None 
 
 
 def light_mark(light: Light, say: Language) -> str:
-    r"""Return a light for eyes that do not see its colour.
+    """Return a light for eyes that do not see its colour.
 
     >>> from rocking.language import language
     >>> light_mark(Light.RED, language("en"))
-    'R\xa0RED'
+    'RED'
     """
-    # one word for the line breaker
-    return say(f"mark.{light.word}").replace(" ", "\N{NO-BREAK SPACE}")
+    return say(f"mark.{light.word}")
 
 
 def look_at(assessment: Assessment) -> list[tuple[str, str]]:
@@ -73,7 +84,7 @@ def look_at(assessment: Assessment) -> list[tuple[str, str]]:
     if refused:
         lights = say("report.counts_refused", counts=lights, count=refused)
     lines = [(say("report.lights"), lights)]
-    red = [verdict.item.name for verdict in assessment.verdicts if verdict.light is Light.RED]
+    red = [verdict.item.label for verdict in assessment.verdicts if verdict.light is Light.RED]
     if red:
         names, more = ", ".join(red[:_MOST_NAMED]), len(red) - _MOST_NAMED
         lines.append((say("report.first"), say("report.names_more", names=names, count=more) if more > 0 else names))
@@ -93,6 +104,15 @@ class _Sections:
 
     def _header(self, *names: str) -> list[str]:
         return [self.say(f"report.columns.{name}") for name in names]
+
+    def glance(self, pictures: Sequence[str]) -> ReportSection:
+        """Return the pictures of all objects, or of the worst and of how all are distributed."""
+        say, count, level = self.say, len(self.assessment.verdicts), 100.0 * self.assessment.thresholds.level
+        worst = say("report.glance_all", level=level)
+        if count > MOST_DRAWN:
+            worst = say("report.glance_worst", shown=MOST_DRAWN, count=count, level=level)
+        captions = {GLANCE: worst, SHARES: say("report.glance_shares", count=count)}
+        return ReportSection(say("report.glance"), [Picture(stem, captions[stem]) for stem in pictures])
 
     def ranking(self) -> ReportSection:
         say, rows = self.say, [self._ranked(*each) for each in enumerate(self.assessment.verdicts)]
@@ -116,7 +136,7 @@ class _Sections:
     def plan(self) -> ReportSection:
         say, assessment = self.say, self.assessment
         header = [*self._header("object"), *plan_header(say)]
-        rows = [[each.item.name, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
+        rows = [[each.item.label, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
         weights = {name: 1.0 / assessment.thresholds.factor(name) for name in ("low", "high")}
         lead = Paragraph(say("plan.lead", **weights))
         plan = table(say("plan.caption"), header, rows, say("plan.note"), "plan")
@@ -127,10 +147,17 @@ class _Sections:
 
     def refused(self) -> ReportSection:
         say = self.say
-        rows = [(each.row or "", each.name, say.translated(each.reason)) for each in self.assessment.not_assessed]
+        rows = [(each.row or "", each.label, say.translated(each.reason)) for each in self.assessment.not_assessed]
         lead = Paragraph(say("report.refused_lead", count=len(rows)), mark="bad")
         reasons = table(say("report.reasons"), self._header("line", "object", "why"), rows, stem="not_assessed")
         return ReportSection(say("report.refused"), [lead, reasons] if rows else [])
+
+    def others(self) -> ReportSection:
+        """Return the lines of the list that are no objects, and why."""
+        say, others = self.say, self.assessment.not_objects
+        rows = [(each.row, each.name, say.translated(each.reason)) for each in others]
+        reasons = table(say("report.others_reasons"), self._header("line", "text", "why"), rows, stem="not_objects")
+        return ReportSection(say("report.others"), [Paragraph(say("report.others_lead")), reasons] if rows else [])
 
     def numbers(self) -> ReportSection:
         say, assessment = self.say, self.assessment
@@ -161,7 +188,7 @@ class _Sections:
         rotations = rotation_words(one.median_rotation, say), rotation_words(one.high_rotation, say)
         beside = [self._light(each.light, "plain" if each.light is one.light else None) for each in others]
         along = say("report.worse", way=along) if one is verdict.worse else along
-        return [verdict.item.name, along, self._light(one.light), still, lifted, *shares, *rotations, *beside]
+        return [verdict.item.label, along, self._light(one.light), still, lifted, *shares, *rotations, *beside]
 
     def meaning(self) -> ReportSection:
         say, thresholds = self.say, self.assessment.thresholds
@@ -183,4 +210,6 @@ class _Sections:
             blocks.insert(1, Paragraph(say("report.origin", **origin)))
         if assessment.ignored:
             blocks.append(Paragraph(", ".join(assessment.ignored), say("report.ignored")))
+        if words := stated(assessment):
+            blocks.append(Paragraph(words))
         return ReportSection(say("report.shaking"), blocks)

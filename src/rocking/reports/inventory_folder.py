@@ -10,7 +10,7 @@ from typing import Any
 
 from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.reports.document import render_pdf, write_html
-from rocking.reports.inventory_document import inventory_document
+from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inventory_document
 from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import (
@@ -18,11 +18,11 @@ from rocking.studies.inventory.table import (
     as_csv,
     as_plain,
     header,
-    light_words,
     limits,
     plan_header,
     plan_row,
     rows,
+    stated,
     words_of,
 )
 from rocking.tables import escaped
@@ -38,7 +38,7 @@ MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
 
 SIDE = 240  # of a thumbnail, at most [pixels]
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "GIF", "BMP")
-_WIDTHS = {"name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
+_WIDTHS = {"number": 18, "name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
 
 
 def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
@@ -114,8 +114,25 @@ def inventory_json(assessment: Assessment) -> str:
 def _document(assessment: Assessment, path: Path) -> None:
     write = render_pdf if _form(path) == "pdf" else write_html
     # the renderer leaves its source beside the pictures for a moment: not among the user's files
-    with TemporaryDirectory() as folder:
-        write(inventory_document(assessment, thumbnails(assessment, Path(folder))), Path(folder), path)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        document = inventory_document(assessment, thumbnails(assessment, folder), _drawn(assessment, folder))
+        write(document, folder, path)
+
+
+def _drawn(assessment: Assessment, folder: Path) -> list[str]:
+    """Draw the pictures at the head of the report; return their stems, none where there is no object."""
+    from rocking.plots.inventory import inventory_distribution, inventory_picture
+    from rocking.plots.style import write
+
+    count = len(assessment.verdicts)
+    wanted = {GLANCE: lambda: inventory_picture(assessment, MOST_DRAWN)} if count else {}
+    if count > MOST_DRAWN:
+        wanted[SHARES] = lambda: inventory_distribution(assessment)
+    try:
+        return [write(draw(), folder / f"{stem}.svg").stem for stem, draw in wanted.items()]
+    except MissingExtraError:  # a report without a picture says the same
+        return []
 
 
 def _csv(assessment: Assessment, path: Path) -> None:
@@ -132,13 +149,13 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     _fill(sheet, [titles, *(each[: len(COLUMNS)] for each in rows(assessment, say.code))])
     lights = [each.light for each in assessment.verdicts]
     _dress(sheet, [_WIDTHS.get(name, 12) for name in COLUMNS])
-    _colour(sheet, [*lights, *[None] * len(assessment.not_assessed)])
+    _colour(sheet, [*lights, *[None] * (len(assessment.not_assessed) + len(assessment.not_objects))])
     plan = book.create_sheet(say("sheet.plan"))
     _fill(plan, [
-        [say("column.name"), *plan_header(say)],
-        *([escaped(each.item.name), *plan_row(each, say)] for each in assessment.plan),
+        [say("column.number"), say("column.name"), *plan_header(say)],
+        *([escaped(each.item.number), escaped(each.item.name), *plan_row(each, say)] for each in assessment.plan),
     ])  # fmt: skip
-    _dress(plan, [28, *[16] * len(plan_header(say))])
+    _dress(plan, [18, 28, *[16] * len(plan_header(say))])
     about = book.create_sheet(say("sheet.meaning"))
     meaning = assessment.thresholds.sentences(say.code).items()
     hazard = assessment.hazard
@@ -146,8 +163,10 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     facts = [[say("sheet.shaking"), shaking], [say("sheet.impacts"), assessment.restitution]]
     if assessment.ignored:
         facts.append([say("sheet.not_read"), say("sheet.ignored", columns=", ".join(assessment.ignored))])
+    if words := stated(assessment):
+        facts.append(["", words])
     _fill(about, [
-        *([light_words(light, say), words] for light, words in meaning),
+        *([say(f"light.{light.word}"), words] for light, words in meaning),
         *(["", each] for each in assessment.thresholds.conventions(say.code)),
         *facts,
         [say("sheet.plan"), say("plan.note")],
@@ -179,7 +198,7 @@ def _dress(sheet: Any, widths: list[int]) -> None:
         head = sheet.cell(row=1, column=k)
         head.font = styles.Font(bold=True)
         sheet.column_dimensions[head.column_letter].width = width
-    sheet.freeze_panes = "D2" if len(widths) == len(COLUMNS) else "B2"
+    sheet.freeze_panes = "E2" if len(widths) == len(COLUMNS) else "C2"
     sheet.auto_filter.ref = sheet.dimensions
 
 

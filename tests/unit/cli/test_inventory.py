@@ -35,8 +35,8 @@ def test_ranking_is_printed(printed, objects):
     """The worst first with letter and word, then the row that could not be read, the thresholds and sliding."""
     out = printed(objects, "--pga", "0.3g", *FEW)
     marks = (
-        "1  R RED    tall vase",
-        "2  G GREEN  chest",
+        "1  RED      tall vase",
+        "2  GREEN    chest",
         "not assessed: mirror, line 4",
         "GREEN: No motion",
         "Sliding",
@@ -58,7 +58,7 @@ def test_json_is_the_same_twice_and_other_with_another_seed(printed, objects):
     assert answers[0]["hazard"]["level"] == "PGV 0.15 m/s"
     assert answers[0]["objects"] != answers[2]["objects"]
     assert answers[0]["not_assessed"] == [
-        {"row": 4, "name": "mirror", "reason": answers[0]["not_assessed"][0]["reason"]}
+        {"row": 4, "number": "", "name": "mirror", "note": "", "reason": answers[0]["not_assessed"][0]["reason"]}
     ]
 
 
@@ -144,3 +144,22 @@ def test_one_default_seed(printed, objects, tmp_path):
     assert json.loads(printed(job, "--json"))["objects"] == told["objects"]
     job.write_text(f"{text}seed = 0\n", encoding="utf-8")
     assert json.loads(printed(job, "--json"))["objects"] != told["objects"]
+
+
+def test_no_object_assessed_is_a_failure(refuses, tmp_path):
+    """A list of which no row can be assessed ends with status 1, its rows and reasons, and no file."""
+    path = tmp_path / "list.csv"
+    path.write_text("name,width_cm,depth_cm,height_cm\n" + "".join(f"x{k},?,1,1\n" for k in range(7)), "utf-8")
+    out = tmp_path / "out"
+    refuses((path, "--pga", "0.3g", *FEW, "--out", out), "line 2: width_cm is '?'")
+    refuses((path, "--pga", "0.3g", *FEW, "--out", tmp_path / "x.pdf"), "and 2 more lines")
+    assert not out.exists()
+    assert not (tmp_path / "x.pdf").exists()
+
+
+def test_a_row_that_cannot_be_assessed_is_no_failure(printed, tmp_path):
+    """The control: with one object beside them the status is 0 and the report is there."""
+    path = tmp_path / "list.csv"
+    path.write_text("name,width_cm,depth_cm,height_cm\nx,?,1,1\nvase,20,20,60\n", "utf-8")
+    printed(path, "--pga", "0.3g", *FEW, "--out", tmp_path / "x.csv")
+    assert (tmp_path / "x.csv").exists()

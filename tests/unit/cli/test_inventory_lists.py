@@ -34,7 +34,7 @@ def test_a_museum_list_in_one_command(printed, tmp_path):
     museum_list.write_museum_list(tmp_path / "liste.xlsx")
     out = printed(tmp_path / "liste.xlsx", "--pga", "0.3g", *FEW)
     assert out.startswith("liste.xlsx (Objekte): PGA 0")
-    names = [line.split("|")[1] or "T-28" for line in museum_list.LIST.splitlines()[1:]]
-    assert len(names) == 30
-    for name in names:
-        assert f"  {name}" in out or f" {name}, " in out
+    labels = [" ".join(filter(None, line.split("|")[:2])) for line in museum_list.LIST.splitlines()[1:]]
+    assert len(labels) == 30
+    for label in labels:
+        assert f"  {label}" in out or f" {label}, " in out

@@ -46,7 +46,7 @@ def html(assessment):
 def test_lights_are_letters_and_words(html):
     """Without styles and colours the page still says red, amber and green, and the worst stands first."""
     bare = re.sub(r"<style>.*?</style>|<[^>]+>", " ", html, flags=re.S)
-    order = [bare.index(word) for word in ("R\xa0RED", "A\xa0AMBER", "G\xa0GREEN")]
+    order = [bare.index(word) for word in ("RED", "AMBER", "GREEN")]
     assert order == sorted(order)
     assert "1 red, 1 amber, 2 green, 1 not assessed" in bare
 
@@ -108,10 +108,10 @@ def test_spreadsheet_holds_numbers_and_no_formula(assessment, tmp_path):
     assert book.sheetnames == ["Ranking", "Measures", "What it means"]
     rows = list(book["Ranking"].iter_rows())
     assert [row[0].value for row in rows[1:]] == [1, 2, 3, 4, None]
-    assert [row[1].value for row in rows[1:]] == ["R red", "A amber", "G green", "G green", "not assessed"]
+    assert [row[1].value for row in rows[1:]] == ["red", "amber", "green", "green", "not assessed"]
     assert {cell.data_type for sheet in book for row in sheet.iter_rows() for cell in row} <= {"n", "s"}
-    assert isinstance(rows[1][6].value, float)
-    assert "'=cmd()" in {row[2].value for row in rows}
+    assert isinstance(rows[1][7].value, float)
+    assert "'=cmd()" in {row[3].value for row in rows}
     assert "Sliding is not assessed" in " ".join(str(row[1].value) for row in book["What it means"].iter_rows())
 
 

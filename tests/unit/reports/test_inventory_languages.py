@@ -67,8 +67,8 @@ def test_files_are_in_the_language_and_keys_are_not(found, tmp_path):
     assert book.sheetnames == ["Rangliste", "Maßnahmen", "Was es bedeutet"]
     cells = [str(cell.value) for sheet in book for row in sheet.iter_rows() for cell in row]
     assert words_in("\n".join(cells)) == []
-    assert made["csv"].read_text("utf-8-sig").startswith("rank,light,name,count,")
-    assert ",R red,Vase," in made["csv"].read_text("utf-8-sig")
+    assert made["csv"].read_text("utf-8-sig").startswith("rank,light,inventory number,name,count,")
+    assert ",red,,Vase," in made["csv"].read_text("utf-8-sig")
     plain = json.loads(made["json"].read_text("utf-8"))
     assert plain.keys() == as_plain(replace(found, language="en")).keys()
     assert plain["objects"][0]["light"] == "red"

@@ -14,7 +14,7 @@ from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, Intens
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS, InventoryObject
 from rocking.studies.inventory.reading import Inventory, read_inventory
-from rocking.studies.inventory.table import advice, plan_words, sentence, words_of
+from rocking.studies.inventory.table import advice, plan_words, remarks, sentence, words_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,8 +59,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     ----------
     objects : str, Path, Inventory or sequence of InventoryObject
         A list as .xlsx, .ods or CSV with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, in
-        English, German, Italian, Spanish, Greek, Chinese or Turkish; or the objects. Scans and other bodies in space
-        are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
+        English, German, Italian, French, Spanish, Greek, Chinese or Turkish; or the objects. Scans and other bodies in
+        space are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
     motions : str, Hazard, GroundMotion, mapping, or a sequence of them
         The family of synthetic motions, or records; each acts in either direction by itself. Of records by axis, as for
         `simulate`, the one with the largest peak does, and in three dimensions the other horizontal one across it.
@@ -92,7 +92,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         Over ``object``, the worst first: light, worse direction, acceleration of uplift, interval of the share that
         overturns, and sentences, one of them with what would make it green; over ``restitution``, ``object`` and
         ``direction``: motions that lift it and overturn it, and rotations; over ``not_assessed`` the rows without a
-        verdict and why; with units.
+        verdict and why, over ``not_object`` the lines that are no objects; with units, numbers and notes of the list.
 
     Raises
     ------
@@ -172,14 +172,23 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
         "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
         "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),
+        "not_object_reason": ("not_object", [each.reason for each in assessment.not_objects]),
     }  # fmt: skip
     coordinates = {
         "object": [each.item.name for each in verdicts],
         "row": ("object", [each.item.row for each in verdicts], {"units": "1", "long_name": "line of its file"}),
+        "number": ("object", [each.item.number for each in verdicts], {"long_name": "inventory number"}),
+        "pieces": ("object", [each.item.count for each in verdicts], {"units": "1", "long_name": "pieces alike"}),
+        "note": ("object", [each.item.note for each in verdicts], {"long_name": "what the list notes"}),
+        "remarks": ("object", [remarks(each, assessment) for each in verdicts], {"long_name": "what was assumed"}),
         "direction": list(DIRECTIONS),
         "restitution": names,
         "end": ["low", "high"],
         "not_assessed": [each.name for each in assessment.not_assessed],
+        "not_assessed_row": ("not_assessed", [each.row for each in assessment.not_assessed]),
+        "not_assessed_number": ("not_assessed", [each.number for each in assessment.not_assessed]),
+        "not_assessed_note": ("not_assessed", [each.note for each in assessment.not_assessed]),
+        "not_object": [each.row for each in assessment.not_objects],
     }
     about = {"inventory": assessment.source, "shaking": assessment.hazard.words(), "motions": assessment.hazard.source}
     labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=about)

@@ -120,6 +120,8 @@ class Assessment:
     plan: tuple[PlanEntry, ...] = ()  # what helps the objects that are not green, sorted by gain
     drawn: bool = False  # whether the coefficient of restitution is drawn for every motion
     language: str = "en"  # of the report
+    not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are no objects
+    stated: tuple[str, ...] = ()  # what the list states beside its table and was used
 
     def pieces(self) -> dict[Light, int]:
         """Return how many pieces show each light, the worst first."""
@@ -291,7 +293,7 @@ class _Assessor:
             try:
                 columns += [self._column(item, way) for way in DIRECTIONS]
             except RockingError as error:
-                refused.append(NotAssessed(item.row, item.name, str(error)))
+                refused.append(NotAssessed.of(item, str(error)))
             else:
                 items.append(item)
         if not items:
@@ -345,7 +347,7 @@ class _Assessor:
             parts = {id(part): part for part in row.parts}  # a model that stands twice is computed once
             found = {key: results_of(part, threads=threads, progress=progress) for key, part in parts.items()}
         except RockingError as error:
-            return NotAssessed(item.row, item.name, str(error))
+            return NotAssessed.of(item, str(error))
         names = ("outcome", "peak_rotation")
         return row.rule({name: np.concatenate([found[id(part)][name] for part in row.parts]) for name in names})
 
@@ -358,7 +360,7 @@ class _Assessor:
             try:
                 return self._histories_in_space(item)
             except RockingError as error:
-                return NotAssessed(item.row, item.name, str(error))
+                return NotAssessed.of(item, str(error))
         product, _, refused = self.product([item])
         if product is None:
             return refused[0]
@@ -409,7 +411,7 @@ class _Assessor:
         friction: float | None = None,
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
-            return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
+            return NotAssessed.of(item, "no motion could be computed in one of its directions")
         limits = self.thresholds.of(item.consequence)
         of_model, *of_others = (
             tuple(
@@ -452,6 +454,7 @@ class _Assessor:
             tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.labels[0], self.labels[1:],
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
             plan=self._plan(verdicts, threads), drawn=self.drawn, language=self.inventory.language,
+            not_objects=self.inventory.not_objects, stated=self.inventory.stated,
         )  # fmt: skip
 
     def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[PlanEntry, ...]:

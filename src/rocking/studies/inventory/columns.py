@@ -234,10 +234,11 @@ def levels_of(title: str | Sequence[str]) -> tuple[str, ...]:
 def title_of(title: str | Sequence[str]) -> str:
     """Return what a column is called.
 
-    >>> title_of(("Maße (cm)", "Breite"))
-    'Maße (cm): Breite'
+    >>> title_of(("Maße (cm)", "Breite")), title_of(("Maße", "B", "[cm]"))
+    ('Maße (cm): Breite', 'Maße: B [cm]')
     """
-    return " ".join(": ".join(levels_of(title)).split())
+    parted = "".join(f"{' ' if plain(each) in UNITS else ': '}{each}" for each in levels_of(title))
+    return " ".join(parted.removeprefix(": ").split())
 
 
 def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header:

@@ -10,13 +10,14 @@ from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.language import Language, language
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.objects import NotAssessed
 from rocking.studies.inventory.plan import PlanEntry
 from rocking.studies.remedies import rounded_up
 from rocking.tables import escaped
 
 COLUMNS = (
-    "rank", "light", "name", "count", "row", "direction", "uplift", "motions", "lifted", "overturned", "low", "high",
-    "median", "quantile", "others", "words", "advice", "note", "consequence", "remarks",
+    "rank", "light", "number", "name", "count", "row", "direction", "uplift", "motions", "lifted", "overturned", "low",
+    "high", "median", "quantile", "others", "words", "advice", "note", "consequence", "remarks",
 )  # fmt: skip
 PLAN_COLUMNS = ("pieces", "gain", "wider", "lower", "ballast", "anchors", "force", "across", "moved")
 _WORDS = COLUMNS.index("words")
@@ -64,7 +65,7 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
         )
         measures = plan_row(plan[id(item)], say) if id(item) in plan else [""] * len(PLAN_COLUMNS)
         lines.append([
-            rank, light_words(verdict.light, say), escaped(item.name), item.count, item.row,
+            rank, say(f"light.{verdict.light.word}"), escaped(item.number), escaped(item.name), item.count, item.row,
             say(f"direction.{worse.direction}"), round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted,
             worse.overturned, round(100.0 * low, 2), round(100.0 * high, 2), *rotations, others,
             sentence(verdict, assessment),
@@ -72,11 +73,21 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
             say(f"consequence.{item.consequence}"), escaped(remarks(verdict, assessment)), *measures,
         ])  # fmt: skip
     for refused in assessment.not_assessed:
-        line: list[str | float | int] = [""] * (len(COLUMNS) + len(PLAN_COLUMNS))
-        line[1], line[2], line[4] = say("sheet.not_assessed"), escaped(refused.name), refused.row
-        line[_WORDS] = say("sheet.not_assessed_why", reason=words_of(assessment).translated(refused.reason))
-        lines.append(line)
-    return lines
+        why = say("sheet.not_assessed_why", reason=words_of(assessment).translated(refused.reason))
+        lines.append(_bare(refused, say("sheet.not_assessed"), why))
+    own = words_of(assessment)
+    others = (_bare(each, say("sheet.not_object"), own.translated(each.reason)) for each in assessment.not_objects)
+    return [*lines, *others]
+
+
+def _bare(refused: NotAssessed, light: str, why: str) -> list[str | float | int]:
+    """Return the row of what has no verdict."""
+    told = {
+        "light": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": why,
+        "note": refused.note,
+    }  # fmt: skip
+    line = [told.get(name, "") for name in COLUMNS]
+    return [*(escaped(each) if isinstance(each, str) else each for each in line), *[""] * len(PLAN_COLUMNS)]
 
 
 def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
@@ -115,7 +126,7 @@ def plan_words(entry: PlanEntry, say: Language) -> str:
         options.append(say("plan.across", share=_demanded(entry.shear or 0.0, say)))
     if entry.in_space:
         options.append(say("plan.in_space"))
-    return say("plan.sentence", name=entry.item.name, options="; ".join(options))
+    return say("plan.sentence", name=entry.item.label, options="; ".join(options))
 
 
 def as_csv(assessment: Assessment) -> str:
@@ -157,15 +168,19 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
         "objects": [_plain(rank, each, assessment) for rank, each in enumerate(assessment.verdicts, start=1)],
         "plan": [_plan(each, words_of(assessment)) for each in assessment.plan],
         "not_assessed": [
-            {"row": each.row, "name": each.name, "reason": each.reason} for each in assessment.not_assessed
+            {"row": each.row, "number": each.number, "name": each.name, "note": each.note, "reason": each.reason}
+            for each in assessment.not_assessed
         ],
+        "not_objects": [{"row": each.row, "text": each.name, "reason": each.reason} for each in assessment.not_objects],
         "columns_not_read": list(assessment.ignored),
+        "stated": list(assessment.stated),
         "assumptions": limits(assessment),
     }
 
 
 def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
     return {
+        "number": entry.item.number,
         "name": entry.item.name,
         "row": entry.item.row,
         "pieces_spared": entry.spared,
@@ -186,6 +201,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
     item = verdict.item
     return {
         "rank": rank,
+        "number": item.number,
         "name": item.name,
         "row": item.row,
         "count": item.count,
@@ -233,11 +249,6 @@ def words_of(assessment: Assessment) -> Language:
     return language(assessment.language)
 
 
-def light_words(light: Light, say: Language) -> str:
-    """Return a light for files: its letter and its word."""
-    return f"{say(f'letter.{light.word}')} {say(f'light.{light.word}')}"
-
-
 def remarks(verdict: Verdict, assessment: Assessment) -> str:
     """Return what was assumed of an object, or left aside."""
     return "; ".join(words_of(assessment).translated(each.rstrip(".")) for each in verdict.item.remarks)
@@ -250,8 +261,8 @@ def noted(verdict: Verdict, assessment: Assessment) -> str:
 
 
 def named(verdict: Verdict, say: Language) -> str:
-    """Return the name of an object, with how many there are, its note, and a consequence that is not medium."""
-    item, name = verdict.item, verdict.item.name
+    """Return number and name of an object, with how many there are, its note, and a consequence that is not medium."""
+    item, name = verdict.item, verdict.item.label
     if item.count > 1:
         name = say("report.named", name=name, count=item.count)
     if item.note:
@@ -259,6 +270,22 @@ def named(verdict: Verdict, say: Language) -> str:
     if item.consequence != "medium":
         name = say("report.consequence", name=name, consequence=say(f"consequence.{item.consequence}"))
     return name
+
+
+def passed_over(assessment: Assessment) -> list[tuple[str, list[int]]]:
+    """Return why rows of the list are no objects, and which rows."""
+    say, reasons = words_of(assessment), dict.fromkeys(each.reason for each in assessment.not_objects)
+    return [
+        (say.translated(reason), [each.row for each in assessment.not_objects if each.reason == reason])
+        for reason in reasons
+    ]
+
+
+def stated(assessment: Assessment) -> str:
+    """Return what the list states beside its table and was used, as a sentence; nothing where it states nothing."""
+    say = words_of(assessment)
+    said = "; ".join(say.translated(each) for each in assessment.stated)
+    return say("report.stated", stated=said) if said else ""
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:

@@ -107,6 +107,8 @@ def inventory_study(problem: StudyProblem) -> Study:
         "motion": motions_along(histories.motions),
         "object": labels_along("object", (item.name for item in items), "name of the object"),
         "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
+        "number": labels_along("object", (item.number for item in items), "inventory number"),
+        "note": labels_along("object", (item.note for item in items), "what the list notes"),
         "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
         "restitution": labels_along("restitution", names, "model of impact"),
     }
