@@ -210,6 +210,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "shape": item.shape,
         "approximate_m": dict(item.approximate),
         "remarks": list(item.remarks),
+        "noted": noted(verdict, assessment),
         "light": verdict.light.word,
         "worse_direction": verdict.worse.direction,
         "uplift_acceleration_m_s2": verdict.uplift_acceleration,

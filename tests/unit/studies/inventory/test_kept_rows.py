@@ -131,6 +131,7 @@ def test_risk_is_the_consequence_in_every_language():
         "en": "Risk",
         "de": "Risiko",
         "it": "Rischio",
+        "fr": "Risque",
         "es": "Riesgo",
         "el": "Κίνδυνος",
         "zh": "风险",

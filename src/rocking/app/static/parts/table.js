@@ -39,7 +39,7 @@ const Cell = ({ value, digits, numeric, nowrap, first }) => {
   return first ? html`<th scope="row" class=${kind} title=${title}>${shown}</th>` : html`<td class=${kind} title=${title}>${shown}</td>`;
 };
 
-/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of a first cell in the user's words.
+/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of words of the user.
  * @param {{ caption: string, head: string[], rows: (string | [string, string | null])[][] }} props */
 export const Rows = ({ caption, head, rows }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
@@ -48,7 +48,9 @@ export const Rows = ({ caption, head, rows }) => html`
       <tbody>${rows.map((row, k) => html`<tr key=${k}>
         ${row.map((cell, j) => {
           const [text, kind] = Array.isArray(cell) ? cell : [cell, null];
-          return j ? html`<td class=${kind ? `light ${kind}` : text.length > SENTENCE ? "sentence" : null}>${text}</td>`
+          const isOwn = kind === "own";
+          const look = kind && !isOwn ? `light ${kind}` : text.length > SENTENCE ? "sentence" : null;
+          return j ? html`<td class=${look} translate=${!isOwn}>${text}</td>`
             : html`<th scope="row" translate=${kind !== "own"}>${text}</th>`;
         })}</tr>`)}
       </tbody>

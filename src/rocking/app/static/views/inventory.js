@@ -53,7 +53,7 @@ const Inventory = ({ app, questions }) => {
       inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
-    await questions.ask(tables, { [list.name]: list.sha }, `Which objects stand? ${list.name}`);
+    await questions.ask(tables, { [list.name]: list.sha }, `Which objects stay standing? ${list.name}`);
     text.value = { of: list, lines: null, id: questions.shown.value?.id };
   };
   const answer = questions.shown.value?.id === text.value?.id ? questions.shown.value?.answer : null;
@@ -116,20 +116,29 @@ const Corrections = ({ answer, text, fixed }) => {
         value=${at(each)} />`)}</fieldset>`;
 };
 
+/** Inventory number and name of a row. @param {{ number: string, name: string }} row */
+const label = ({ number, name }) => [...new Set([number, name])].filter(Boolean).join(" ");
+
 /** @param {Given} given */
 const Ranking = ({ answer }) => {
   const counts = ["red", "amber", "green"].map((light) => `${answer.counts[light]} ${light}`).join(", ");
   const missing = answer.not_assessed.length;
+  const noted = answer.objects.some((/** @type {any} */ each) => each.note || each.noted);
   const rows = answer.objects.map((/** @type {any} */ each) => [
-    [`${each.name}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
+    [`${label(each)}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
     each.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2)).join(" to "), each.in_words, each.what_to_do,
+    ...(noted ? [[[each.note, each.noted].filter(Boolean).join(". "), "own"]] : []),
   ]);
   return html`
     <p class="verdict" data-testid="verdict">${counts}${missing ? `, ${missing} not assessed` : ""}, at ${answer.hazard.level}.</p>
     ${rows.length > 0 && html`<${Rows} caption="Objects, the worst first"
-      head=${["object", "light", "overturns [%]", "what it does", "what to do"]} rows=${rows} />`}
+      head=${["object", "light", "overturns [%]", "what it does", "what to do", ...(noted ? ["note"] : [])]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
-      rows=${answer.not_assessed.map((/** @type {any} */ each) => [each.name ? [each.name, "own"] : "no name", String(each.row), each.reason])} />`}
+      rows=${answer.not_assessed.map((/** @type {any} */ each) => [label(each) ? [label(each), "own"] : "no name", String(each.row), each.reason])} />`}
+    ${answer.not_objects.length > 0 && html`<details><summary>Lines that are not objects</summary>
+      <${Rows} caption="Lines of the list that are not objects" head=${["what it says", "line", "why"]}
+        rows=${answer.not_objects.map((/** @type {any} */ each) => [[each.text, "own"], String(each.row), each.reason])} /></details>`}
+    ${answer.stated.map((/** @type {string} */ each) => html`<p key=${each} class="field-help">${each}</p>`)}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:${" "}
       ${answer.columns_not_read.join(", ")}</p>
       <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;
