@@ -79,6 +79,7 @@ _TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token i
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
 _FILLERS = frozenset(words_of(WORDS["fillers"]))
 _OTHERS, _WITHOUT = words_of(WORDS["others"]), words_of(WORDS["without"])
+_BEGINNINGS = tuple(word for word in _OTHERS if len(word) > 4)  # Sockelmaße, Rahmengröße
 _INSTEAD = {word: stem for stem, text in WORDS["instead"].items() for word in words_of(text)}
 _PHRASES: dict[str, set[str]] = {}  # of all languages
 for _words in _HEADERS.values():
@@ -351,7 +352,8 @@ class _Level:
     @property
     def is_other(self) -> bool:
         """Whether it is of something that is not the object."""
-        return not self.stem and bool(_OTHERS.intersection(self.words)) and not _WITHOUT.intersection(self.words)
+        other = any(word in _OTHERS or word.startswith(_BEGINNINGS) for word in self.words)
+        return not self.stem and other and not _WITHOUT.intersection(self.words)
 
     @property
     def is_doubtful(self) -> bool:
@@ -367,7 +369,8 @@ def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn 
         levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), words=())
     stem = ""
     for each in levels:
-        stem = stem if each.is_neutral else _IN_GROUP.get((stem, each.stem), each.stem)
+        is_unit = stem == "count" and " ".join(each.words) in _INSTEAD  # Q.tà, n.
+        stem = stem if each.is_neutral or is_unit else _IN_GROUP.get((stem, each.stem), each.stem)
     words = [each.words for each in levels if each.words]
     both = next((found for order in (words, words[::-1]) if len(words) > 1 and (found := _joined(order, language))), "")
     stem = both or stem

@@ -54,11 +54,19 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[FoundHeader
                 break  # a row of numbers
             if end > first + 1 and _is_title_line(rows[first][1], rows[end - 1][1]):
                 break
+            if first and end - first < _TALLEST and _belongs(*rows[first - 1 : first + 1]):
+                continue
             titles = _ordered(_titles(rows[first:end], sheet.spans), [cells for _, cells in sheet.rows[end:][:_SAMPLE]])
             header = header_of(titles, mapped)
             if header.known:
                 measures = 0 if header.missing else _measures(header, sheet, end)
                 yield FoundHeader(first, end, header, titles, measures)
+
+
+def _belongs(above: tuple[int, list[str]], below: tuple[int, list[str]]) -> bool:
+    """Return whether a row above a row of a header belongs to it: words without numbers, next to it, and no title."""
+    words = not any(text[:1].isdigit() for text in above[1])
+    return above[0] + 1 == below[0] and words and not _is_title_line(above[1], below[1])
 
 
 def _is_title_line(texts: Sequence[str], below: Sequence[str]) -> bool:
@@ -69,8 +77,8 @@ def _is_title_line(texts: Sequence[str], below: Sequence[str]) -> bool:
 
 def _titles(rows: Sequence[tuple[int, list[str]]], spans: Mapping[tuple[int, int], int]) -> tuple[tuple[str, ...], ...]:
     """Return the titles of each column, those of a group for each of its columns."""
-    width = max(len(texts) for _, texts in rows)
-    table = [texts + [""] * (width - len(texts)) for _, texts in rows]
+    width = max([len(rows[-1][1]), *(k + 1 for _, texts in rows for k, text in enumerate(texts) if text)])
+    table = [(texts + [""] * (width - len(texts)))[:width] for _, texts in rows]
     spread = [_spread(table, k, line, spans) for k, (line, _) in enumerate(rows)]
     return tuple(levels_of([row[place] for row in spread]) for place in range(width))
 

@@ -80,7 +80,8 @@ def test_the_header_is_where_most_measures_are_below():
         ("Breite\n(cm)", "width", 0.01), ("Breite / širina (cm)", "width", 0.01),
         (("Maße (cm)", "Breite"), "width", 0.01), (("Maße", "B", "[cm]"), "width", 0.01),
         (("Standfläche", "Tiefe (mm)"), "base_depth", 0.001), (("Gewicht", "t"), "mass", 1000.0),
-        (("Dimensions", "Width", "in"), "width", 0.0254), (("Inventar-", "Nr."), "number", 1.0),
+        (("Dimensions", "Width", "in"), "width", 0.0254), (("Inventar-", "Nr."), "number", 1.0), (("Q.tà", "n."), "count", 1.0),
+        (("Sockelmaße in cm", "Breite"), "", None),
         ("Q.tà", "count", 1.0), ("Qté", "count", 1.0), ("Cant.", "count", 1.0), ("Stück / Q.tà", "count", 1.0),
         ("N. d'inv.", "number", 1.0), ("N° inv.", "number", 1.0), ("Nº de inventario", "number", 1.0),
         ("Inv.-Nr. / N. inv.", "number", 1.0), ("Anzahl (Stk.)", "count", 1.0), ("Höhe ohne Sockel cm", "", None),
@@ -144,6 +145,16 @@ def test_a_unit_beside_the_table_is_used_and_named(line, place):
         parse_inventory("\n".join(table))
     with pytest.raises(InvalidValueError, match="must name its unit"):
         parse_inventory("\n".join([*lines, "", "Alle Angaben in cm"]))
+
+
+def test_a_header_is_not_read_without_its_group():
+    """Sizes of a crate alone are no sizes of the object, though the row of ``B``, ``T``, ``H`` would do by itself."""
+    text = "Inv.-Nr.;Objekt;{} (cm);;\nInv.-Nr.;Objekt;B;T;H\n1;Uhr;60;50;220"
+    with pytest.raises(InvalidValueError, match="no width and no depth and no height in the header"):
+        parse_inventory(text.format("Transportkiste"))
+    assert rows_of(text.format("Maße"))[1] == [(3, "1", "Uhr", 60, 50, 220)]  # the control
+    above = "Museum, Abteilung Holz,,,,\nInv.-Nr.,Objekt,B cm,T cm,H cm\n1,Uhr,60,50,220"
+    assert rows_of(above)[1] == [(3, "1", "Uhr", 60, 50, 220)]
 
 
 def test_columns_keep_the_language_of_the_list():
