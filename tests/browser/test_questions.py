@@ -184,6 +184,29 @@ def test_a_list_of_objects(open_page: Callable[..., Any], shot: Callable[..., An
     expect(section.get_by_role("alert")).to_contain_text("nothing.csv")
 
 
+def test_inventory_numbers_are_shown(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
+    """Objects of the same name are told apart by number and note; lines that are not objects have their reasons."""
+    page = open_page(view="inventory")
+    section = page.locator("#view-inventory")
+    content = (
+        "Inv.-Nr.;Objekt;Maße (cm);;;Bemerkung\n;;Breite;Tiefe;Höhe;\nA-17;Vase;12;12;60;Fuß geklebt\n"
+        "A-18;Vase;20;20;30;\nA-19;Vase;?;20;30;\nSumme: 3;;;;;\n"
+    )
+    sent = {"name": "liste.csv", "mimeType": "text/csv", "buffer": content.encode("utf-8")}
+    section.get_by_label("Drop a list here, or").set_input_files(sent)
+    expect(section.get_by_role("list", name="Files")).to_contain_text("liste.csv")
+    section.get_by_label("How many motions").fill("10")
+    outcome = asked(page, "inventory")
+    rows = outcome.get_by_role("table", name="Objects, the worst first").locator("tbody tr")
+    assert rows.locator("th").all_inner_texts() == ["A-17 Vase", "A-18 Vase"]
+    expect(rows.first).to_contain_text("Fuß geklebt")
+    expect(outcome.get_by_role("table", name="Rows without a verdict")).to_contain_text("A-19 Vase")
+    outcome.get_by_text("Lines that are not objects").click()
+    expect(outcome.get_by_role("table", name="Lines of the list that are not objects")).to_contain_text("Summe: 3")
+    shot(page, "inventory numbers")
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+
+
 def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     """Titles that nobody knows are named, a cell that is wrong is corrected in its line; every object has its light."""
     page = open_page(view="inventory")

@@ -71,6 +71,9 @@ _HEADERS = {
     language: {word: field for field, text in fields.items() for word in words_of(text)}
     for language, fields in WORDS["headers"].items()
 }
+_TOKENS = {
+    code: {token for word in fields for token in word.split() if len(token) > 2} for code, fields in _HEADERS.items()
+}
 UNITS = {word: unit for unit, text in WORDS["units"].items() for word in words_of(text)}
 _MEASURED = {
     word for words in _HEADERS.values() for word, field in words.items() if field in _MEASURES and len(word) > 1
@@ -313,12 +316,13 @@ def _language_of(titles: Titles) -> str:
         for place, part in enumerate(filter(None, map(str.strip, re.split(r"[/|()\[\]\n\u2013\u2014]| - ", level))))
     ))  # fmt: skip
 
-    def votes(fields: Mapping[str, str]) -> tuple[int, int, int]:
-        places = [place for place, part in parts if _stem_in(plain(part).split(), fields)[0]]
-        tokens = {token for word in fields for token in word.split() if len(token) > 2}
-        return len(places), -sum(places), sum(token in tokens for _, part in parts for token in plain(part).split())
+    words = [(place, plain(part).split()) for place, part in parts]
 
-    return max(_HEADERS, key=lambda each: votes(_HEADERS[each]))
+    def votes(code: str) -> tuple[int, int, int]:
+        places = [place for place, part in words if _stem_in(part, _HEADERS[code])[0]]
+        return len(places), -sum(places), sum(token in _TOKENS[code] for _, part in words for token in part)
+
+    return str(max(_HEADERS, key=votes))
 
 
 @dataclass(frozen=True)
@@ -408,10 +412,10 @@ def check_header(header: Header, titles: Titles, source: str, dismissed: Collect
         if fields.count(each) > 1:
             raise InvalidValueError(f"{source}: two columns give the {each.replace('_', ' ')}; leave one")
     if "length" in fields:
-        title = next(each.title for each in header.columns if each and "length" in each.fields)
+        length = next(each.title for each in header.columns if each and "length" in each.fields)
         raise InvalidValueError(
-            f"{source}: column {title!r:.60} is not known but looks like a measure, beside width and depth; "
-            f"{_remedy(title)}"
+            f"{source}: column {length!r:.60} is not known but looks like a measure, beside width and depth; "
+            f"{_remedy(length)}"
         )
     passed = {plain(title) for title in dismissed}
     for title, column in zip(titles, header.columns, strict=True):
