@@ -87,7 +87,9 @@ def test_a_step_of_the_chain():
     assert found.x.acceleration.tolist() == on_floor(RECORD, 2, 3, 0.6).acceleration.tolist()
     assert found.y.acceleration.tolist() == on_floor(up, 2, 3, 0.6).acceleration.tolist()
     assert found.z is up
-    assert "floor 2 of 3 of a shear building of 0.6 s" in found.x.provenance[-1]
+    assert "floor 2 of 3 of an elastic shear building" in found.x.provenance[-1]
+    assert "fundamental period 0.6 s, 5 % damping of every mode (assumed)" in found.x.provenance[-1]
+    assert "(given)" in on_floor(RECORD, 2, 3, 0.6, damping=0.05).provenance[-1]
     for chain in ("floor:number=4,storeys=3,period=0.6", "floor:number=0,storeys=3,period=0.6",
                   "floor:number=1,storeys=3,period=0", "floor:number=1,storeys=3"):  # fmt: skip
         with pytest.raises(InvalidValueError, match="step floor"):

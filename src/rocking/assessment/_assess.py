@@ -201,13 +201,14 @@ IN_SPACE = CALIBRATED, "ked", "housner"
 """Models that say something of solids, where nobody names others."""
 
 
-def assess(
+def assess(  # noqa: PLR0913 - what is asked, what is known and how it is computed
     body: Body | Solid,
     motions: Any,
     restitution: Any = None,
     *,
     friction: Any = None,
     margin: float = 1.0,
+    pga: float | None = None,
     gravity: float = conventions.g,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -233,6 +234,8 @@ def assess(
         Coefficient of friction; histories that slide, and all of a solid, take its median [-].
     margin : float
         Factor on the motions that remedies must hold, up to 50 [-].
+    pga : float, optional
+        Peak ground acceleration to which each motion is scaled, as for `predict` [m/s2].
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
@@ -265,7 +268,7 @@ def assess(
     margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
-    whole = several(motions)
+    whole = several(motions, pga)
     given = FRICTION[0] if friction is None else friction
     coefficient = Uncertain.of("friction", given, *FRICTION[1:]).median
     options = {"gravity": gravity, "threads": threads, "progress": progress}

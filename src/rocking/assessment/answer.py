@@ -11,6 +11,7 @@ import numpy as np
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
+from rocking.motions.summary import peak_name, support_of
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
 from rocking.studies.remedies import Remedies, millimetres, rounded_up
@@ -246,19 +247,22 @@ class BodyAssessment:
         asked, here = self.remedies.margin, self.models[model].overturned[motion]
         more = "; it stands under the motion as it is, which is no margin" if factor < 1.0 and here == 0.0 else ""
         short = f" The {asked:g} that is asked for is not reached." if asked > max(factor, 1.0) else ""
-        return f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a PGA of {pga / g:.3g} g{more}.{short}"
+        peak = peak_name(support_of(self.motions[motion]))
+        return (
+            f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a {peak} of {pga / g:.3g} g{more}.{short}"
+        )
 
     @property
     def probability_words(self) -> str:
         """How likely it overturns, of all motions and under the worst, in words."""
         chance = self.prediction.chances["overturning"]
-        value, low, high = (percent(round(each, 3)) for each in (chance.value, chance.low, chance.high))
-        words = f"Probability of overturning, with what is not known drawn: {value} ({low} to {high})"
+        words = f"With uncertain inputs sampled: {self.prediction.verdict}"
         if len(self.prediction.motions) > 1:
             worst = int(np.nanargmax(chance.per_motion))
             each = percent(round(float(chance.per_motion[worst]), 3))
-            words += f" over all motions, each as likely; {each} under {self.prediction.motions[worst]}"
-        return f"{words}."
+            words += f" All motions are equally likely; the largest is {each}, under "
+            words += f"{self.prediction.motions[worst].name}."
+        return words
 
     @property
     def governs(self) -> tuple[str, ...]:
@@ -394,6 +398,7 @@ class BodyAssessment:
             "sentences": list(self.sentences),
             "body": repr(self.body if self.standing is None else self.standing.solid),
             "motions": [each.name for each in self.motions],
+            "repairs": list(self.prediction.repairs),
             "records": self.records,
             "lowest": {**self.lowest._asdict(), "motion": self.motions[self.lowest.motion].name},
             "lifting_factors": self.lifts,

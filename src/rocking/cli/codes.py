@@ -160,11 +160,14 @@ class CodesAnswer:
         return {**self.found.as_dict(), "left_out": LEFT_OUT}
 
     def show(self, page: Page) -> None:
+        from rocking.cli.study import source_lines
+
         found = self.found
         fell, many = found.overturned[~(found.overturned != found.overturned)], len(found.motions)
         motions = found.motions[0] if many == 1 else f"{many}"
         page.facts([
             ("bodies", "; ".join(found.bodies)), ("motions", f"{motions}, {'; '.join(found.levels)}"),
+            *source_lines(found.sources),
             ("histories", f"{int(fell.sum())} of {fell.size} overturned, restitution {found.restitution}"),
         ])  # fmt: skip
         page.line()

@@ -9,6 +9,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
+    from rocking.motions.summary import MotionSummary
     from rocking.spec.study import StudyProblem
     from rocking.statistics.lognormal import LognormalFit
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
@@ -146,18 +147,27 @@ class FragilityAnswer:
             seed = table.seed or 0
             family = getattr(motions, "family", None)
             name = table.synthetic if family is None else family.name
-            return {"kind": "synthetic", "count": len(motions), "family": name, "seed": seed}
+            facts = {"kind": "synthetic", "count": len(motions), "family": name, "seed": seed}
+            return {**facts, "sources": [each.as_dict() for each in self.sources]}
         names = [motions[k].name for k in range(len(motions))]
         kind = "pulses" if isinstance(leading(motions[0]), Pulse) else "records"
-        return {"kind": kind, "count": len(names), "names": names}
+        return {"kind": kind, "count": len(names), "names": names, "sources": [each.as_dict() for each in self.sources]}
+
+    @cached_property
+    def sources(self) -> "tuple[MotionSummary, ...]":
+        """Intensity, source and processing of each motion."""
+        from rocking.motions.summary import summaries_of
+
+        return summaries_of(self.problem.motions)
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines
+        from rocking.cli.study import body_lines, source_lines
 
         first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
         page.facts(body_lines(self.problem.bodies[0], self.problem.settings, self.length))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
+            *source_lines(self.sources),
             ("restitution", ", ".join(labels)),
             ("measure", f"{first.subject.measure.name}, {first.subject.measure.words}"),
             ("rocking", self._uplift()),

@@ -161,11 +161,14 @@ class InventoryAnswer:
     def show(self, page: Page) -> None:
         from rich.text import Text
 
+        from rocking.cli.study import source_lines
+        from rocking.motions.summary import summaries_of
         from rocking.studies.inventory import table
 
         assessment = self.assessment
         say, hazard = table.words_of(assessment), assessment.hazard
         page.line(f"{assessment.source}: {hazard.words(say.code)}, {say.translated(hazard.source)}")
+        page.facts([] if hazard.synthetic else source_lines(summaries_of(hazard.motions)))
         for rank, verdict in enumerate(assessment.verdicts, start=1):
             line = Text(f"{rank:3}  ")
             line.append(f"{say(f'mark.{verdict.light.word}'):<7}", style=_STYLES[verdict.light.name])

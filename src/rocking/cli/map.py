@@ -244,13 +244,15 @@ class MapAnswer:
         return {"x": [float(x.min()), float(x.max())], "y": [float(y.min()), float(y.max())], "first": first}
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines
+        from rocking.cli.study import body_lines, source_lines
         from rocking.conventions import percent
+        from rocking.motions.summary import MotionSummary
 
         problem, arrays = self.problem, self.arrays
         varied = "friction" in {axis.name for axis in self.axes}
         page.facts(body_lines(problem.bodies[0], problem.settings, self.length, varied=varied))
         page.line(f"motion:       {problem.motions[0].name}")
+        page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
         page.line(f"restitution:  {arrays.attributes['restitution']};  engine: {arrays.attributes['engine']}")
         for name, axis in zip(("x", "y"), self.axes, strict=True):
             span = self._span(axis, (axis.values[0], axis.values[-1]))

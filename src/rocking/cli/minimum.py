@@ -139,12 +139,14 @@ class MinimumAnswer:
         }
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines
+        from rocking.cli.study import body_lines, source_lines
+        from rocking.motions.summary import MotionSummary
 
         problem, transitions, unit = self.problem, self.transitions, beside_g(self.acceleration)
         lifts = transitions.uplift_acceleration
         page.facts(body_lines(problem.bodies[0], problem.settings, self.length))
         page.line(f"motion:       {problem.motions[0].name}, scaled")
+        page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
         page.line(f"restitution:  {self.label}")
         slides = (problem.settings.friction or math.inf) * problem.settings.gravity
         first = "lifts it:     " if lifts < slides else "slides from:  "

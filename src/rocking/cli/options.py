@@ -138,6 +138,7 @@ Family = Annotated[
 Seed = Annotated[
     int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=SHAKING)
 ]
+ScaledToPeak = Annotated[str | None, key(tables.PredictTable, "pga", rich_help_panel=SHAKING)]
 Scale = Annotated[float, key(tables.MotionKeys, "scale")]
 
 

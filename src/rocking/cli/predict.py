@@ -12,7 +12,9 @@ from rocking.cli import options
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import percent
+from rocking.cli.study import source_lines
+from rocking.conventions import g, percent
+from rocking.prediction.likelihood import scale_words
 
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 
 D = TypeVar("D", bound="PredictionDocument")
 TABLES = ("body", "motion", "settings", "predict")
-ALIKE = "Nothing decides it: all bodies end alike."
 COUNT, SEED = 20, 1
 """Synthetic motions, where nobody says otherwise."""
 
@@ -39,6 +40,7 @@ def predict(
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
+    pga: options.ScaledToPeak = None,
     restitution: options.MeasuredRestitution = None,
     friction: options.FrictionOfRange = None,
     sets: options.Set = None,
@@ -55,14 +57,13 @@ def predict(
     if file := document_file(context, body, ("predict",), ["threads"]):
         document, inputs = in_file(file, sets, PredictionDocument)
     else:
-        told = {"restitution": number_or_name(restitution), "friction": friction}
+        told = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
         document, inputs = typed(context, PredictionDocument, told)
     with as_typed():
         problem = PredictionProblem.of(document, inputs)
         with bar("motions", len(problem.motions), quiet=as_json) as progress:
             found = problem.answer(lambda done: progress(1), threads)
-    repairs = tuple(getattr(problem.body, "repairs", ()))
-    deliver(PredictionAnswer(found, Path(body or "").stem, repairs), exports, as_json=as_json)
+    deliver(PredictionAnswer(found, Path(body or "").stem), exports, as_json=as_json)
 
 
 def in_file(
@@ -105,7 +106,6 @@ class PredictionAnswer:
 
     found: "Prediction"
     name: str = ""  # of the body
-    repairs: tuple[str, ...] = ()  # what a scan needed
 
     def facts(self) -> dict[str, Any]:
         return self.found.as_dict()
@@ -121,30 +121,35 @@ class PredictionAnswer:
         for line in found.sentences[1:]:
             page.line(line)
         page.line()
-        head = ("motion", *found.chances)
+        head = ("motion", "PGA g", "PGV m/s", *found.chances)
         rows = [
-            (name, *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
-            for k, name in enumerate(found.motions)
-        ]
+            (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}",
+             *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
+            for k, motion in enumerate(found.motions)
+        ]  # fmt: skip
         page.table(head, rows, head[:1])
         page.line()
-        if found.shares and not any(share.total for share in found.shares.values()):
-            page.line(ALIKE)
+        if found.decides:
+            page.line(found.decides)
             page.line()
-        elif found.shares:
-            head = ("what is not known", "alone", "95 %", "with the others", "95 %")
+        else:
+            head = ("uncertain input", "alone", "95 %", "with the others", "95 %")
             named = {("motion" if name == "case" else name): share for name, share in found.shares.items()}
             page.table(head, [
                 (name, f"{s.first:.2f}", f"{s.first_low:.2f} to {s.first_high:.2f}", f"{s.total:.2f}",
                  f"{s.total_low:.2f} to {s.total_high:.2f}")
                 for name, s in sorted(named.items(), key=lambda pair: -pair[1].total)
             ], head[:1])  # fmt: skip
-            page.line("Shares of the variance of whether it overturns (Sobol indices).")
+            page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
         assumed = {each.partition(":")[0] for each in found.assumed}
-        page.facts([(name, words) for name, words in found.inputs.items() if name not in assumed])
+        known = {each.partition(":")[0] for each in found.not_sampled}
+        page.facts([(name, words) for name, words in found.inputs.items() if name not in assumed | known])
         page.facts([("assumed", each) for each in found.assumed])
-        page.warn(self.repairs)
+        page.facts([("not sampled", each) for each in found.not_sampled])
+        page.facts(source_lines(found.motions))
+        page.line(scale_words())
+        page.warn(found.repairs)
 
 
 @options.sized
@@ -156,6 +161,7 @@ def assess(
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
+    pga: options.ScaledToPeak = None,
     restitution: Annotated[
         list[str] | None, typer.Option(help="Model or coefficient, again for more; all models if none.")
     ] = None,
@@ -175,7 +181,7 @@ def assess(
         document, inputs = in_file(file, sets, AssessmentDocument, (*TABLES, "assess"))
     else:
         own = {"assess": {"restitutions": None if restitution is None else [*map(number_or_name, restitution)]}}
-        document, inputs = typed(context, AssessmentDocument, {"friction": friction}, own)
+        document, inputs = typed(context, AssessmentDocument, {"friction": friction, "pga": pga}, own)
     with as_typed():
         problem = PredictionProblem.of(document, inputs)
         with bar("histories", quiet=as_json) as progress:
@@ -232,8 +238,11 @@ class AssessmentAnswer:
             for words in sentences:
                 page.line(words)
         page.line()
+        page.facts(source_lines(found.prediction.motions))
+        page.line(scale_words())
         assumed = dict.fromkeys(each.partition(":")[0] for each in found.prediction.assumed)
-        page.line(f"Assumed: {'; '.join(assumed)}. What, why, and all references: --out report.pdf, or --json.")
+        page.line(f"Assumed: {'; '.join(assumed)}. Reasons and all references: --out report.pdf, or --json.")
+        page.warn(found.prediction.repairs)
 
 
 def _row(found: "BodyAssessment", name: str, each: Any) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, sentence
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.errors import InvalidValueError, RockingError
+from rocking.motions.summary import MotionSummary
 from rocking.outcome import Outcome, Regime
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.response import ResponseProblem
@@ -48,6 +49,21 @@ def _moved(response: Any) -> str:
     if response.motion is None:
         return f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
     return f"{'' if response.scale == 1.0 else f'{response.scale:g} times '}{response.motion.name}"
+
+
+def _sources(*motions: Any) -> list[tuple[str, str]]:
+    """Return what is printed of the source and the processing of the components of a motion."""
+    from rocking.cli.study import source_lines
+
+    return source_lines([MotionSummary.of(motion) for motion in motions if motion is not None])
+
+
+def _components(response: Any) -> dict[str, Any]:
+    """Return the motions along x, y and upwards as plain values."""
+    return {
+        axis: None if motion is None else MotionSummary.of(motion).as_dict()
+        for axis, motion in zip(("x", "y", "vertical"), response.components, strict=True)
+    }
 
 
 def _first(page: Page, columns: dict[str, str], rows: Sequence[Sequence[Any]], most: int = _FIRST) -> None:
@@ -126,6 +142,7 @@ class RockingAnswer:
         return [
             *body_lines(response.body, response.settings, self.length),
             ("motion", ground),
+            *_sources(motion),
             (
                 "restitution",
                 parameters.label if hasattr(parameters.law, "quantile") else f"{parameters.label}, {value}",
@@ -251,6 +268,7 @@ class ContactAnswer:
             ("body", f"{type(body).__name__}, {body.mass:.4g} kg"),
             *assumed_rows(body),
             ("motion", _moved(self.response)),
+            *_sources(self.response.motion),
             ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}{of_law}"),
             ("restitution", imposed),
         ]
@@ -293,6 +311,7 @@ class SpaceAnswer:
             "base": base_facts(solid.base),
             "repairs": list(solid.repairs),
             "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
+            "motions": _components(response),
             "restitution": response.law.label,
             "engine": response.trajectory.engine,
             "gravity_m_s2": response.settings.gravity,
@@ -329,6 +348,7 @@ class SpaceAnswer:
         response = self.response
         show_body(page, self.problem.body, self.length)
         page.facts(((f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), response.names, strict=True)), 16)
+        page.facts(_sources(*response.components), 16)
         page.facts([("restitution", response.law.label)], 16)
         page.line()
         page.line(sentence(response.summary), "bold")
@@ -360,6 +380,7 @@ class HullAnswer(SpaceAnswer):
             "base": base_facts(solid.base),
             "repairs": list(solid.repairs),
             "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
+            "motions": _components(response),
             "restitution": response.restitution,
             "friction": response.settings.friction,
             "engine": response.engine,
@@ -386,6 +407,7 @@ class HullAnswer(SpaceAnswer):
         response = self.response
         show_body(page, self.problem.body, self.length)
         page.facts(((f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), response.names, strict=True)), 16)
+        page.facts(_sources(*response.components), 16)
         page.facts([("restitution", response.restitution), ("friction", f"{response.settings.friction:g}")], 16)
         page.line()
         page.line(sentence(response.summary), "bold")

@@ -17,6 +17,7 @@ from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
+from rocking.motions.summary import MotionSummary
 from rocking.outcome import Outcome
 from rocking.spec.construction import any_body_of, motions_of
 from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
@@ -184,8 +185,11 @@ class SeveralAnswer:
     def facts(self) -> dict[str, Any]:
         pairs = zip(self.motions, self.responses, strict=True)
         rows = [
-            {"motion": leading(motion).name, "peak_acceleration_m_s2": motion.peak,
-             "outcome": each.outcome.name.lower(), "peak_rotation_rad": _peak(each), "impacts": int(each.impacts.size)}
+            {
+                **MotionSummary.of(motion).as_dict(), "motion": leading(motion).name,
+                "outcome": each.outcome.name.lower(), "peak_rotation_rad": _peak(each),
+                "impacts": int(each.impacts.size),
+            }
             for motion, each in pairs
         ]  # fmt: skip
         return {"overturned": self._fell, "motions": rows}
@@ -195,6 +199,8 @@ class SeveralAnswer:
         return sum(each.outcome is Outcome.OVERTURNED for each in self.responses)
 
     def show(self, page: Page) -> None:
+        from rocking.cli.study import source_lines
+
         count = len(self.motions)
         page.line(f"It overturns under {self._fell} of {count} motion{'s' * (count != 1)}.", "bold")
         page.line()
@@ -206,6 +212,7 @@ class SeveralAnswer:
             rows.append((row["motion"], pga, outcome, peak, f"{row['impacts']}"))
         page.table(head, rows, ("motion", "outcome"), dense=True)
         page.line()
+        page.facts(source_lines([MotionSummary.of(motion) for motion in self.motions]))
         page.line(
             "One motion alone shows more; how likely it is to overturn: rocking predict; its margin: rocking assess."
         )

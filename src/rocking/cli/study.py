@@ -14,6 +14,7 @@ from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
 from rocking.motions.pulse import Pulse
+from rocking.motions.summary import MotionSummary, short_provenance
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
@@ -113,6 +114,12 @@ def motions_of(
     return [synthetic]
 
 
+def source_lines(motions: Sequence[MotionSummary]) -> list[tuple[str, str]]:
+    """Return what is printed of the source and the processing of motions."""
+    several = len(motions) > 1
+    return [("source", f"{name}: {words}" if several else words) for name, words in short_provenance(motions)]
+
+
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
     """Return what is printed of ground on which bodies may slide and hop: its friction, unless that is varied."""
     if settings.friction is None:
@@ -154,5 +161,5 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
         "body": repr(body),
         **{name: getattr(problem.settings, name) for name in ground},
         "assumed": list(getattr(body, "assumed", ())),
-        "motion": {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)},
+        "motion": {"kind": kind, **MotionSummary.of(motion).as_dict(), **facts, "warnings": list(motion.doubts)},
     }

@@ -18,6 +18,7 @@ from rocking.dynamics.settings import SHORTEST_STEP, Settings, in_space
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.summary import provenance_of
 from rocking.outcome import contact_words, flags, overturned
 from rocking.version import SOFTWARE
 
@@ -260,7 +261,7 @@ def _dataset(
             "slenderness_angle": ("body", [side.slenderness_angle for side in sides], {"units": "rad"}),
             "frequency_parameter": ("body", [side.frequency_parameter for side in sides], {"units": "rad/s"}),
             "motion": [m.name for m in motions],
-            "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motions]),
+            "motion_provenance": ("motion", ["; ".join(provenance_of(m)) for m in motions]),
             "restitution": axes["restitution"],
             **{name: (name, axes[name], {"units": "1"}) for name in ("scale", "friction") if name in axes},
             **_coordinates(starts),

@@ -15,6 +15,7 @@ from rocking.exported import Exported
 from rocking.lazy import presenter
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
+from rocking.motions.summary import provenance_of
 from rocking.outcome import Outcome, Status
 from rocking.version import SOFTWARE
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 def motion_provenance(motion: Any) -> str:
     """Return where a motion comes from."""
-    return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)
+    return "ground at rest" if motion is None else "; ".join(provenance_of(motion))
 
 
 _ROUNDING = 1e-9

@@ -60,12 +60,6 @@ class Components:
         return getattr(self.leading, "metadata", {})
 
     @property
-    def provenance(self) -> tuple[str, ...]:
-        """Where they come from."""
-        told = ("; ".join(getattr(part, "provenance", ())) or repr(part) for part in self.parts if part is not None)
-        return tuple(told)
-
-    @property
     def doubts(self) -> tuple[str, ...]:
         """Doubts about any of them."""
         return tuple(doubt for part in self.parts if part is not None for doubt in part.doubts)

@@ -5,11 +5,15 @@ import math
 import numpy as np
 
 from rocking import checks
+from rocking.conventions import Assumed, given_or_assumed
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.spectrum import oscillators, states
 
+DAMPING = Assumed(0.05)
+"""Damping ratio of every mode where nobody gave one [-]."""
 
-def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, damping: float = 0.05) -> GroundMotion:
+
+def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, damping: float = DAMPING) -> GroundMotion:
     """Return the horizontal motion of a floor of an elastic building; its vertical part stays as it is.
 
     The building has storeys of one mass and one stiffness, all modes the same damping; nothing stands on it, the ground
@@ -43,10 +47,17 @@ def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, dam
     floors = np.arange(1, storeys + 1)
     shape = np.sin(np.outer(angle, floors))
     share = shape.sum(axis=1) / (shape**2).sum(axis=1) * shape[:, number - 1]  # Eq. 316
-    _, damping, rates = oscillators(motion, periods, damping)
+    rates = oscillators(motion, periods, damping)[2]
     found = states(motion, rates)
     u = found.imag / rates.imag[:, None]
     v = found.real + rates.real[:, None] * u
     absolute = 2.0 * rates.real[:, None] * v - (np.abs(rates) ** 2)[:, None] * u
-    what = f"floor {number} of {storeys} of a shear building of {period:g} s, {100.0 * damping:g} % damping"
-    return motion.changed(what, acceleration=(share[:, None] * absolute).sum(axis=0))
+    stated = f"{100.0 * damping:g} % damping of every mode ({given_or_assumed(damping)})"
+    support = f"floor {number} of {storeys}"
+    what = f"{support} of an elastic shear building of equal storeys, fundamental period {period:g} s, {stated}"
+    if motion.vertical is not None:
+        what += "; vertical motion as on the ground"
+    return motion.changed(
+        what, acceleration=(share[:, None] * absolute).sum(axis=0), name=f"{motion.name}, {support}",
+        metadata={**motion.metadata, "support": support},
+    )  # fmt: skip

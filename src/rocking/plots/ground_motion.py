@@ -20,6 +20,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import begins_at
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
+from rocking.motions.summary import peak_name, support_of
 from rocking.plots.labels import Traces, fine_samples, plain, plain_log, traces
 from rocking.plots.style import (
     COLORS,
@@ -96,10 +97,11 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
         top.plot(motion.time, motion.vertical, color=GREY, linewidth=0.5, label="vertical", zorder=1)
         top.plot([], [], color=INK, linewidth=0.8, label="horizontal")
         legend_above(top, 2)
+    support = support_of(motion)
     rows = (
-        (top, "acceleration", "m/s$^2$", "PGA", INK),
-        (middle, "velocity", "m/s", "PGV", COLORS[0]),
-        (bottom, "displacement", "m", "PGD", COLORS[2]),
+        (top, "acceleration", "m/s$^2$", peak_name(support, "A"), INK),
+        (middle, "velocity", "m/s", peak_name(support, "V"), COLORS[0]),
+        (bottom, "displacement", "m", peak_name(support, "D"), COLORS[2]),
     )
     for axes, name, unit, short, color in rows:
         time, values = curves.time, getattr(curves, name)
@@ -124,7 +126,8 @@ def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     high = max(5.0, 2.0 * own, 10.0 * low)
     periods = np.geomspace(low, high, 120)
     values = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration / g
-    axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=DASHED, label=f"PGA {peak / g:.3g} g")
+    name = peak_name(support_of(motion))
+    axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=DASHED, label=f"{name} {peak / g:.3g} g")
     axes.plot(periods, values, color=COLORS[1], label=f"PSA, {100.0 * _DAMPING:g} % damping")
     axes.set_xscale("log")
     axes.set_xlim(low, high)

@@ -44,7 +44,8 @@ def prediction_picture(found: Prediction) -> "Figure":
     Returns
     -------
     matplotlib.figure.Figure
-        Two panels, two columns wide: the motions from the most dangerous down with their intervals, and the shares.
+        The motions from the most dangerous down with their intervals; beside them the contributions of inputs to the
+        variance, where there are any.
 
     Raises
     ------
@@ -56,19 +57,21 @@ def prediction_picture(found: Prediction) -> "Figure":
     >>> import rocking as rk
     >>> found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(5.0, 0.8), count=16)
     >>> [panel.get_xlabel() for panel in prediction_picture(found).axes]
-    ['probability [-]', 'share of the variance of overturning [-]']
+    ['probability [-]', 'contribution to the variance of overturning [-]']
     """
     checks.of_kind("found", found, Prediction, "a Prediction")
-    figure, axes = new_figure(DOUBLE, 3.2, columns=2)
+    both = not found.decides
+    figure, axes = new_figure(DOUBLE, 3.2, columns=2) if both else new_figure(DOUBLE, 3.2)
     _motions(axes[0], found)
-    _shares(axes[1], found)
+    if both:
+        _shares(axes[1], found)
     handles = [
         stroke("overturns, with its 95 % interval", color=COLORS[0], marker="o", linestyle="-", markersize=3.0),
         stroke("rocks", color=GREY, marker="|", linestyle="", markersize=6.0),
         patch(PALE, "overturns, all motions, 95 %"),
-        patch(COLORS[0], "alone"), patch(COLORS[5], "together with the others"),
+        *([patch(COLORS[0], "alone"), patch(COLORS[5], "together with the others")] if both else []),
     ]  # fmt: skip
-    legend_below(figure, handles, 5)
+    legend_below(figure, handles, len(handles))
     return figure
 
 
@@ -84,16 +87,17 @@ def _motions(axes: "Axes", found: Prediction) -> None:
     axes.set_xlim(-0.02, 1.02)
     axes.set_xlabel("probability [-]")
     if order.size <= _MOST_NAMES:
-        names = [found.motions[k] for k in order]
+        names = [found.motions[k].name for k in order]
         axes.set_yticks(rows, [plain(name if len(name) <= 34 else f"{name[:31]}...") for name in names])
     else:
         axes.set_yticks([])
         axes.set_ylabel(f"{order.size} motions, the most dangerous first")
-    axes.set_title(f"overturns with {percent(round(chance.value, 3))}", loc="left", fontsize=7.5)
+    ends = f"{percent(round(chance.low, 3))} to {percent(round(chance.high, 3))}"
+    axes.set_title(f"probability of overturning {percent(round(chance.value, 3))} ({ends})", loc="left", fontsize=7.5)
 
 
 def _shares(axes: "Axes", found: Prediction) -> None:
-    axes.set_xlabel("share of the variance of overturning [-]")
+    axes.set_xlabel("contribution to the variance of overturning [-]")
     named = sorted(found.shares.items(), key=lambda pair: -pair[1].total)
     for row, (_, share) in enumerate(named):
         for offset, value, low, high, color in (
@@ -104,9 +108,8 @@ def _shares(axes: "Axes", found: Prediction) -> None:
             axes.plot([max(low, 0.0), max(high, 0.0)], [row + offset] * 2, color="black", linewidth=0.8)
     axes.set_yticks(range(len(named)), ["motion" if name == "case" else name for name, _ in named])
     axes.set_xlim(0.0, 1.02)
-    if named:
-        axes.set_ylim(len(named) - 0.5, -0.5)
-    axes.set_title("what decides it", loc="left", fontsize=7.5)
+    axes.set_ylim(len(named) - 0.5, -0.5)
+    axes.set_title("contributions to the variance", loc="left", fontsize=7.5)
 
 
 @in_journal_style

@@ -11,8 +11,9 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.settings import check_progress, thread_count
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
+from rocking.motions.summary import summaries_of
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
-from rocking.prediction.mechanics import MEASURED, Mechanics
+from rocking.prediction.mechanics import MEASURED, Mechanics, several
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
@@ -42,6 +43,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     polarity: Any = None,
     azimuth: Any = None,
     sliding_beyond: float = SLIDING_BEYOND,
+    pga: float | None = None,
     count: int = COUNT,
     shares: bool = True,
     seed: int = 0,
@@ -83,6 +85,9 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
         Of the body's plane, or of its x axis, from x towards y; any if not given. With one component, of solids [rad].
     sliding_beyond : float
         How far it slides at least where it is said to slide [m].
+    pga : float, optional
+        Peak ground acceleration to which each motion is scaled; components are multiplied by the factor of the
+        stronger horizontal one [m/s2].
     count : int
         Bodies drawn for each motion, a power of two.
     shares : bool
@@ -124,6 +129,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     }  # fmt: skip
     half = checks.whole("count", count, 4, 1 << 24) // 2
     least = checks.positive("sliding_beyond", sliding_beyond, "m")
+    motions = several(motions, pga)
     mechanics = _mechanics(body, motions, given, gravity, bounce, bounce_law)
     design = SaltelliDesign(half, mechanics.widths, checks.whole("seed", seed))
     points = design.points if shares else design.points[: 2 * half]
@@ -144,19 +150,22 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
             if not np.isnan(fell["overturning"]).all():
                 others[name] = _chance(fell["overturning"], design.seed)
     return Prediction(
-        body=repr(body),
-        motions=tuple(mechanics.names),
+        body=body,
+        motions=summaries_of(mechanics.motions),
         inputs={name: each.words for name, each in mechanics.inputs.items()},
         assumed=tuple(mechanics.assumed),
+        not_sampled=mechanics.not_sampled,
         sliding_beyond=least,
         chances={name: _chance(values, design.seed) for name, values in drawn.items()},
         shares=design.shares(falls) if shares and not np.isnan(falls).all() else {},
-        ends=_ends(mechanics, points, falls),
+        ends=_ends(mechanics, points[: 2 * half], falls[: 2 * half]),
         growth=_growth(found, len(points), mechanics.names),
+        outcomes=np.unique(found["overturning"][~np.isnan(found["overturning"])]).size,
         count=2 * half,
         histories=found["overturning"].size,
         failed=failed,
         seed=design.seed,
+        gravity=float(gravity),
         beside=others,
     )
 

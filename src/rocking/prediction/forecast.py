@@ -9,18 +9,16 @@ import numpy as np
 
 from rocking.conventions import FloatArray, percent
 from rocking.exported import Exported
+from rocking.motions.summary import MotionSummary, condition
+from rocking.prediction.likelihood import likelihood, scale_words
 from rocking.statistics.shares import VarianceShare
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
+    from rocking.bodies import Body, Solid
     from rocking.tables import Table
 
-_VERDICTS = (
-    (0.01, "will almost certainly stay standing"),
-    (1.0 / 3.0, "will probably stay standing"),
-    (2.0 / 3.0, "may overturn or not"),
-    (0.99, "will probably overturn"),
-    (math.inf, "will almost certainly overturn"),
-)
+_GERUNDS = {"uplift": "Rocking", "sliding": "Sliding by {} mm or more", "overturning": "Overturning"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,11 +61,12 @@ class Growth:
     def sentence(self) -> str:
         """Whether responses can be predicted at all, in words."""
         if not self.rocking:
-            return "It does not rock: nothing grows."
+            return "No pair of histories rocks, so no difference between histories grows."
         of = f"{self.lost} of {self.rocking} pairs of histories that differ by one part in a million in scale"
         if not self.lost:
             return (
-                f"Each response can be predicted: none of {self.rocking} such pairs ends differently or differs by 1 %."
+                f"Each response can be predicted: 0 of {self.rocking} pairs of histories that differ by one part in a "
+                "million in scale end differently or differ by more than 1 % in their peaks."
             )
         share = f"{len(self.motions_lost)} of {self.motions} motions"
         return (
@@ -82,14 +81,16 @@ class Prediction(Exported):
 
     Parameters
     ----------
-    body : str
+    body : Block, Section, MassPoints or Solid
         The body as it is drawn.
-    motions : tuple of str
-        Names of the motions.
+    motions : tuple of MotionSummary
+        Name, intensity, source and processing of each motion: what every probability is conditional on.
     inputs : dict of str to str
         What was drawn from what, in words, by input; also what is known.
     assumed : tuple of str
-        What nobody said and was assumed, and why; and what is left out.
+        What nobody said and was assumed, and why.
+    not_sampled : tuple of str
+        What is one value in all histories, and why.
     sliding_beyond : float
         How far it slides at least where it is said to slide [m].
     chances : dict of str to Chance
@@ -100,64 +101,94 @@ class Prediction(Exported):
         How the probability of overturning would change at the ends of each input.
     growth : Growth
         What becomes of small differences.
+    outcomes : int
+        How many outcomes, 1 or 2, all histories have, those of the sensitivity analysis included.
     count, histories, failed : int
         Bodies for each motion behind a probability, histories in all, and those without a result, which do not count.
     seed : int
         Seed of the draws.
+    gravity : float
+        Acceleration of gravity [m/s2].
     beside : dict of str to Chance
         Of overturning with KED and with Housner's restitution instead of the measured one, all else drawn alike; of
         plane bodies, where no restitution was asked for.
     """
 
-    body: str
-    motions: tuple[str, ...]
+    body: "Body | Solid"
+    motions: tuple[MotionSummary, ...]
     inputs: Mapping[str, str]
     assumed: tuple[str, ...]
+    not_sampled: tuple[str, ...]
     sliding_beyond: float
     chances: Mapping[str, Chance]
     shares: Mapping[str, VarianceShare]
     ends: Mapping[str, EndsOfRange]
     growth: Growth
+    outcomes: int
     count: int
     histories: int
     failed: int
     seed: int
+    gravity: float
     beside: Mapping[str, Chance] = field(default_factory=dict)
 
     @property
+    def condition(self) -> str:
+        """The motions and their intensity, on which every probability depends, in words."""
+        return condition(self.motions)
+
+    @property
+    def repairs(self) -> tuple[str, ...]:
+        """Repairs of the mesh of the body, in words; none of a plane body."""
+        return tuple(getattr(self.body, "repairs", ()))
+
+    @property
     def verdict(self) -> str:
-        """What will become of it, in words and with its probability."""
-        chance = self.chances["overturning"]
-        words = next(text for most, text in _VERDICTS if chance.value < most)
-        if chance.low <= 0.5 <= chance.high:
-            words = "may overturn or not"
-        return f"It {words}: {_said('overturns', chance)}."
+        """Likelihood and probability of overturning, with its condition."""
+        return self._sentence("overturning")
+
+    @property
+    def decides(self) -> str:
+        """Why there are no contributions to the variance; empty where there are."""
+        if any(share.total for share in self.shares.values()):
+            return ""
+        if self.outcomes == 1:
+            return "All histories have the same outcome, so that no input contributes to the variance."
+        if self.shares:
+            return "Too few histories differ in their outcome to compute contributions to the variance."
+        return "Contributions to the variance were not computed."
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Verdict, the other probabilities, what would change the answer, and whether it can be predicted at all."""
-        far = f"slides by {1000.0 * self.sliding_beyond:g} mm or more"
-        both = [_said("rocks", self.chances["uplift"]), _said(far, self.chances["sliding"])]
-        found = [self.verdict, *(f"I{each[1:]}." for each in both)]
+        """Verdict, the other probabilities, the effect of inputs, and whether a response can be predicted."""
+        chance = self.chances["overturning"]
+        found = [self.verdict]
+        if not math.isnan(chance.wide_low):
+            found.append(f"For other motions like these the interval is {_between(chance.wide_low, chance.wide_high)}.")
+        found += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
-            others = (
-                f"{percent(c.value)} ({percent(c.low)} to {percent(c.high)}, {n})" for n, c in self.beside.items()
-            )
-            found.append(f"With another restitution, all else drawn alike, it overturns with {' or '.join(others)}.")
+            others = (f"{_of(each)} with {name}" for name, each in self.beside.items())
+            found.append(f"With another restitution model and all else alike, overturning has {' and '.join(others)}.")
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
-                found.append(
-                    f"With {name} about {each.low:.3g} it overturns with {percent(each.probability_low)}, about "
-                    f"{each.high:.3g} with {percent(each.probability_high)}."
-                )
+                low, high = percent(each.probability_low), percent(each.probability_high)
+                ends = f"{low} with {name} near {each.low:.3g} and {high} with {name} near {each.high:.3g}"
+                found.append(f"The probability of overturning is {ends}.")
         found.append(self.growth.sentence)
         if self.failed:
             found.append(f"{self.failed} of {self.histories} histories have no result and do not count.")
         return tuple(found)
 
+    def _sentence(self, event: str) -> str:
+        chance = self.chances[event]
+        what = _GERUNDS[event].format(f"{1000.0 * self.sliding_beyond:g}")
+        given = self.condition if event == "overturning" else "given the same motions"
+        return f"{what} is {likelihood(chance.low, chance.high)} {given}: {_of(chance)}."
+
     def __str__(self) -> str:
-        return "\n".join([*self.sentences, *(f"assumed: {each}" for each in self.assumed)])
+        left = (f"not sampled: {each}" for each in self.not_sampled)
+        return "\n".join([*self.sentences, *(f"assumed: {each}" for each in self.assumed), *left, scale_words()])
 
     __repr__ = __str__
 
@@ -169,20 +200,16 @@ class Prediction(Exported):
         dict
             NaN where something does not exist.
         """
-        plain = (
-            "verdict",
-            "body",
-            "motions",
-            "sliding_beyond",
-            "inputs",
-            "assumed",
-            "count",
-            "histories",
-            "failed",
-            "seed",
-        )
+        plain = ("verdict", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs", "decides",
+                 "count", "histories", "failed", "seed", "gravity")  # fmt: skip
         return {
             **{name: getattr(self, name) for name in plain},
+            "sentences": list(self.sentences),
+            "likelihood": {name: likelihood(each.low, each.high) for name, each in self.chances.items()},
+            "likelihood_scale": scale_words(),
+            "body": repr(self.body),
+            "motions": [each.as_dict() for each in self.motions],
+            "software": SOFTWARE,
             "probability": {name: vars(chance) for name, chance in self.chances.items()},
             "beside": {name: vars(chance) for name, chance in self.beside.items()},
             "shares": {_told(name): asdict(share) for name, share in self.shares.items()},
@@ -194,7 +221,15 @@ class Prediction(Exported):
         """Return one row a motion, the inputs beside it."""
         from rocking.tables import Column, Table, text_array
 
-        columns = {"motion": Column(text_array(list(self.motions)), "", "name of the motion")}
+        columns = {
+            "motion": Column(text_array([each.name for each in self.motions]), "", "name of the motion"),
+            "support": Column(text_array([each.support for each in self.motions]), "", "ground, or the floor"),
+            "peak_acceleration": Column(np.array([each.peak for each in self.motions]), "m/s2", "peak acceleration"),
+            "peak_velocity": Column(np.array([each.peak_velocity for each in self.motions]), "m/s", "peak velocity"),
+            "provenance": Column(
+                text_array(["; ".join(each.provenance) for each in self.motions]), "", "source and processing steps"
+            ),
+        }
         for name, chance in self.chances.items():
             for end, meaning in (("", "probability of {}"), ("_low", "2.5 % of it"), ("_high", "97.5 % of it")):
                 values = getattr(chance, f"per_motion{end}")
@@ -207,19 +242,21 @@ class Prediction(Exported):
                 values = [getattr(self.shares.get(name, nothing), f"{key}{end}") for name in names]
                 beside[f"{key}{end}"] = Column(np.array(values), "1", meaning)
         provenance = {
-            "body": self.body, "verdict": self.verdict, "assumed": "; ".join(self.assumed), "seed": self.seed,
+            "software": SOFTWARE, "body": repr(self.body), "verdict": self.verdict,
+            "assumed": "; ".join(self.assumed), "not_sampled": "; ".join(self.not_sampled),
+            "repairs": "; ".join(self.repairs), "likelihood_scale": scale_words(), "seed": self.seed,
             "sliding_beyond_m": self.sliding_beyond,
             **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
         }  # fmt: skip
         return Table("motion", columns, provenance, {"input": Table("input", beside)})
 
 
-def _said(word: str, chance: Chance) -> str:
-    wide = ""
-    if not math.isnan(chance.wide_low):
-        wide = f"; {percent(chance.wide_low)} to {percent(chance.wide_high)} under other motions like these"
-    ends = f"{percent(chance.low)} to {percent(chance.high)}"
-    return f"it {word} with a probability of {percent(chance.value)} ({ends}{wide})"
+def _between(low: float, high: float) -> str:
+    return f"{percent(round(low, 3))} to {percent(round(high, 3))}"
+
+
+def _of(chance: Chance) -> str:
+    return f"probability {percent(round(chance.value, 4))} (95 % interval {_between(chance.low, chance.high)})"
 
 
 def _told(name: str) -> str:

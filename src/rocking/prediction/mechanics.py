@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from rocking import checks, plausibility
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, g
 from rocking.dynamics._simulate import components_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.motions.summary import GROUND, support_of
 
 _WAYS = ({"low", "high"}, {"mean", "deviation"}, {"median", "dispersion"}, {"values"})
 _Ends = tuple[float, float]
@@ -146,11 +147,12 @@ class Mechanics(ABC):
 
     widths_of: Mapping[str, int] = {}  # how many numbers an input takes, if not one
     why: Mapping[str, str] = {}  # why inputs are what they are where nobody says otherwise
+    never_sampled: tuple[str, ...] = ()  # what is one value in all histories, and why
 
     def __init__(self, motions: Any, given: Mapping[str, Any]) -> None:
-        self._motions, self.names, self._turns = several(motions), [], False
-        for k in range(len(self._motions)):
-            along, across, _ = parts(self._motions[k])
+        self.motions, self.names, self._turns = several(motions), [], False
+        for k in range(len(self.motions)):
+            along, across, _ = parts(self.motions[k])
             self.names.append(along.name)
             self._turns |= across is not None
         self.given, self.inputs, self.assumed = given, dict[str, Uncertain](), list[str]()
@@ -168,6 +170,12 @@ class Mechanics(ABC):
     def widths(self) -> dict[str, int]:
         """How many numbers from 0 to 1 each input takes that is not known."""
         return {name: self.widths_of.get(name, 1) for name, each in self.inputs.items() if not each.fixed}
+
+    @property
+    def not_sampled(self) -> tuple[str, ...]:
+        """What is one value in all histories: inputs that are known, and what has no distribution."""
+        known = (f"{name}: {each.words} (given)" for name, each in self.inputs.items() if each.fixed)
+        return (*known, *self.never_sampled)
 
     def probabilities(self, draws: FloatArray) -> dict[str, FloatArray]:
         """Return the columns of each input; one half of what is fixed, whatever it then means."""
@@ -189,13 +197,46 @@ class Mechanics(ABC):
         """Return what becomes of bodies under a motion times a factor."""
 
 
-def several(motions: Any) -> Any:
-    """Return motions by number: one, several, or a set that makes them when they are asked for."""
+class _ScaledToPeak(Sequence[Any]):
+    """Motions of a set, scaled to a peak ground acceleration when they are asked for."""
+
+    def __init__(self, motions: Any, pga: float) -> None:
+        self._motions, self._pga = motions, checks.positive("pga", pga, "m/s2")
+
+    def __len__(self) -> int:
+        return len(self._motions)
+
+    def __getitem__(self, index: Any) -> Any:
+        motion = self._motions[index]
+        x, y, z = parts(motion)
+        whole = Components(x, y, z)
+        if (support := support_of(whole)) != GROUND:
+            raise InvalidValueError(
+                f"pga is of the ground, and {x.name!r:.80} is the motion of {support}; put scale:pga before floor in "
+                "the steps of the record"
+            )
+        if not whole.peak > 0.0:
+            raise InvalidValueError(f"motion {x.name!r:.80} is zero throughout and cannot be scaled to a PGA")
+        scaled = whole.each(lambda part: _to_peak(part, self._pga, whole.peak))
+        return scaled.x if y is None and z is None else scaled
+
+
+def _to_peak(part: Any, pga: float, peak: float) -> Any:
+    """Return a component multiplied by the factor that brings the stronger horizontal one to a peak [m/s2]."""
+    if isinstance(part, Pulse):
+        return part.scaled(pga / peak)
+    vertical = None if part.vertical is None else part.vertical * (pga / peak)
+    what = f"multiplied by {pga / peak!r} so that PGA is {pga:g} m/s2 ({pga / g:.4g} g)"
+    return part.changed(what, acceleration=part.acceleration * (pga / peak), vertical=vertical)
+
+
+def several(motions: Any, pga: float | None = None) -> Any:
+    """Return motions by number: one, several, or a set that makes them when they are asked for; pga: scaled to it."""
     if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
         motions = [motions]
     if isinstance(motions, str) or not motions:
         raise InvalidValueError(f"motions must be one or more records, pulses or pairs x and y, got {motions!r:.60}")
-    return motions
+    return motions if pga is None else _ScaledToPeak(motions, pga)
 
 
 def parts(motion: Any) -> tuple[Any, Any, Any]:

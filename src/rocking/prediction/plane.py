@@ -39,7 +39,7 @@ DIRECTIONS = 36
 
 NOT_SAMPLED = (
     "placement: the ground is level and the body stands flat on both feet",
-    "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
+    "density: a factor on it changes no rotation; the factor centre stands for density that differs by place",
 )
 
 _WHY = {
@@ -54,7 +54,7 @@ _WHY = {
 class PlaneMechanics(Mechanics):
     """A plane body that may slide, hop and fly."""
 
-    widths_of, why = {"base": 2}, _WHY
+    widths_of, why, never_sampled = {"base": 2}, _WHY, NOT_SAMPLED
 
     def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: Settings) -> None:
         super().__init__(motions, given)
@@ -76,7 +76,6 @@ class PlaneMechanics(Mechanics):
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
             raise InvalidValueError(f"polarity must be 1, -1 or both as a sample, got {given['polarity']!r:.60}")
         self._set_restitution(given.get("restitution"))
-        self.assumed += NOT_SAMPLED
 
     def _set_restitution(self, told: Any) -> None:
         """Take coefficients onto both feet for probabilities, and whether they follow the base."""
@@ -140,7 +139,7 @@ class PlaneMechanics(Mechanics):
 
     def _ground(self, motion: int, drawn: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
         """Return the motion in all directions that were drawn, which of them each body has, and whom it mirrors."""
-        first, second, upright = parts(self._motions[motion])
+        first, second, upright = parts(self.motions[motion])
         mirrored = drawn["polarity"][:, 0] < 0.0
         if second is None:
             return [_whole(first, upright).segments()], np.zeros(mirrored.size, np.int64), mirrored

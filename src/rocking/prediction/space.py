@@ -47,7 +47,7 @@ _SETTINGS = HullSettings(tolerance=1e-8)
 
 NOT_SAMPLED = (
     "placement: the ground is level and the body stands by itself",
-    "density: what rocks does not depend on it, unless it differs from place to place (that is what centre is for)",
+    "density: a factor on it changes no rotation; the factor centre stands for density that differs by place",
 )
 
 _WHY = {
@@ -66,7 +66,7 @@ _LAWS = {
 class SpaceMechanics(Mechanics):
     """A body in space that may slide, hop, fly and fall onto another side."""
 
-    why = _WHY
+    why, never_sampled = _WHY, NOT_SAMPLED
 
     def __init__(self, solid: Solid, motions: Any, given: Mapping[str, Any], gravity: float) -> None:
         super().__init__(motions, given)
@@ -90,7 +90,6 @@ class SpaceMechanics(Mechanics):
             "azimuth": ((0.0, turn_round), -turn_round, turn_round, "rad"),
         })  # fmt: skip
         self._set_restitution(given.get("restitution"))
-        self.assumed += NOT_SAMPLED
 
     def with_restitution(self, told: Any) -> "SpaceMechanics":
         """Return the same with other impacts."""
@@ -152,7 +151,7 @@ class SpaceMechanics(Mechanics):
         several = list(dict.fromkeys(shapes))
         number = {shape: k for k, shape in enumerate(several)}
         place = np.array([number[shape] for shape in shapes])
-        ground = ground_of(*parts(self._motions[motion]))
+        ground = ground_of(*parts(self.motions[motion]))
         turned = zip(shapes, drawn["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
         numbers = numbers_of_rows(drawn["restitution"], factor, drawn["friction"], state, self._gravity)

@@ -15,6 +15,7 @@ from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.components import leading
 from rocking.motions.intensity import measure, sampled
+from rocking.motions.summary import support_of
 from rocking.outcome import Outcome
 from rocking.plots.body import body_picture
 from rocking.plots.ground_motion import ground_motion_picture
@@ -22,6 +23,8 @@ from rocking.plots.prediction import assessment_picture, prediction_picture
 from rocking.plots.response import response_picture
 from rocking.plots.solid import equilibria_picture
 from rocking.plots.spatial import spatial_picture
+from rocking.prediction.likelihood import scale_words
+from rocking.reports.body_blocks import repairs_of
 from rocking.reports.document import (
     Block,
     Cell,
@@ -34,6 +37,7 @@ from rocking.reports.document import (
     ReportTable,
     table,
 )
+from rocking.reports.motion_sources import motion_sources, peak_heads
 from rocking.reports.response_document import body_table
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
@@ -126,9 +130,8 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
     mark = "bad" if (found.fallen == 1.0).any() else "fair" if some else "good"
     margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
     how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
-    motion = Picture(
-        "motion", f"{leading(drawn.motion).name}: the ground, and its response spectrum for 5 % damping", 74
-    )
+    moved = leading(drawn.motion)
+    motion = Picture("motion", f"{moved.name}: motion of the {support_of(moved)}, response spectrum, 5 % damping", 74)
     searched = _SEARCHED[:1] if found.standing is None else _IN_SPACE
     under = f"{drawn.words}: {drawn.history.summary}"
     picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
@@ -139,10 +142,12 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
         ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), *picture]),
         ReportSection("Code methods beside it", [_codes(found)]),
         ReportSection("The body", _about(found)),
+        ReportSection("Ground motions: source and processing", [motion_sources(found.prediction.motions)]),
         ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
         ReportSection("What is known, and what was assumed", [
-            table("", ["input", "drawn from"], found.prediction.inputs.items()),
+            table("", ["input", "distribution or value"], found.prediction.inputs.items()),
             *map(_led, (*searched, *_SEARCHED[1:], *ASSUMED, *found.prediction.assumed)),
+            *(Paragraph(each, "Not sampled:") for each in found.prediction.not_sampled), Paragraph(scale_words()),
             *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
         ]),
         ReportSection("References", [*map(_led, _references(found))]),
@@ -189,7 +194,13 @@ def _motions(found: BodyAssessment) -> ReportTable:
         "factor with any model; what overturns under less may stand under the motion as it is, where no model then "
         "falls, and that is no margin."
     )
-    head = ["motion", "PGA [g]", "PGV [m/s]", "lifts at [-]", "overturns at [-]", "models that fall at 1"]
+    head = [
+        "motion",
+        *peak_heads(found.prediction.motions),
+        "lifts at [-]",
+        "overturns at [-]",
+        "models that fall at 1",
+    ]
     return table("Under each motion", head, rows, note)
 
 
@@ -233,11 +244,13 @@ def _codes(found: BodyAssessment) -> ReportTable:
 def _about(found: BodyAssessment) -> list[Block]:
     if found.standing is None:
         return [Pair(Picture("body", "The body on its feet O and O'"), body_table("", found.body, found.gravity))]
+    repairs = repairs_of(found.standing.solid)
     title = f"The {_PLANE} of {math.degrees(found.standing.plane) % 360.0:.0f} deg"
     return [
         *map(Paragraph, found.standing.words),
         Picture("body", "How much the centre must rise to topple it, by direction; what it stands on, and its sides"),
         body_table(title, found.body, found.gravity),
+        *repairs,
     ]
 
 

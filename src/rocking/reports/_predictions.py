@@ -2,11 +2,15 @@
 
 from functools import partial
 
-from rocking.conventions import percent
+from rocking.conventions import g, percent
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
+from rocking.prediction.likelihood import scale_words
+from rocking.reports.body_blocks import body_blocks
 from rocking.reports.document import Content, Paragraph, Picture, ReportSection, ReportTable, judged, table
+from rocking.reports.motion_sources import motion_sources, peak_heads
 from rocking.spec.validation import FolderValidation
+from rocking.version import SOFTWARE
 
 _MARKS = ((0.05, "good"), (0.5, "fair"))
 _MARKS_OF_FINDINGS = {"better": "good", "not resolved": "fair", "mixed": "fair", "worse": "bad"}
@@ -15,8 +19,8 @@ _SCORES = {
     "bias": "bias [-]",
 }  # fmt: skip
 _PREDICTED = (
-    "Bodies that may be the one in question are drawn from what is known of it, each is followed under every motion, "
-    "and those that overturn are counted. Intervals are of 95 %."
+    "Bodies are sampled from the distributions of the uncertain inputs. Each body is simulated under every motion, and "
+    "the bodies that overturn are counted. All motions are equally likely. Intervals are of 95 %, for these motions."
 )
 _VALIDATED = (
     "Bodies that may be the one in question are drawn from what is known of it and followed under the motion of each "
@@ -27,24 +31,27 @@ _VALIDATED = (
 
 
 def prediction_content(found: Prediction, *, name: str, date: str) -> Content:
-    """Return the report of a prediction: verdict, picture, probabilities, what decides them, and what was assumed."""
-    chance = found.chances["overturning"]
-    mark = next((word for most, word in _MARKS if chance.high <= most), "bad")
-    picture = Picture(
-        "prediction", "How likely it overturns and rocks under each motion, and what decides whether it does"
-    )
+    """Return the report of a prediction: verdict, probabilities and their condition, body, motions, and inputs."""
+    mark = next((word for most, word in _MARKS if found.chances["overturning"].high <= most), "bad")
+    caption = "Probability of overturning and of rocking under each motion"
+    picture = Picture("prediction", caption if found.decides else f"{caption}; contributions to its variance")
     failed = f", {found.failed} without a result" if found.failed else ""
+    decides = Paragraph(found.decides) if found.decides else _shares(found)
+    body, drawn = body_blocks(found.body, found.gravity)
     sections = [
-        ReportSection("What will become of it", [*map(Paragraph, found.sentences[1:]), picture, _motions(found)]),
-        *([ReportSection("What decides it", [_shares(found)])] if found.shares else []),
+        ReportSection("Probabilities", [*map(Paragraph, found.sentences[1:]), picture, _motions(found)]),
+        ReportSection("Contributions to the variance", [decides]),
+        ReportSection("The body", body),
+        ReportSection("Ground motions: source and processing", [motion_sources(found.motions)]),
         _assumed(found),
-        ReportSection(
-            "How it was computed", [Paragraph(_PREDICTED), Paragraph(f"{_count(found)}{failed}; seed {found.seed}.")]
-        ),
-    ]
+        ReportSection("Method", [
+            Paragraph(_PREDICTED), Paragraph(f"{_count(found)}{failed}; seed {found.seed}."), Paragraph(scale_words()),
+            Paragraph(f"{SOFTWARE}."),
+        ]),
+    ]  # fmt: skip
     several = f"Under {len(found.motions)} motion{'' if len(found.motions) == 1 else 's'}"
     document = judged(name or "A body in an earthquake", (several, date), sections, found.verdict, mark)
-    return document, {"prediction": lambda: prediction_picture(found)}
+    return document, {"prediction": lambda: prediction_picture(found), **drawn}
 
 
 def validation_content(found: FolderValidation, *, name: str, date: str) -> Content:
@@ -65,8 +72,19 @@ def validation_content(found: FolderValidation, *, name: str, date: str) -> Cont
 
 
 def _assumed(found: Prediction) -> ReportSection:
-    inputs = table("", ["input", "drawn from"], found.inputs.items())
-    return ReportSection("What is known, and what was assumed", [inputs, *map(Paragraph, found.assumed)])
+    known = {each.partition(":")[0] for each in found.not_sampled}
+    inputs = table(
+        "Sampled", ["input", "distribution"], [pair for pair in found.inputs.items() if pair[0] not in known]
+    )
+    left = table("Not sampled", ["input", "value in all histories"], [_pair(each) for each in found.not_sampled])
+    return ReportSection("Inputs: sampled, not sampled, assumed", [
+        *([inputs] if inputs.rows else []), left, *(Paragraph(each, "Assumed:") for each in found.assumed),
+    ])  # fmt: skip
+
+
+def _pair(words: str) -> tuple[str, str]:
+    name, _, rest = words.partition(": ")
+    return name, rest
 
 
 def _count(found: Prediction) -> str:
@@ -75,10 +93,12 @@ def _count(found: Prediction) -> str:
 
 def _motions(found: Prediction) -> ReportTable:
     rows = [
-        (name, *(percent(float(chance.per_motion[k])) for chance in found.chances.values()))
-        for k, name in enumerate(found.motions)
-    ]
-    return table("Probabilities under each motion", ["motion", *found.chances], rows)
+        (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}", f"{motion.duration:.3g}",
+         *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
+        for k, motion in enumerate(found.motions)
+    ]  # fmt: skip
+    head = ["motion", *peak_heads(found.motions), "duration [s]", *found.chances]
+    return table("Probabilities under each motion", head, rows)
 
 
 def _shares(found: Prediction) -> ReportTable:
@@ -91,8 +111,8 @@ def _shares(found: Prediction) -> ReportTable:
         )
         for name, s in sorted(found.shares.items(), key=lambda pair: -pair[1].total)
     ]
-    note = "Sobol indices: shares of the variance of whether it overturns."
-    return table("", ["what is not known", "alone [-]", "with the others [-]", "95 %"], rows, note)
+    note = "Sobol indices: contributions to the variance of overturning."
+    return table("", ["uncertain input", "alone [-]", "with the others [-]", "95 %"], rows, note)
 
 
 def _event(event: str, found: Validation) -> ReportSection:

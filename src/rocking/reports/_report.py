@@ -1,5 +1,6 @@
 """One call for the report of every answer; what stands in it is the matter of the module of its kind."""
 
+from datetime import UTC, datetime
 from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
@@ -21,7 +22,7 @@ _CONTENTS = {
 """What makes the document and its pictures, by the class of an answer."""
 
 
-def report(found: Any, path: str | Path, *, name: str = "", date: str = "", **options: Any) -> Path:
+def report(found: Any, path: str | Path, *, name: str = "", date: str | None = None, **options: Any) -> Path:
     """Write the report of an answer: verdict, pictures, tables, what was assumed, and how it was computed.
 
     Parameters
@@ -33,8 +34,8 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str = "", **op
         A document (.pdf), or a web page of one file (.html).
     name : str
         What the body is called.
-    date : str
-        Day of the report, as it should be printed.
+    date : str, optional
+        Day of the report, as it should be printed; today if not given, none if empty.
     **options
         Of a response ``friction``, the coefficient that the friction that is taken is compared with [-]; of an
         assessment ``project`` and ``author``, which stand at its head and beside the signature.
@@ -75,6 +76,7 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str = "", **op
         raise InvalidValueError(
             f"a report of {of} takes no {odd}; it takes {', '.join(names)}{checks.nearest(odd, names)}"
         )
-    document, pictures = made(found, name=name, date=date, **options)
+    day = f"{datetime.now(UTC):%d %B %Y}" if date is None else date
+    document, pictures = made(found, name=name, date=day, **options)
     write_report(document, pictures, target)
     return target

@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from rocking.conventions import g
 from rocking.language import Language
-from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, made_with, table
+from rocking.motions.summary import provenance_rows, summaries_of
+from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable, made_with, table
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
@@ -208,8 +209,15 @@ class _Sections:
         if hazard.synthetic:
             origin = {name: say.translated(hazard.description[name]) for name in ("generator", "origin")}
             blocks.insert(1, Paragraph(say("report.origin", **origin)))
+        if not hazard.synthetic:
+            blocks.append(self._sources())
         if assessment.ignored:
             blocks.append(Paragraph(", ".join(assessment.ignored), say("report.ignored")))
         if words := stated(assessment):
             blocks.append(Paragraph(words))
         return ReportSection(say("report.shaking"), blocks)
+
+    def _sources(self) -> ReportTable:
+        """Return the source and the processing steps of the records."""
+        rows = provenance_rows(summaries_of(self.assessment.hazard.motions))
+        return table(self.say("report.sources"), self._header("motion", "source"), rows)

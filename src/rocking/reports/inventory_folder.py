@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rocking.errors import InvalidValueError, MissingExtraError, extra
+from rocking.motions.summary import provenance_rows, summaries_of
 from rocking.reports.document import render_pdf, write_html
 from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inventory_document
 from rocking.studies.inventory.assessment import Assessment
@@ -161,6 +162,8 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     hazard = assessment.hazard
     shaking = f"{hazard.words(say.code)}; {say.translated(hazard.source)}"
     facts = [[say("sheet.shaking"), shaking], [say("sheet.impacts"), assessment.restitution]]
+    sources = [] if hazard.synthetic else provenance_rows(summaries_of(hazard.motions))
+    facts += [[escaped(f"{say('sheet.shaking')}: {name}"), escaped(words)] for name, words in sources]
     if assessment.ignored:
         facts.append([say("sheet.not_read"), say("sheet.ignored", columns=", ".join(assessment.ignored))])
     if words := stated(assessment):

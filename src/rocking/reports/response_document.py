@@ -14,6 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
 from rocking.motions.pulse import Motion
+from rocking.motions.summary import MotionSummary, support_of
 from rocking.outcome import Outcome
 from rocking.plots.body import body_picture, coefficient_picture
 from rocking.plots.ground_motion import ground_motion_picture
@@ -33,6 +34,7 @@ from rocking.reports.document import (
     ReportTable,
 )
 from rocking.reports.document import table as report_table
+from rocking.reports.motion_sources import motion_sources
 from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, outcome_facts, restitution_words
 from rocking.version import SOFTWARE
 
@@ -73,7 +75,7 @@ def response_document(results: ResponseReport) -> Document:
     sections = [
         ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity, stated))]),
         ReportSection("What an impact costs", _impact(results)),
-        ReportSection("The ground", _ground(results)),
+        ReportSection("The ground motion", _ground(results)),
         ReportSection("The response", _response(results)),
         ReportSection("To do it again", _again(results, first)),
     ]
@@ -137,8 +139,12 @@ def _impact(results: ResponseReport) -> list[Block]:
 def _ground(results: ResponseReport) -> list[Block]:
     if results.motion is None:
         return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
-    caption = "Acceleration, velocity and displacement of the ground, and the response spectrum for 5 % damping"
-    return [Picture("motion", caption, 74), _measures(results.measures)]
+    caption = (
+        f"Acceleration, velocity and displacement of the {support_of(results.motion)}, and the response spectrum for "
+        "5 % damping"
+    )
+    sources = motion_sources([MotionSummary.of(results.motion)])
+    return [Picture("motion", caption, 74), _measures(results.measures), sources]
 
 
 def _response(results: ResponseReport) -> list[Block]:

@@ -12,6 +12,7 @@ from rocking.motions.intensity import Measure, intensity_measures, key_with_unit
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.spectrum import ResponseSpectrum
+from rocking.motions.summary import provenance_of, support_of
 from rocking.outcome import Outcome
 from rocking.plots.labels import Traces, traces
 from rocking.restitution import models
@@ -84,6 +85,8 @@ def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
     return {
         "kind": "record" if isinstance(motion, GroundMotion) else "pulse",
         "name": motion.name,
+        "support": support_of(motion),
+        "provenance": list(provenance_of(motion)),
         "scale": scale,
         "duration_s": motion.duration,
         "peak_acceleration_m_s2": abs(scale) * motion.peak,
@@ -205,7 +208,7 @@ def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: 
         "time_step_s": samples.time_step if record else None,
         "duration_s": motion.duration,
         "warnings": list(motion.doubts),
-        "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
+        "provenance": list(provenance_of(motion)),
         "peak_vertical_acceleration_m_s2": None if samples.vertical is None else samples.peak_vertical,
         "intensity": {key_with_unit(key, one.unit): one.value for key, one in measures.items()},
     }

@@ -338,6 +338,7 @@ class PredictTable(JobTable):
     polarity: Any = _key("1 as recorded, -1 mirrored; both alike if not given")
     azimuth: Any = _key("of the body's plane, with motions of two components; any if not given [rad]")
     sliding_beyond: Positive = _key("distance from which it is said to slide [m]", 0.01)
+    pga: Text | None = _key("peak ground acceleration to which each motion is scaled: 0.3g, 2.9m/s2")
     count: int = _key("bodies drawn for each motion, a power of two", 128, ge=4, le=1 << 20)
     shares: bool = _key("find which input matters how much", True)
     seed: Seed = _key("seed of the draws", 0)

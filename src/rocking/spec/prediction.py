@@ -74,6 +74,10 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
 
     ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
     options = {**document.predict.model_dump(exclude_none=True), **ground}
+    if "pga" in options:
+        from rocking.studies.inventory.hazard import IntensityLevel
+
+        options["pga"] = IntensityLevel.of("PGA", options["pga"]).value
     model = options.get("restitution")
     if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
         table = RestitutionTable(model=model)

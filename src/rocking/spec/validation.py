@@ -67,8 +67,10 @@ class FolderValidation(Exported):
     def as_dict(self) -> dict[str, Any]:
         """Return everything as plain values."""
         return {
-            "body": self.prediction.body,
+            "body": repr(self.prediction.body),
             "assumed": self.prediction.assumed,
+            "not_sampled": self.prediction.not_sampled,
+            "motions": [each.as_dict() for each in self.prediction.motions],
             "inputs": self.prediction.inputs,
             "count": self.prediction.count,
             "histories": self.prediction.histories,
@@ -95,7 +97,7 @@ class FolderValidation(Exported):
             values = np.concatenate([each.probability[name] for each in self.found.values()])
             columns[name.replace(" ", "_")] = Column(values, "1", f"probability by the {name}")
         verdicts = {f"verdict_{event}": each.verdict for event, each in self.found.items()}
-        return Table("trial", columns, {"body": self.prediction.body, **verdicts})
+        return Table("trial", columns, {"body": repr(self.prediction.body), **verdicts})
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,8 @@ class ValidationProblem:
         """Return what a folder says; files: its body file, and its table of outcomes."""
         with located("body"):
             body = any_body_of(document.body, inputs)
+        if document.predict.pga is not None:
+            raise InvalidValueError("predict.pga is not allowed in a validation: its motions are those that were seen")
         outcomes = Outcomes.read(files[1])
         records = _Records(inputs, document.motion.model_dump(exclude_none=True, exclude={"scale"}))
         trials, refused, motions = list[Trial](), list(outcomes.refused), dict[Any, Any]()

@@ -23,6 +23,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.motions.summary import provenance_of
 from rocking.outcome import Outcome, flags
 from rocking.restitution.from_file import origin_of
 from rocking.version import SOFTWARE
@@ -103,7 +104,7 @@ class Question:
             "engine": engine_words(self.settings, fast=bool(work)),
             "body": repr(self.body),
             "motion": motion.name,
-            "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
+            "motion_provenance": "; ".join(provenance_of(motion)),
             "restitution": self.parameters.label,
             **origin_of(self.parameters.label),
             "seed": int(getattr(self.law, "seed", 0)),

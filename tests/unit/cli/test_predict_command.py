@@ -65,8 +65,8 @@ def test_what_is_printed_and_written(printed, tmp_path):
     out = printed(
         *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--out", str(picture), "--out", str(table)
     )
-    assert out.startswith("It ")
-    assert "assumed:      placement" in out
+    assert out.startswith("Overturning is ")
+    assert "not sampled:  placement" in out
     assert "Sobol" in out
     assert picture.stat().st_size > 10_000
     assert len(table.read_text("utf-8").splitlines()) == 3
@@ -116,7 +116,8 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
         assert stop.value.code in {0, None}
         said.append(capsys.readouterr().out)
     assert "It can stand in" in said[0]
-    assert "overturns with a probability of" in said[1]
+    assert "Overturning is " in said[1]
+    assert "given this motion (PGA " in said[1]
     assert said[1].partition("wrote")[0] == said[2].partition("wrote")[0]
     assert all("! closed the open bottom" in each for each in said)
     assert (tmp_path / "statue.png").read_bytes().startswith(b"\x89PNG")

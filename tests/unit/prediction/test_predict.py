@@ -158,7 +158,7 @@ def test_results_out(tmp_path):
     assert dataset["overturning"].sizes == {"motion": 2}
     assert dataset["input_total"].attrs["units"] == "1"
     lines = found.to_csv(tmp_path / "found.csv").read_text("utf-8").splitlines()
-    assert lines[0].startswith("motion,uplift")
+    assert lines[0].startswith("motion,support,peak_acceleration")
     assert len(lines) == 3
     assert "placement" in str(found)
 
@@ -240,7 +240,7 @@ def test_ked_and_housner_stand_beside_what_was_measured():
         alone = predict(BLOCK, motions, restitution=name, count=512, shares=False)
         assert alone.beside == {}
         assert chance.low <= alone.chances["overturning"].value <= chance.high
-        assert f", {name})" in found.sentences[3]
+        assert f") with {name}" in found.sentences[3]
     assert predict(BLOCK, motions[0], restitution=0.9, count=16, shares=False).beside == {}
     known = {"friction": 5.0, "base": 0.0, "centre": 1.0, "polarity": 1.0}  # nothing is left to draw
     fixed = predict(BLOCK, motions, **known, count=16, shares=False)

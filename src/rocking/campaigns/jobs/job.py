@@ -14,8 +14,10 @@ import numpy as np
 
 from rocking.campaigns.identity import software
 from rocking.dynamics.plane import fast_engine
+from rocking.motions.summary import summaries_of
 from rocking.restitution import RestitutionModel
 from rocking.spec.reading import document_of, located, read_text
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import engine_words
 
 if TYPE_CHECKING:
@@ -131,6 +133,8 @@ class Job:
         histories, campaign, problem = self.study.histories, self.document.campaign, self.problem
         engine = fast_engine.chosen(histories.engine, histories.law)
         motions = {name: value for name, value in problem.motions.description().items() if name != "motions"}
+        if isinstance(problem.motions, MotionList):
+            motions["sources"] = [each.as_dict() for each in summaries_of(problem.motions)]
         return {
             "software": f"rocking {software()}",
             "campaign": campaign.name,

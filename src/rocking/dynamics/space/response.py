@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks, conventions, plausibility
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
-from rocking.dynamics.response_base import ResponseBase, check_samples
+from rocking.dynamics.response_base import ResponseBase, check_samples, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
@@ -58,8 +58,8 @@ class SpatialResponse(ResponseBase):
         What the engine returned.
     end : float
         End of the response; the engine may have gone on to find out whether the body overturns [s].
-    names : tuple of str
-        Of the three motions.
+    components : tuple
+        Motions along x, y and upwards; None where there is none.
     """
 
     body: SpatialBody
@@ -69,7 +69,13 @@ class SpatialResponse(ResponseBase):
     time: FloatArray
     trajectory: SpatialTrajectory
     end: float
-    names: tuple[str, str, str] = ("none", "none", "none")
+    components: tuple[Component, Component, Component] = (None, None, None)
+
+    @property
+    def names(self) -> tuple[str, str, str]:
+        """Names of the motions along x, y and upwards."""
+        x, y, z = ("none" if motion is None else motion.name for motion in self.components)
+        return x, y, z
 
     @cached_property
     def states(self) -> States:
@@ -322,6 +328,7 @@ class SpatialResponse(ResponseBase):
             **self.body.facts,
             "restitution": self.law.label,
             **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), self.names, strict=True)},
+            "motion_provenance": [motion_provenance(motion) for motion in self.components],
         }
 
 
@@ -358,8 +365,7 @@ def response_in_space(
     end = min(length, last.start + _FINE / p if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
-    x, y, z = ("none" if motion is None else motion.name for motion in components)
-    return SpatialResponse(made, ground, engine.law, settings, time, found, end, (x, y, z))
+    return SpatialResponse(made, ground, engine.law, settings, time, found, end, components)
 
 
 def started(start: SpatialStart, pace: float) -> SpatialStart:

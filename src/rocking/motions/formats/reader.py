@@ -272,6 +272,8 @@ def _read(
     units = None if units is None else checks.one_of("units", units, ACCELERATION_UNITS)
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
+    stated = {"format": format, "unit": units, "time step": None if time_step is None else f"{time_step:g} s"}
+    source.stated.extend(f"{name} {value}" for name, value in stated.items() if value is not None)
     chosen: RecordFormat | None = None
     try:
         chosen = _recognised(source) if format is None else format_named(format)
@@ -302,7 +304,8 @@ def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     name += " borehole" if metadata.get("position") == "borehole" else ""
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
-    motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *source.doubts))
+    by_hand = [f"stated by the user: {', '.join(source.stated)}"] if source.stated else []
+    motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *by_hand, *source.doubts))
     velocity, displacement = ground_velocity(motion), ground_displacement(motion)
     ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
     plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))

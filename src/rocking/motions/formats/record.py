@@ -25,6 +25,7 @@ class Source:
     name: str  # its name, for messages
     content: bytes  # what is in it
     doubts: list[str] = field(default_factory=list, compare=False)  # what a reader found odd and did not refuse
+    stated: list[str] = field(default_factory=list, compare=False)  # what the user stated of it by hand
 
     @classmethod
     def of_path(cls, path: Path) -> "Source":

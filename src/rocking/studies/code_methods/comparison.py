@@ -13,6 +13,7 @@ from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
+from rocking.motions.summary import MotionSummary, summaries_of
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.quantiles import quantiles
 from rocking.studies.code_methods.methods import CODE_METHODS, BodySides, CodeMethod, Shaking
@@ -103,6 +104,8 @@ class CodeComparison:
         By method, what excludes bodies or motions from its domain; empty where nothing does.
     vertical : int
         Number of motions with a vertical part.
+    sources : tuple of MotionSummary
+        Intensity, source and processing of each motion.
     """
 
     methods: tuple[CodeMethod, ...]
@@ -117,6 +120,7 @@ class CodeComparison:
     restitution: str
     outside: Mapping[str, str] = field(default_factory=dict)
     vertical: int = 0
+    sources: tuple[MotionSummary, ...] = ()
 
     def called_safe(self, method: str, body: int | slice = slice(None), level: int | slice = slice(None)) -> CalledSafe:
         """Return how many a method calls safe, of all bodies and levels or of one, and how many of these overturn.
@@ -195,6 +199,7 @@ class CodeComparison:
             "bodies": list(self.bodies),
             "worse_side_counts": self.asymmetric.tolist(),
             "motions": list(self.motions),
+            "sources": [each.as_dict() for each in self.sources],
             "levels": list(self.levels),
             "restitution": self.restitution,
             "motions_with_vertical": self.vertical,
@@ -314,4 +319,5 @@ def compare_code_methods(
         restitution=cases[0].label,
         outside={each.name: each.outside(sides, shaking) for each in chosen},
         vertical=int(shaking.vertical.sum()),
+        sources=summaries_of(kept),
     )

@@ -225,9 +225,7 @@ class ItalianLinearKinematic(CodeMethod):
     domain = (
         "rigid body on the ground, no filter by a storey; e* = 1 (one body), CF = 1; a_g S is the PGA of the motion"
     )
-    reading = (
-        "high: the clause as the project's specification quotes it; the text of the circular itself was not at hand"
-    )
+    reading = "high: clause and formula as in secondary sources; the text of the circular itself was not consulted"
     behaviour_factor = 2.0  # q [-]
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
@@ -248,7 +246,7 @@ class AsceRocking(CodeMethod):
         "capacity is no less than the demand, without the standard's factors of safety"
     )
     reading = (
-        "low: structure and symbols seen at the head of A.2, equations as the project's specification re-derives them; "
+        "low: structure and symbols seen at the head of A.2, equations derived here from the energy of the body; "
         "margins were not read, nor which of several rotations that balance counts: the largest here, as A.1 words it "
         "for sliding (lowest frequency); if any up to alpha would do, limits would be up to several times as high"
     )
@@ -304,8 +302,8 @@ class IshiyamaCriteria(CodeMethod):
         "lower limits: below either of both a body stands; the factor 0.4 was found for rectangles on a rigid floor"
     )
     reading = (
-        "medium: that velocity counts beside acceleration was read in the paper's summary; the formula is our "
-        "specification's, and both of its forms (with R, and 10 B / sqrt(H) in cm) agree within 2.5 %"
+        "medium: that velocity counts beside acceleration was read in the paper's summary; the formula is from "
+        "secondary sources, and both of its forms (with R, and 10 B / sqrt(H) in cm) agree within 2.5 %"
     )
     share = 0.4  # of the velocity of a single impulse that overturns [-]
 
@@ -329,8 +327,8 @@ class KanekoHayashi(CodeMethod):
     reference = "Kaneko & Hayashi, overturning ratio of furniture: A_R50 and f_b"
     domain = "rectangles, furniture on floors; half of the bodies overturn at its limit by its own account"
     reading = (
-        "medium: as the project's specification states it, in cm and s; the frequency PGA / (2 pi PGV) is to "
-        "be confirmed; f_b is taken where both branches meet, 15.61 for its 15.6"
+        "medium: from secondary sources, in cm and s; the original text was not consulted, nor its frequency "
+        "PGA / (2 pi PGV); f_b is taken where both branches meet, 15.61 for its 15.6"
     )
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:

@@ -1,5 +1,6 @@
 """What all fragility analyses share: a body under motions, limit states read from its responses, and their curves."""
 
+import json
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -18,6 +19,7 @@ from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
+from rocking.motions.summary import provenance_of
 from rocking.outcome import Outcome, contact_words, lost_contact, of_results, overturned
 from rocking.quantities import attributes
 from rocking.restitution.from_file import origin_of
@@ -144,6 +146,13 @@ class Subject:
             law=self.parameters.law, settings=self.settings, engine=self.engine,
         )  # fmt: skip
 
+    @property
+    def _provenance(self) -> str:
+        """Source and processing of the motions; of a family what makes them."""
+        if not isinstance(self.motions, MotionList):
+            return json.dumps(self.motions.description())
+        return json.dumps([list(provenance_of(self.motions[k])) for k in range(len(self.motions))])
+
     def about(self) -> dict[str, Any]:
         """Return body, measure, restitution and settings as plain values, for the attributes of a file."""
         return {
@@ -152,6 +161,7 @@ class Subject:
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,
             "restitution": self.parameters.label,
+            "motion_provenance": self._provenance,
             **origin_of(self.parameters.label),
             **{f"body_{name}": float(values[0]) for name, values in self._sides.items()},
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},

@@ -11,6 +11,7 @@ from rocking.campaigns.jobs.study import Study, along, labels_along, motions_alo
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.errors import InvalidValueError
+from rocking.motions.summary import provenance_of
 from rocking.spec.document import HistoriesTable
 from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, inventory_of
@@ -80,7 +81,7 @@ def product_study(problem: StudyProblem) -> Study:
         "frequency_parameter": along("body", frequency, "rad/s", "frequency parameter of the right side"),
     }
     if isinstance(motions, MotionList):
-        sources = ("; ".join(getattr(motions[k], "provenance", ())) or repr(motions[k]) for k in range(len(motions)))
+        sources = ("; ".join(provenance_of(motions[k])) for k in range(len(motions)))
         coordinates["motion_provenance"] = labels_along("motion", sources, "where the motion comes from")
     sizes = (len(motions), len(problem.bodies), scales.size, len(problem.restitutions))
     dims = dict(zip(("motion", "body", "scale", "restitution"), sizes, strict=True))

@@ -1,0 +1,56 @@
+"""Words for probabilities: the calibrated likelihood scale of the IPCC."""
+
+from typing import NamedTuple
+
+
+class LikelihoodTerm(NamedTuple):
+    """A term and the range of probability that it stands for [-]."""
+
+    words: str
+    low: float
+    high: float
+
+
+TERMS = (
+    LikelihoodTerm("virtually certain", 0.99, 1.0),
+    LikelihoodTerm("exceptionally unlikely", 0.0, 0.01),
+    LikelihoodTerm("very likely", 0.9, 1.0),
+    LikelihoodTerm("very unlikely", 0.0, 0.1),
+    LikelihoodTerm("about as likely as not", 0.33, 0.66),
+    LikelihoodTerm("unlikely", 0.0, 0.33),
+    LikelihoodTerm("likely", 0.66, 1.0),
+)
+"""Terms of the scale, the narrowest first."""
+
+SOURCE = (
+    "IPCC calibrated likelihood scale: Mastrandrea et al. (2010), Guidance Note for Lead Authors of the IPCC Fifth "
+    "Assessment Report on Consistent Treatment of Uncertainties, Table 1"
+)
+
+
+def likelihood(low: float, high: float) -> str:
+    """Return the words for a probability of which an interval is known [-].
+
+    The words are the narrowest term that holds the whole interval, so that few histories never give a strong word.
+    Where no term holds the interval, the words are the terms of both ends.
+
+    >>> likelihood(0.0, 0.21), likelihood(0.0, 0.005), likelihood(0.3, 0.5)
+    ('unlikely', 'exceptionally unlikely', 'unlikely to about as likely as not')
+    """
+    whole = next((term.words for term in TERMS if term.low <= low and high <= term.high), "")
+    return whole or f"{_broad(low)} to {_broad(high)}"
+
+
+def _broad(probability: float) -> str:
+    return "unlikely" if probability <= 0.33 else "about as likely as not" if probability < 0.66 else "likely"
+
+
+def scale_words() -> str:
+    """Return the scale in one sentence, to be printed with an answer.
+
+    >>> scale_words()[:17]
+    'Likelihood terms:'
+    """
+    ordered = sorted(TERMS, key=lambda term: (-term.high, -term.low))
+    terms = ", ".join(f"{term.words} {100.0 * term.low:g} to {100.0 * term.high:g} %" for term in ordered)
+    return f"Likelihood terms: {terms}. A term holds the whole 95 % interval. {SOURCE}."

@@ -1,0 +1,83 @@
+"""The floor, its building and the file with its SHA-256 stand on every page, in every JSON and report that used them."""
+
+import hashlib
+import json
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.verifies("behaviour", room="doors")
+FLOOR = 'motion.process="mean; floor:number=3,storeys=5,period=0.5"'
+SIZE = ("--width", "0.5", "--height", "2")
+SAID = ("floor 3 of 5 of an elastic shear building", "fundamental period 0.5 s", "5 % damping of every mode (assumed)",
+        "mean acceleration removed", "stated by the user: unit m/s2")  # fmt: skip
+COMMANDS = {
+    "simulate": SIZE,
+    "predict": (*SIZE, "--set", "predict.count=4", "--set", "predict.shares=false"),
+    "assess": (*SIZE, "--restitution", "0.9", "--set", "predict.count=4", "--set", "predict.shares=false"),
+    "codes": SIZE,
+    "map": (*SIZE, "--x", "pga=1,2", "--y", "width=0.4,0.5"),
+    "minimum": (*SIZE, "--points", "8"),
+    "fragility": (*SIZE, "--levels", "1,2"),
+    "inventory": (),
+}
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Return a record of a file that states no unit."""
+    path = tmp_path / "ground.txt"
+    times = 0.02 * np.arange(120)
+    path.write_text("\n".join(f"{t:.2f} {2.0 * np.sin(9.0 * t):.6f}" for t in times), "utf-8")
+    return path
+
+
+def words_of(command, record, tmp_path):
+    own = COMMANDS[command]
+    if command == "inventory":
+        (tmp_path / "list.csv").write_text("name;width_cm;depth_cm;height_cm\nVase;20;20;60\n", "utf-8")
+        return (command, tmp_path / "list.csv", f"--motion={record}", "--units", "m/s2", "--set", FLOOR)
+    return (command, *own, record, "--units", "m/s2", "--set", FLOOR)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_floor_is_in_the_answer(run, record, tmp_path, command):
+    words, sha = words_of(command, record, tmp_path), hashlib.sha256(record.read_bytes()).hexdigest()
+    code, page, err = run(*words)
+    assert code == 0, err
+    assert all(each in page for each in (*SAID, sha)), page
+    _, text, _ = run(*words, "--json")
+    assert json.loads(text)
+    assert all(each in text for each in (*SAID, sha))
+
+
+@pytest.mark.parametrize("command", ["predict", "assess", "inventory"])
+def test_the_floor_is_in_the_report(run, record, tmp_path, command):
+    pytest.importorskip("jinja2")
+    page, sha = tmp_path / "report.html", hashlib.sha256(record.read_bytes()).hexdigest()
+    code, _, err = run(*words_of(command, record, tmp_path), "--out", page)
+    assert code == 0, err
+    text = page.read_text("utf-8")
+    assert all(each in text for each in (*SAID, sha))
+    assert "project's specification" not in text  # references name sources
+    if command != "inventory":
+        assert "PFA" in text
+        assert "motion of the ground" not in text
+        # negative control: of the record itself nothing speaks of a floor
+        code, _, _ = run(*words_of(command, record, tmp_path)[:-2], "--out", page)
+        assert "PFA" not in page.read_text("utf-8")
+
+
+def test_a_level_is_an_option(run, record):
+    few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.shares=false", "--json")
+    _, text, _ = run("predict", *SIZE, record, "--pga", "0.3g", *few)
+    motion = json.loads(text)["motions"][0]
+    assert motion["peak_acceleration_m_s2"] == pytest.approx(0.3 * 9.80665, rel=1e-12)
+    assert "so that PGA is 2.94199 m/s2 (0.3 g)" in motion["provenance"][-1]
+    for level, why in (("0.3", "must be a number with its unit"), ("-1g", "PGA"), ("0.3gal2", "unit")):
+        code, _, err = run("predict", *SIZE, record, "--pga", level, *few)
+        assert code == 2
+        assert why in err
+    code, _, err = run("predict", *SIZE, record, "--pga", "0.3g", "--set", FLOOR, *few)
+    assert code == 2
+    assert "floor 3 of 5" in err
