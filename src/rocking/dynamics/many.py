@@ -109,7 +109,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         far they slid, in space also with the stable pose in which they end. Plane bodies with starts have ``start`` as
         the last dimension, with initial_rotation [rad] and initial_angular_velocity [rad/s] as its coordinates. Every
         history that rocks alone ends with its motion: energy then decides the outcome and the peak of the swings to
-        come, whose impacts are not counted.
+        come, whose impacts are not counted, so that ``still_rocking`` is the state at the end of the motion.
         Its attributes say which engine ran, and why bodies in
         space were refused.
 

@@ -15,7 +15,7 @@ from rocking.conventions import FEET, Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.lazy import presenter
@@ -234,6 +234,10 @@ class Response(ResponseBase):
         )
 
     @property
+    def _never_rests(self) -> bool:
+        return is_lossless(self.parameters)
+
+    @property
     def _cut(self) -> str:
         end = self.segments.count * self.segments.step
         over = self._finite < self.trajectory.rotation.size  # it lay before, or there is no result
@@ -416,7 +420,8 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
 ) -> Response:
     """Return how a plane body rocks without sliding or flying; on ground at rest without a motion."""
     # rotation, angular_velocity: theta [rad] and theta' [rad/s] at the start; duration: how long to follow the body
-    # [s]; if not given, the motion and 15 / p after it, on ground at rest until it rests or lies, or 300 / p
+    # [s]; if not given, the motion and 15 / p after it, and where the body then still rocks until it rests, at most 300
+    # / p after the motion; on ground at rest until it rests or lies, at most 300 / p
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
@@ -425,17 +430,25 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     rotation, velocity = start_within(parameters, rotation, angular_velocity)
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
     length = usual if duration is None else checks.positive("duration", duration, "s")
-    if motion is None:
-        segments = ground_at_rest(_FINE / quick, length)
-    else:
-        segments = motion.segments()
-        segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
     stream = checks.whole("stream", stream)
-    found = run(
-        parameters, segments, settings, engine=engine, scale=scale, stream=stream, rotation=rotation, velocity=velocity
-    )
-    if motion is None and duration is None:
-        found, segments = _until_rest(found, segments)
+
+    def computed(length: float) -> tuple[Any, Segments]:
+        if motion is None:
+            segments = ground_at_rest(_FINE / quick, length)
+        else:
+            segments = motion.segments()
+            segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
+        found = run(
+            parameters, segments, settings, engine=engine, scale=scale, stream=stream, rotation=rotation,
+            velocity=velocity,
+        )  # fmt: skip
+        return found, segments
+
+    found, segments = computed(length)
+    if duration is None and motion is None:
+        found, segments = _until_rest(found, segments, 0)
+    elif duration is None and motion is not None and found.still_rocking and not is_lossless(parameters):
+        found, segments = _gone_on(computed, motion.duration + _FREE / slow, found, segments)
     return Response(body, motion, parameters, settings, segments, scale, stream, found)
 
 
@@ -451,10 +464,27 @@ def start_within(parameters: RockingParameters, rotation: Any, angular_velocity:
     )
 
 
-def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:
+def is_lossless(parameters: RockingParameters) -> bool:
+    """Return whether no impact loses energy, so that the body never comes to rest."""
+    return parameters.left.coefficient * parameters.right.coefficient >= 1.0
+
+
+def _gone_on(computed: Any, length: float, found: Any, segments: Segments) -> tuple[Any, Segments]:
+    """Return the response until the body rests, up to a length [s]; as it was where that cannot be computed."""
+    length = min(length, most_samples_last(segments.step))
+    if length <= segments.duration:
+        return found, segments
+    longer, more = computed(length)
+    if longer.outcome is Outcome.FAILED:
+        return found, segments
+    return _until_rest(longer, more, segments.count)
+
+
+def _until_rest(found: Any, segments: Segments, least: int) -> tuple[Any, Segments]:
+    """Return a response without the samples at rest at its end; at least so many stretches are kept."""
     moving = (found.rotation != 0.0) | (found.angular_velocity != 0.0)
-    last = int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2
+    last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, least)
     if last >= found.rotation.size:
         return found, segments
     shorter = replace(found, rotation=found.rotation[: last + 1], angular_velocity=found.angular_velocity[: last + 1])
-    return shorter, Segments.still(segments.step, last)
+    return shorter, segments.first(last)

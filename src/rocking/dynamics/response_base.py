@@ -78,7 +78,14 @@ class ResponseBase(Exported):
         if not self.still_rocking:
             return ""
         doing, end, place = self._last_motion
-        return f"it is still {doing} when the computation ends at {end:.4g} s, {place}; later impacts are not counted"
+        why = "; no impact loses energy, so that it never comes to rest" if self._never_rests else ""
+        ends = f"when the computation ends at {end:.4g} s, {place}; later impacts are not counted"
+        return f"it is still {doing} {ends}{why}"
+
+    @property
+    def _never_rests(self) -> bool:
+        """Whether impacts lose no energy."""
+        return False
 
     @property
     def summary(self) -> str:
@@ -194,6 +201,11 @@ class ResponseBase(Exported):
 
 
 _MOST_SAMPLES = 2_000_000
+
+
+def most_samples_last(step: float) -> float:
+    """Return the longest duration of which a response may have samples [s]."""
+    return _MOST_SAMPLES * step
 
 
 def ground_at_rest(step: float, length: float) -> Segments:

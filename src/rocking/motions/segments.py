@@ -70,6 +70,11 @@ class Segments:
         vertical = None if self.vertical is None else np.vstack([self.vertical, zeros])
         return Segments(self.step, np.vstack([self.horizontal, zeros]), vertical)
 
+    def first(self, count: int) -> "Segments":
+        """Return the first stretches alone."""
+        vertical = None if self.vertical is None else self.vertical[:count]
+        return Segments(self.step, self.horizontal[:count], vertical)
+
     @property
     def count(self) -> int:
         """Number of stretches."""

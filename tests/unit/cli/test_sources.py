@@ -1,4 +1,4 @@
-"""The floor, its building and the file with its SHA-256 stand on every page, in every JSON and report that used them."""
+"""The floor, its building and the file with its SHA-256 stand on every page, in every JSON and every report."""
 
 import hashlib
 import json

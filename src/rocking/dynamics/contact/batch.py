@@ -18,6 +18,7 @@ from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import (
     AFTER,
     FINE,
+    LONGER,
     ContactResponse,
     imposed_on,
     length_of,
@@ -255,11 +256,15 @@ class _Table:
         states = [[state_at_start(start, base) for start in self.starts] for base in self.bases]
         state = np.array([[each[:6] for each in row] for row in states])
         touching = np.array([[sum(1 if foot < 0 else 2 for foot in each.touching) for each in row] for row in states])
-        ends = np.array([
-            [ends_of(length_of(motion, slow, self.duration), each.step, isinstance(motion, Pulse), slow)
-             for motion, each in zip(self.motions, segments, strict=True)]
-            for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
-        ])  # fmt: skip
+        lengths = (AFTER, *LONGER) if self.duration is None else (AFTER,)
+        ends = [
+            np.array([
+                [ends_of(length_of(motion, slow, self.duration, after), each.step, isinstance(motion, Pulse), slow)
+                 for motion, each in zip(self.motions, segments, strict=True)]
+                for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
+            ])
+            for after in lengths
+        ]  # fmt: skip
         shape = (
             len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size,
             len(self.starts),
@@ -271,10 +276,22 @@ class _Table:
             values: dict[str, Any] = dict(zip(NUMBERS[:4], np.array(numbers)[body].T, strict=True))
             values |= {"friction": self.friction[mu], "bounce": self.law.bounce, "scale": self.scales[scale]}
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
-            values |= {"end": ends[body, motion]}
             values |= dict(zip(NUMBERS[10:], state[body, start].T, strict=True))
+            values = {name: np.broadcast_to(each, body.shape) for name, each in values.items()}
             law, how, feet = self.law.bounce_law, self.settings, touching[body, start]
-            pieces.append(run_compiled(library, values, motion, law, feet, settings=how, threads=threads))
+            found: dict[str, np.ndarray] = {}
+            lossless = values["imposed_left"] * values["imposed_right"] >= 1.0
+            rows = np.arange(body.size)
+            for end in ends:  # what still rocks at one end is followed to the next
+                some = {name: each[rows] for name, each in values.items()} | {"end": end[body[rows], motion[rows]]}
+                made = run_compiled(library, some, motion[rows], law, feet[rows], settings=how, threads=threads)
+                found = found or {name: np.zeros(body.size, each.dtype) for name, each in made.items()}
+                for name, each in made.items():
+                    found[name][rows] = each
+                rows = rows[(made["still_rocking"] == 1) & ~lossless[rows]]
+                if not rows.size:
+                    break
+            pieces.append(found)
             if progress is not None:
                 progress(last - first)
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})

@@ -51,6 +51,11 @@ class GroundContact:
         object.__setattr__(self, "bounce_law", checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS))
         plausibility.warn(plausibility.of_friction(self.friction))
 
+    @property
+    def is_lossless(self) -> bool:
+        """Whether imposed coefficients lose no energy at rocking impacts, so that the body never comes to rest."""
+        return self.restitution is not None and self.restitution[0] * self.restitution[1] >= 1.0
+
 
 _ROUNDING = 1e-13
 

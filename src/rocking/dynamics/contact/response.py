@@ -16,7 +16,7 @@ from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, place
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, is_none
-from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -197,6 +197,10 @@ class ContactResponse(ResponseBase):
         return self.trajectory.peak
 
     @property
+    def _never_rests(self) -> bool:
+        return self.law.is_lossless
+
+    @property
     def _ending(self) -> str:
         words = [self.outcome.value]
         if self.peak_rotation > 0.0 and self.outcome is not Outcome.OVERTURNED:
@@ -284,6 +288,8 @@ FINE, AFTER = 0.1, 15.0
 """sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion."""
 
 _FREE = 60.0  # the same on ground at rest
+LONGER = 30.0, 60.0, 120.0, 240.0, 300.0
+"""The same where the body still rocks at the end of the one before."""
 
 
 def response_with_contact(  # noqa: PLR0913 - what the front door hands on
@@ -301,7 +307,8 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
 ) -> ContactResponse:
     """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion."""
     # restitution: None for impacts by complementarity alone; duration: how long to follow the body [s]; if not given,
-    # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest
+    # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest, and where the body then still rocks
+    # 300 sqrt(R / g)
     base = PlaneBase.of_body(body)
     law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
@@ -312,7 +319,18 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, base, settings.gravity, duration)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    history = ContactEngine(base, segments, law, settings, scale).run(state_at_start(start, base))
+
+    def computed(segments: Segments) -> History:
+        return ContactEngine(base, segments, law, settings, scale).run(state_at_start(start, base))
+
+    history, slow = computed(segments), math.sqrt(base.size / settings.gravity)
+    for after in LONGER if duration is None and not law.is_lossless else ():
+        length = (0.0 if motion is None else motion.duration) + after * slow
+        if not history.still_rocking or length > most_samples_last(segments.step):
+            break
+        if length > segments.duration:
+            longer = _segments(motion, base, settings.gravity, length)
+            history, segments = computed(longer), longer
     return ContactResponse(body, motion, base, law, settings, segments, scale, history)
 
 
@@ -329,11 +347,11 @@ def imposed_on(body: Body, restitution: Any, settings: Settings) -> tuple[float,
     return parameters.left.coefficient, parameters.right.coefficient
 
 
-def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None) -> float:
-    """Return how long to follow a body [s]; slow: sqrt(R / g)."""
+def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None, after: float = AFTER) -> float:
+    """Return how long to follow a body [s]; slow: sqrt(R / g), after: how many of these after the motion."""
     if duration is not None:
         return checks.positive("duration", duration, "s")
-    return motion.duration + AFTER * slow
+    return motion.duration + after * slow
 
 
 def _segments(motion: object, base: PlaneBase, gravity: float, duration: float | None) -> Segments:

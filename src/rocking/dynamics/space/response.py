@@ -346,8 +346,8 @@ def response_in_space(
     duration: float | None = None,
 ) -> SpatialResponse:
     """Return how a body rocks in space; without any component, when it is let go."""
-    # duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, on ground at rest until
-    # it rests or lies, or 300 / p
+    # duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, and where it then still
+    # rocks until it rests or lies, at most 300 / p after the motion, but for round bases; on ground at rest the same
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start = started(start, made.frequency(conventions.g))
@@ -360,9 +360,18 @@ def response_in_space(
     plausibility.warn(plausibility.of_scaled(shaken, scale))
     engine = SpatialReference(made, ground, law_of(restitution, made), settings)
     found = engine.run(start.quaternion, start.body_velocity, length)
+    least = length if shaken else 0.0
+    rocks = found.outcome is Outcome.ROCKED and found.pieces[-1].contact.mode is not ContactMode.REST
+    if shaken and duration is None and rocks and not made.round:  # a rolling base takes far longer to compute
+        longest = max(motion.duration for motion in shaken) + _LONG / p
+        ground = ground_of(*components, until=longest, scale=scale)
+        engine = SpatialReference(made, ground, law_of(restitution, made), settings)
+        longer = engine.run(start.quaternion, start.body_velocity, longest)
+        if longer.outcome is not Outcome.FAILED:
+            found, length = longer, longest
     last = found.pieces[-1]
-    rests = not shaken and duration is None and last.contact.mode is ContactMode.REST
-    end = min(length, last.start + _FINE / p if rests else last.end)
+    rests = duration is None and last.contact.mode is ContactMode.REST
+    end = min(length, max(least, last.start + _FINE / p) if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
     return SpatialResponse(made, ground, engine.law, settings, time, found, end, components)
