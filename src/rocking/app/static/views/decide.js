@@ -163,6 +163,7 @@ const Verdict = ({ answer, question }) => {
     <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns under", "least factor"]} rows=${rows} />
     <h3>How likely is it?</h3>
     <${Chances} of=${answer.prediction} />
+    <${Sources} of=${answer.prediction} />
     ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">Models that say nothing of this body:
       ${Object.entries(answer.refused).map(([name, why]) => `${name}: ${why}`).join("; ")}</p>`}`;
 };
@@ -180,19 +181,30 @@ const Chances = ({ of: { probability, beside } }) => html`
       ...Object.entries(beside).map(([model, each]) => [`overturns, all else alike, by ${modelWords(model)}`, each])].map(([words, each]) => [
       words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
 
+/** Source and processing of the motions, and the scale of the words for probabilities.
+ * @param {{ of: any }} props */
+const Sources = ({ of: { motions, likelihood_scale, not_sampled, repairs } }) => html`
+  <details><summary>Source and processing of the ground motions</summary>
+    <ul translate="no">${motions.map((/** @type {any} */ each) => html`<li key=${each.name}>${each.name}: ${each.provenance.join("; ")}</li>`)}</ul></details>
+  <details><summary>Likelihood terms</summary><p translate="no">${likelihood_scale}</p></details>
+  <details><summary>Not sampled</summary>
+    <ul>${not_sampled.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
+  ${repairs.length > 0 && html`<details><summary>Mesh repairs</summary>
+    <ul>${repairs.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>`}`;
+
 /** @param {Given} given */
 const Forecast = ({ answer, question }) => {
-  const { value } = answer.probability.overturning;
+  const { high } = answer.probability.overturning;
   const shares = Object.entries(answer.shares).sort(([, one], [, other]) => other.total - one.total);
   /** @param {number} low @param {number} at @param {number} high */
   const share = (low, at, high) => `${number(at, 2)} (${number(low, 2)} to ${number(high, 2)})`;
   return html`
-    <p class=${`verdict ${value < 0.01 ? "good" : value < 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
+    <p class=${`verdict ${high <= 0.05 ? "good" : high <= 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
     <p>${answer.growth.sentence}</p>
     <${Drawing} question=${question} alt="How likely it rocks, slides and overturns, and what decides that" />
     <h3>How likely is it?</h3>
     <${Chances} of=${answer} />
-    ${shares.length > 0 && !shares.some(([, each]) => each.total) && html`<p>Nothing decides it: all bodies end alike.</p>`}
+    ${answer.decides && html`<p>${answer.decides}</p>`}
     ${shares.some(([, each]) => each.total) && html`<h3>What decides it?</h3>
       <${Rows} caption="Shares" head=${["what is not known", "alone", "with the others"]}
         rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
@@ -201,7 +213,8 @@ const Forecast = ({ answer, question }) => {
         rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.low, 3)})`,
           `${percent(e.probability_high)} (${number(e.high, 3)})`])} />`}
     <details><summary>What was assumed</summary>
-      <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>`;
+      <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
+    <${Sources} of=${answer} />`;
 };
 
 /** @param {any} value */
