@@ -154,7 +154,8 @@ def sentences_of_the_server() -> list[str]:
         "costs decides.",
         "Margin to overturning: 0.83 times this record (KED, mirrored), a PGA of 0.3 g; it stands under the motion as "
         "it is, which is no margin. The 2 that is asked for is not reached.",
-        "Overturning is unlikely given this motion (PGA 0.3 g; PGV 0.5 m/s): probability 20 % (95 % interval 10 % to 30 %).",
+        "Overturning is unlikely given this motion (PGA 0.3 g; PGV 0.5 m/s): probability 20 % (95 % interval 10 % to "
+        "30 %).",
         "Stays still up to 0.14 g; at PGA 0.3 g it rocks, and fell over in 16 of 20 simulated earthquakes.",
         "No coefficient of restitution: impacts take no energy: r is 1.01 (0.99 to 1.02).",
         "Difference to Housner",

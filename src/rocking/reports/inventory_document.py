@@ -5,7 +5,17 @@ from collections.abc import Mapping, Sequence
 from rocking.conventions import g
 from rocking.language import Language
 from rocking.motions.summary import provenance_rows, summaries_of
-from rocking.reports.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable, made_with, table
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    made_with,
+    table,
+)
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light
@@ -205,7 +215,10 @@ class _Sections:
         impacts = "report.impacts_drawn" if assessment.drawn else "report.impacts"
         source, level = f"{source[:1].upper()}{source[1:]}", hazard.words(say.code)
         motions = say("report.hazard", source=source, level=level, low=low, high=high)
-        blocks = [Paragraph(motions), Paragraph(say(impacts, restitution=assessment.restitution, others=others))]
+        blocks: list[Block] = [
+            Paragraph(motions),
+            Paragraph(say(impacts, restitution=assessment.restitution, others=others)),
+        ]
         if hazard.synthetic:
             origin = {name: say.translated(hazard.description[name]) for name in ("generator", "origin")}
             blocks.insert(1, Paragraph(say("report.origin", **origin)))
