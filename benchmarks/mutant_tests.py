@@ -44,7 +44,7 @@ def record(folder: Path, tests: list[str], workers: int) -> None:
     durations, stale = folder / "durations.json", () if whole else tuple(f"{path}::" for path in changed)
     old = {} if whole else json.loads(durations.read_text(encoding="utf-8"))
     print("Running the tests once to see which runs which line ...", flush=True)
-    command = [sys.executable, "-m", "pytest", "-q", "-m", "not timed and not browser"]
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "not speed and not browser"]
     command += ["-n", str(workers), "--dist", "loadfile"] if workers > 1 else []
     command += ["--cov", "--cov-context=test", "--cov-report=", "--cov-fail-under=0"]
     command += ["-p", "benchmarks.mutant_tests"]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from waiting import HANG
 
 from rocking.bodies import Block
 from rocking.dynamics import Response, simulate
@@ -54,7 +55,7 @@ def finished(served: Any, name: str, kind: str = "stripes", **tables: Any) -> st
     job = {"campaign": {"name": name, "kind": kind}, "body": BODY, **tables}
     job = {key: table for key, table in job.items() if table is not None}
     made = served.api("studies", json={"job": job})["id"]
-    until = time.perf_counter() + 60.0
+    until = time.perf_counter() + HANG
     while time.perf_counter() < until:
         found = served.api(f"studies/{made}", method="GET")
         if found["state"] == "done":
@@ -93,7 +94,7 @@ def number(page: Any, name: str, column: int = 0) -> float:
 
 def settled(page: Any, name: str, expected: float, column: int = 0, rel: float = 1e-9) -> None:
     """Wait until a number of the table is what it must be."""
-    deadline = time.monotonic() + 20.0
+    deadline = time.monotonic() + HANG
     seen = math.nan
     while time.monotonic() < deadline:
         found = facts(page).get(name)
@@ -102,9 +103,6 @@ def settled(page: Any, name: str, expected: float, column: int = 0, rel: float =
             return
         page.wait_for_timeout(20)
     raise AssertionError(f"{name}: {seen}, expected {expected}")
-
-
-SPACE_WAIT = 120_000
 
 
 def scan(folder: Path, *, hole: bool = True, faces: int = 768) -> Path:
@@ -142,8 +140,8 @@ def asked_in_space(page: Any, what: str, path: Path | None = None) -> Any:
     expect(outcome.get_by_role("heading", level=2)).to_contain_text(
         {"equilibria": "How it can stand", "cor": "Its edges", "simulate": "How it moves"}[what]
     )
-    expect(outcome).to_have_attribute("data-state", "done", timeout=SPACE_WAIT)
-    expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true", timeout=SPACE_WAIT)
+    expect(outcome).to_have_attribute("data-state", "done")
+    expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true")
     return outcome
 
 

@@ -2,15 +2,18 @@
 
 OpenBLAS picks its kernels by the processor, numpy some of its functions, the compiled engines their instruction set,
 and the C library its versions with fused multiply-add; each can be told to do as on another processor.
-``python tests/portable.py [arguments of pytest]`` runs the tests once under each.
+``python tests/portable.py [--setting NAME] [arguments of pytest]`` runs the tests under one setting, or under each.
 """
 
+import argparse
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+NO_AVX512, LEAST = "no AVX-512, AMD", "least processor"
+_WIDE = ("AVX512F", "AVX512VL", "AVX512BW", "AVX512DQ")
 _FEATURES = """
 import json
 from numpy._core import _multiarray_umath as n
@@ -30,14 +33,19 @@ def settings() -> dict[str, dict[str, str]]:
     fused = "FMA3" in features or "X86_V3" in features
     found = {
         "OpenBLAS of AVX-512": {"OPENBLAS_CORETYPE": "SkylakeX" if wide else ""},
-        "OpenBLAS of AVX2": {"OPENBLAS_CORETYPE": "Haswell" if fused else "", "ROCKING_ISA": "avx2"},
         "OpenBLAS of AVX": {"OPENBLAS_CORETYPE": "Sandybridge"},
-        "OpenBLAS of SSE3, plain engines": {"OPENBLAS_CORETYPE": "Prescott", "ROCKING_ISA": "plain"},
-        "Zen: OpenBLAS and numpy without AVX-512": {
-            "OPENBLAS_CORETYPE": "Zen" if fused else "", "NPY_DISABLE_CPU_FEATURES": " ".join(wide),
+        "no AVX-512, Intel": {
+            "OPENBLAS_CORETYPE": "Haswell" if fused else "", "ROCKING_ISA": "avx2",
+            "NPY_DISABLE_CPU_FEATURES": " ".join(wide), "GLIBC_TUNABLES": _hidden(*_WIDE),
         },
-        "numpy of the least processor": {"NPY_DISABLE_CPU_FEATURES": " ".join(features)},
-        "C library without fused multiply-add": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F"},
+        NO_AVX512: {
+            "OPENBLAS_CORETYPE": "Zen" if fused else "", "ROCKING_ISA": "avx2",
+            "NPY_DISABLE_CPU_FEATURES": " ".join(wide), "GLIBC_TUNABLES": _hidden(*_WIDE),
+        },
+        LEAST: {
+            "OPENBLAS_CORETYPE": "Prescott", "ROCKING_ISA": "plain", "NPY_DISABLE_CPU_FEATURES": " ".join(features),
+            "GLIBC_TUNABLES": _hidden("AVX2", "FMA", "FMA4", *_WIDE),
+        },
     }  # fmt: skip
     known = _said(_ENGINES).split()
     return {
@@ -47,24 +55,31 @@ def settings() -> dict[str, dict[str, str]]:
     }
 
 
+def _hidden(*features: str) -> str:
+    return "glibc.cpu.hwcaps=" + ",".join(f"-{feature}" for feature in features)
+
+
 def _said(program: str) -> str:
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
 
 
-def main(arguments: list[str]) -> int:
-    """Run pytest under every setting; the number of settings under which something failed."""
-    failed = []
-    for name, variables in settings().items():
-        if not variables:
-            print(f"== {name}: skipped, this processor cannot do as that one", flush=True)
+def main(names: list[str], arguments: list[str]) -> int:
+    """Run pytest under the named settings, or under all; return the number of settings under which a test failed."""
+    failed, every = [], settings()
+    for name in names or every:
+        if not every[name]:
+            print(f"== {name}: skipped, this processor cannot imitate that one", flush=True)
             continue
-        print(f"== {name}: {variables}", flush=True)
+        print(f"== {name}: {every[name]}", flush=True)
         command = [sys.executable, "-m", "pytest", *arguments]
-        if subprocess.run(command, env=os.environ | variables, cwd=Path(__file__).parents[1], check=False).returncode:
+        if subprocess.run(command, env=os.environ | every[name], cwd=Path(__file__).parents[1], check=False).returncode:
             failed.append(name)
     print("failed: " + ", ".join(failed) if failed else "passed under every setting")
     return len(failed)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    parser = argparse.ArgumentParser(description="Run pytest under settings that imitate other processors.")
+    parser.add_argument("--setting", action="append", default=[], help="name of a setting; repeatable [default: all]")
+    given, rest = parser.parse_known_args()
+    sys.exit(main(given.setting, rest))

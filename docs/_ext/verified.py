@@ -241,7 +241,9 @@ def _peer(name: str, word: str) -> str:
 
 
 def _settings() -> str:
-    return str(len(re.findall(r'^        "[^"]+": \{', (ROOT / "tests/portable.py").read_text("utf-8"), re.M)))
+    return str(
+        len(re.findall(r'^        ("[^"]+"|[A-Z_0-9]+): \{', (ROOT / "tests/portable.py").read_text("utf-8"), re.M))
+    )
 
 
 def _records() -> str:

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 
 import pytest
 from browser_pages import OwnServer, link
+from waiting import HANG
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -40,6 +42,7 @@ class Served:
         import httpx
 
         headers = {"Authorization": f"Bearer {self.key}", "Origin": self.url}
+        options.setdefault("timeout", HANG)
         answer = httpx.request(options.pop("method", "POST"), f"{self.url}/api/{path}", headers=headers, **options)
         answer.raise_for_status()
         return answer.json()
@@ -85,7 +88,13 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
             yield Served(told["url"].rstrip("/"), told["token"], told["port"], folder, key)
         finally:
             process.terminate()
-            process.wait(timeout=20)
+            process.wait(timeout=HANG)
+
+
+def _patient(opened: Any) -> Any:
+    """Set the guard against hanging of a context or page, and return it."""
+    opened.set_default_timeout(1000.0 * HANG)
+    return opened
 
 
 @pytest.fixture(scope="session")
@@ -94,7 +103,11 @@ def browser() -> Iterator[Any]:
     if not Path(CHROMIUM).exists():
         pytest.skip(f"no Chromium at {CHROMIUM}; install it, or name another in ROCKING_CHROMIUM")
     with playwright.sync_playwright() as driver:
+        playwright.expect.set_options(timeout=1000.0 * HANG)
         launched = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        new_context, new_page = launched.new_context, launched.new_page
+        launched.new_context = lambda **options: _patient(new_context(**options))
+        launched.new_page = lambda **options: _patient(new_page(**options))
         yield launched
         launched.close()
 
@@ -163,10 +176,11 @@ def page(open_page: Callable[..., Any]) -> Any:
 
 @pytest.fixture(scope="session")
 def until() -> Callable[..., None]:
-    """Wait for a state of the test itself: `until(page, condition)`; what never comes fails after half a minute."""
+    """Wait for a state of the test itself: `until(page, condition)`; what never comes fails."""
 
     def waited(page: Any, condition: Callable[[], Any]) -> None:
-        for _ in range(1500):
+        deadline = time.monotonic() + HANG
+        while time.monotonic() < deadline:
             if condition():
                 return
             page.wait_for_timeout(20)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from browser_pages import facts, number, settled
+from waiting import allowed
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -238,7 +239,7 @@ def test_names_are_text_and_never_markup(page: Any) -> None:
     assert page.locator("#summary img").count() == 0
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_typing_redraws_within_150_ms(page: Any) -> None:
     """From a key press to the new numbers on screen: the median of thirty is under 150 ms."""
     settled(page, "Slenderness h/b", 4.0)
@@ -262,7 +263,7 @@ def test_typing_redraws_within_150_ms(page: Any) -> None:
         }"""
     )
     assert len(millis) == 30
-    assert median(millis) < 150.0, millis
+    assert median(millis) < 1000.0 * allowed(0.15), millis
 
 
 def test_phone(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:

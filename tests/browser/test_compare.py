@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from browser_pages import BODY, DECISIVE, GENTLE, finished, link, response, saved
 from playwright.sync_api import expect
+from waiting import allowed
 
 from rocking.outcome import Outcome
 from rocking.restitution import models
@@ -105,7 +106,7 @@ def test_margins_are_those_of_the_command_line(open_page: Callable[..., Any], se
     page = compared(open_page, GENTLE)
     page.get_by_role("button", name="Find the margins").click()
     cell = row(page, "housner").locator("td").last
-    expect(cell).to_have_text(re.compile(r"\d"), timeout=90_000)
+    expect(cell).to_have_text(re.compile(r"\d"))
     until(page, lambda: kept() == before)
     tables = {"body": BODY, "motion": {"pulse": GENTLE}, "assess": {}}
     asked = served.api("questions", json={"command": "assess", "tables": tables, "files": {}})["id"]
@@ -137,7 +138,7 @@ def test_studies_are_compared(open_page: Callable[..., Any], served: Any) -> Non
     section = page.locator("#view-compare")
     section.get_by_label("Study", exact=True).select_option("two models")
     picture = section.locator("img.drawing")
-    expect(section.get_by_text("Being drawn")).to_have_count(0, timeout=60_000)
+    expect(section.get_by_text("Being drawn")).to_have_count(0)
     assert picture.evaluate("image => image.naturalWidth") > 100
     sent = page.request.get(picture.evaluate("image => image.src")).body()
     assert saved(page, "SVG", "picture Models compared: two models").path().read_bytes() == sent
@@ -146,7 +147,7 @@ def test_studies_are_compared(open_page: Callable[..., Any], served: Any) -> Non
         section.get_by_role("button", name="What the choice changes as CSV").click()
     assert "overturned: median ratio" in waiting.value.path().read_text(encoding="utf-8-sig")
     section.get_by_label("Study", exact=True).select_option("one model")
-    expect(page.get_by_test_id("not-compared")).to_contain_text("one model", timeout=60_000)  # drawn by the server too
+    expect(page.get_by_test_id("not-compared")).to_contain_text("one model")  # drawn by the server too
 
 
 @pytest.mark.parametrize("width", [320, 768, 1024, 3840])
@@ -164,7 +165,7 @@ def test_no_bar(open_page: Callable[..., Any], width: int) -> None:
     assert low == []
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_the_cursor_takes_below_4_ms(open_page: Callable[..., Any]) -> None:
     """The script of a move of the cursor, over every figure and model: below 4 ms at the median of 200."""
     page = compared(open_page)
@@ -188,4 +189,4 @@ def test_the_cursor_takes_below_4_ms(open_page: Callable[..., Any]) -> None:
     ]
     assert max(told) - min(told) < 0.02  # the moves were followed
     print(f"median {statistics.median(times):.2f} ms, largest {max(times):.2f} ms")
-    assert statistics.median(times) < 4.0
+    assert statistics.median(times) < 1000.0 * allowed(0.004)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import SPACE_WAIT, scan
+from browser_pages import scan
 from playwright.sync_api import expect
 
 from rocking import examples
@@ -120,7 +120,7 @@ class Hands:
         self.to("Ask #")
         self.press("Enter")
         outcome = self.page.locator(f"#view-{step}").get_by_test_id("outcome")
-        expect(outcome).not_to_have_attribute("data-state", re.compile("waiting|running"), timeout=SPACE_WAIT)
+        expect(outcome).not_to_have_attribute("data-state", re.compile("waiting|running"))
         expect(outcome).to_have_attribute("data-state", "done")
         return outcome
 
@@ -135,7 +135,7 @@ class Hands:
     def save(self, words: str, folder: Path) -> bytes:
         """Save a file by a button; returns what is in it."""
         self.to(words)
-        with self.page.expect_download(timeout=SPACE_WAIT) as waiting:
+        with self.page.expect_download() as waiting:
             self.press("Enter")
         waiting.value.save_as(folder / "saved")
         return (folder / "saved").read_bytes()
@@ -189,7 +189,7 @@ def test_an_engineer(hands: Hands, tmp_path: Path) -> None:
         hands.write("6")
     hands.to("Launch #")
     hands.press("Enter")
-    page.get_by_test_id("map-canvas").wait_for(timeout=SPACE_WAIT)
+    page.get_by_test_id("map-canvas").wait_for()
     hands.to("[map-canvas]")
     hands.press("ArrowRight", "ArrowUp", "+", "0")
     expect(page.get_by_test_id("map-told")).to_contain_text(" = ")

@@ -128,7 +128,7 @@ def test_a_squat_body_is_warned_of_in_words(open_page: Callable[..., Any], shot:
 
 def test_the_table_is_saved(impact: Any) -> None:
     """The CSV of the table has every digit."""
-    with impact.expect_download(timeout=60_000) as saved:
+    with impact.expect_download() as saved:
         impact.get_by_role("button", name="as CSV").first.click()
     assert "0.9117647058823529" in saved.value.path().read_text(encoding="utf-8-sig")
 

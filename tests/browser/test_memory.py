@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
 from browser_pages import asked_in_space, link, scan
 
 MANY = 1000 if os.environ.get("ROCKING_CAMPAIGN") else 100
@@ -83,7 +82,6 @@ def grown(page: Any, turns: Iterator[None], many: int = MANY) -> dict[str, float
     return {name: seen[-1][name] / seen[0][name] - 1.0 for name in seen[0]}
 
 
-@pytest.mark.timed
 def test_it_does_not_grow(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """Steps, sliders, answers, Compare, In space and undo, again and again: neither nodes nor listeners, nor the heap.
 
@@ -99,7 +97,6 @@ def test_it_does_not_grow(open_page: Callable[..., Any], tmp_path: Path) -> None
     assert found["heap"] < 0.1, found
 
 
-@pytest.mark.timed
 def test_what_grows_is_seen(open_page: Callable[..., Any]) -> None:
     """Negative control: a script that keeps some nodes and their listeners at every click."""
     page = open_page(link())

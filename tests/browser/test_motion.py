@@ -349,7 +349,7 @@ def test_counts_and_their_stations_belong_together(view: Any, tmp_path: Path) ->
     step.get_by_label("high").fill("20")
     records.get_by_role("button", name="Ask", exact=True).click()
     use = records.get_by_role("button", name="Use it as the motion")
-    use.click(timeout=90_000)
+    use.click()
     expect(view.locator("#status")).to_contain_text("is the motion of this project")
     view.locator("#tab-motion").click()
     expect(view.get_by_test_id("record-held")).to_contain_text("counts-corrected.csv")

@@ -163,9 +163,9 @@ def test_every_figure_is_saved_as_it_is_seen(open_page: Callable[..., Any], view
     about, count = FIGURES[view]
     if view == "impact":
         bed = page.get_by_test_id("bed")
-        bed.get_by_role("button", name="Compute").click(timeout=60_000)
-        page.get_by_test_id("bed-chart").wait_for(timeout=60_000)
-    expect(section.locator(".chart-files:visible")).to_have_count(count, timeout=60_000)
+        bed.get_by_role("button", name="Compute").click()
+        page.get_by_test_id("bed-chart").wait_for()
+    expect(section.locator(".chart-files:visible")).to_have_count(count)
     page.wait_for_load_state("networkidle")
     if view == "response":
         page.get_by_test_id("scene-stage").focus()

@@ -428,7 +428,7 @@ def test_a_server_that_is_killed_loses_nothing(browser: Any, own: Any) -> None:
         width.fill(while_gone)
         expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
         own.start()
-        expect(page.get_by_test_id("project-saved")).to_have_text("saved", timeout=20_000)
+        expect(page.get_by_test_id("project-saved")).to_have_text("saved")
         other = context.new_page()
         other.goto(own.told["url"])
         expect(other.get_by_label("Width")).to_have_value(while_gone)

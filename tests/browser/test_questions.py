@@ -12,7 +12,6 @@ from browser_pages import link
 from rocking import examples
 
 expect = pytest.importorskip("playwright.sync_api").expect
-LONG = 90_000
 
 
 def asked(page: Any, view: str) -> Any:
@@ -20,7 +19,7 @@ def asked(page: Any, view: str) -> Any:
     section = page.locator(f"#view-{view}")
     section.get_by_role("button", name="Ask", exact=True).click()
     outcome = section.get_by_test_id("outcome")
-    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
+    expect(outcome).to_have_attribute("data-state", "done")
     return outcome
 
 
@@ -70,7 +69,7 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     expect(outcome.locator("img.drawing")).to_be_visible()
     section.get_by_label("friction", exact=True).fill("-1")
     section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_role("alert")).to_contain_text("riction", timeout=LONG)
+    expect(section.get_by_role("alert")).to_contain_text("riction")
 
 
 def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> None:
@@ -91,7 +90,7 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     friction = section.get_by_label("friction", exact=True)
     friction.fill("-2")
     ask.click()
-    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(friction).to_be_focused()
     expect(friction).to_have_accessible_description("Friction must be in [0.01, 10], got -2.")
     expect(section.locator("[aria-invalid=true]")).to_have_count(1)
@@ -180,7 +179,7 @@ def test_a_list_of_objects(open_page: Callable[..., Any], shot: Callable[..., An
     section.get_by_label("Drop a list here, or").set_input_files(wrong)
     expect(section.get_by_role("list", name="Files")).to_contain_text("nothing.csv")
     section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(section.get_by_role("alert")).to_contain_text("nothing.csv")
 
 
@@ -225,7 +224,7 @@ def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., 
     shot(page, "inventory corrected")
     line.fill("büste;15;20;30")
     section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_test_id("verdict")).not_to_contain_text("not assessed", timeout=LONG)
+    expect(section.get_by_test_id("verdict")).not_to_contain_text("not assessed")
     lights = section.get_by_role("table", name="Objects, the worst first")
     expect(lights.locator("tbody tr")).to_have_count(2)
     for name in ("Döschen", "büste"):
@@ -281,7 +280,7 @@ def test_the_microphone(open_page: Callable[..., Any], served: Any) -> None:
     end.click()
     expect(section.get_by_role("list", name="Files")).to_contain_text("recording.wav")
     section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(section.get_by_role("alert")).to_contain_text("ecording.wav")
 
 
@@ -335,7 +334,7 @@ def test_a_refusal_names_fields_of_the_page(
     section.get_by_label("The body").select_option("no")
     section.get_by_role("button", name="Ask", exact=True).click()
     refusal = section.get_by_test_id("outcome").get_by_role("alert")
-    expect(refusal).to_contain_text("drift.csv: No coefficient", timeout=LONG)
+    expect(refusal).to_contain_text("drift.csv: No coefficient")
     expect(refusal).to_contain_text("choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d.")
     assert not re.search(r"--|svg|=true", refusal.inner_text())
     expect(refusal).to_be_focused()

@@ -13,7 +13,6 @@ from rocking.motions import processed
 from rocking.motions.formats import read_motion
 
 expect = pytest.importorskip("playwright.sync_api").expect
-LONG = 90_000
 DROP = "Drop records or a folder here, or"
 
 
@@ -30,7 +29,7 @@ def asked(section: Any, state: str = "done") -> Any:
     """Press the button, and wait for the answer or the refusal."""
     section.get_by_role("button", name="Ask", exact=True).click()
     outcome = section.get_by_test_id("outcome")
-    expect(outcome).to_have_attribute("data-state", state, timeout=LONG)
+    expect(outcome).to_have_attribute("data-state", state)
     return outcome
 
 
@@ -101,7 +100,7 @@ def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any
 def stays_and_is_used(page: Any, section: Any) -> None:
     """After a reload file, steps and answer are there, and the record becomes the motion."""
     done = section.get_by_role("list", name="What was done")
-    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "done", timeout=LONG)
+    expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "done")
     expect(done).to_contain_text("band-pass 2 to 20 Hz")
     expect(section.get_by_role("listitem", name="Step 2, bandpass").get_by_label("low")).to_have_value("2")
     expect(section.get_by_role("list", name="Files")).to_contain_text("hall.txt")

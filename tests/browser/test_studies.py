@@ -12,6 +12,7 @@ from urllib.parse import urlencode
 import httpx
 import pytest
 from playwright.sync_api import expect
+from waiting import allowed
 
 PULSE = {
     "body": {"units": "m", "width": 0.5, "height": 2.0},
@@ -55,7 +56,7 @@ def launched_map(page: Any, name: str, cells: int = 24) -> None:
     counted(page, cells)
     page.locator("#study-name").fill(name)
     page.get_by_test_id("study-launch").click()
-    page.get_by_test_id("map-canvas").wait_for(timeout=60_000)
+    page.get_by_test_id("map-canvas").wait_for()
 
 
 def test_a_map_from_launch_to_the_history_of_a_cell(studies: Any, shot: Any, served: Any) -> None:
@@ -134,9 +135,7 @@ def test_axes_follow_the_motion_and_names_stay_apart(studies: Any) -> None:
     expect(across.locator("option[value=frequency_ratio]")).to_have_count(0)
     counted(studies, 3)
     studies.get_by_test_id("study-launch").click()
-    expect(studies.locator(".study", has_text="overturning map").first).to_have_attribute(
-        "data-state", "done", timeout=60_000
-    )
+    expect(studies.locator(".study", has_text="overturning map").first).to_have_attribute("data-state", "done")
 
 
 def table_of(amplitude: float) -> bytes:
@@ -173,7 +172,7 @@ def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: An
     shot(studies, "studies-records")
     studies.locator("#study-name").fill("cloud of records")
     studies.get_by_test_id("study-launch").click()
-    studies.get_by_test_id("fragility-fits").first.wait_for(timeout=60_000)
+    studies.get_by_test_id("fragility-fits").first.wait_for()
     assert studies.get_by_test_id("fragility-chart").count() >= 1
     studies.once("dialog", lambda dialog: dialog.accept())
     rows.first.get_by_role("button", name="Delete").click()
@@ -201,7 +200,7 @@ def test_a_fragility(studies: Any, shot: Any) -> None:
     studies.get_by_role("radio", name="Fragility").check(force=True)
     studies.locator("#study-name").fill("fragility of a column")
     studies.get_by_test_id("study-launch").click()
-    studies.get_by_test_id("fragility-fits").first.wait_for(timeout=90_000)
+    studies.get_by_test_id("fragility-fits").first.wait_for()
     assert studies.get_by_test_id("fragility-chart").count() >= 1
     assert "overturn" in studies.get_by_test_id("fragility-fits").first.inner_text()
     shot(studies, "studies-fragility")
@@ -212,7 +211,7 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     studies.get_by_role("radio", name="Rocking spectra").check(force=True)
     studies.locator("#study-name").fill("spectra of a pulse")
     studies.get_by_test_id("study-launch").click()
-    studies.get_by_test_id("spectrum-chart").wait_for(timeout=60_000)
+    studies.get_by_test_id("spectrum-chart").wait_for()
     assert studies.locator("[data-testid=spectrum-chart] .legend li").count() == 6
     keys = studies.locator("[data-testid=spectrum-chart] .legend li")
     looks = {}
@@ -227,7 +226,7 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     shot(studies, "studies-spectra")
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any, until: Callable[..., None]) -> None:
     """A long study shows progress, stops within a second of Cancel, keeps what is finished, and goes on."""
     models = ["ked", "housner", "horizontal-momentum", "shifted-impulse", "distributed-impulse", "plastic-winkler"]
@@ -236,19 +235,18 @@ def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any, until: Call
     studies.locator("#study-name").fill("long study")
     studies.get_by_test_id("study-launch").click()
     row = studies.locator(".study", has_text="long study")
-    row.locator("progress").wait_for(timeout=30_000)
-    expect(row).to_have_attribute("data-state", "running", timeout=60_000)
+    row.locator("progress").wait_for()
+    expect(row).to_have_attribute("data-state", "running")
     until(studies, lambda: row.locator("progress").evaluate("bar => bar.value") > 0.0)
     shot(studies, "studies-running")
     start = time.perf_counter()
     row.get_by_role("button", name="Cancel").click()
     expect(row).to_have_attribute("data-state", "cancelled")
-    # a second for the cancel itself, and a fifth for the push that tells it
-    assert time.perf_counter() - start < 1.2
+    assert time.perf_counter() - start < allowed(1.2)
     kept = row.locator("progress").evaluate("bar => bar.value")
     assert 0.0 < kept < 1.0
     row.get_by_role("button", name="Resume").click()
-    expect(row).to_have_attribute("data-state", "done", timeout=120_000)
+    expect(row).to_have_attribute("data-state", "done")
 
 
 FOCUS = """async () => {
@@ -285,7 +283,7 @@ def test_a_finished_study_takes_no_focus(studies: Any) -> None:
     studies.get_by_test_id("study-launch").click()
     name.focus()
     title = studies.locator(".study-result-title")
-    expect(title).to_have_text("typed on", timeout=60_000)
+    expect(title).to_have_text("typed on")
     canvas = studies.get_by_test_id("map-canvas")
     canvas.wait_for()
     expect(name).to_be_focused()
@@ -294,7 +292,7 @@ def test_a_finished_study_takes_no_focus(studies: Any) -> None:
     name.fill("looked at")
     canvas.focus()
     studies.get_by_test_id("study-launch").evaluate("node => node.click()")
-    expect(title).to_have_text("looked at", timeout=60_000)
+    expect(title).to_have_text("looked at")
     expect(title).to_be_focused()  # what was looked at has gone
 
 
@@ -359,7 +357,7 @@ def test_a_spectrum_of_one_slenderness_wears_the_look_of_its_model(studies: Any)
     studies.locator("#study-name").fill("one slenderness")
     studies.get_by_test_id("study-launch").click()
     keys = studies.locator("[data-testid=spectrum-chart] .legend li")
-    expect(keys).to_have_count(2, timeout=60_000)
+    expect(keys).to_have_count(2)
     ked, housner = (keys.filter(has_text=name).locator("path") for name in ("KED", "Housner"))
     expect(ked).to_have_attribute("stroke", "#D96C00")
     assert ked.get_attribute("stroke-dasharray") is None

@@ -20,7 +20,7 @@ def opened(page: Any, study: str) -> None:
 
 def saved(page: Any, testid: str, folder: Path) -> Path:
     """Press a button and keep its file."""
-    with page.expect_download(timeout=60_000) as download:
+    with page.expect_download() as download:
         page.get_by_test_id(testid).click()
     target = folder / f"{time.perf_counter_ns()} {download.value.suggested_filename}"
     download.value.save_as(target)

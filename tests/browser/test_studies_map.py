@@ -11,6 +11,7 @@ import httpx
 import numpy as np
 import pytest
 from playwright.sync_api import expect
+from waiting import HANG, allowed
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 CELLS = 1000 if CAMPAIGN else 500  # along each axis
@@ -37,7 +38,7 @@ SCRIPT = """() => {
 def million(served: Any) -> Iterator[str]:
     """Compute the map, as a script asks for it."""
     study = served.api("studies", json={"job": JOB})["id"]
-    deadline = time.monotonic() + 240.0
+    deadline = time.monotonic() + HANG
     while (state := served.api(f"studies/{study}", method="GET")["state"]) in {"waiting", "running"}:
         assert time.monotonic() < deadline
         time.sleep(0.2)
@@ -78,13 +79,13 @@ def colours(page: Any) -> np.ndarray:
     return np.array(flat)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_a_million_cells(
     open_page: Callable[..., Any], million: str, served: Any, calm: Callable[[Any], None], shot: Any
 ) -> None:
-    """Hovering a map of 1,000 x 1,000 takes below 8 ms of script a move, also looked into; what is told is the cell's.
+    """A move over a map of 1,000 x 1,000 has a limit of 8 ms of script, also zoomed in; the text is that of the cell.
 
-    Control: with a script of 10 ms a move, put there on purpose, the same measure is above 8 ms.
+    Control: a script that takes longer than the limit, put there on purpose, is measured above it.
     """
     page, took = shown(open_page)
     page.evaluate(SCRIPT)
@@ -102,8 +103,9 @@ def test_a_million_cells(
     shot(page, "studies-million-closer")
     found["closer"] = moved(page)
     print(f"shown in {took:.2f} s", {name: (statistics.median(each), max(each)) for name, each in found.items()})
+    limit = 1000.0 * allowed(0.008)
     for name, each in found.items():
-        assert float(np.quantile(each, 0.9)) < 8.0, name
+        assert float(np.quantile(each, 0.9)) < limit, name
     page.get_by_role("button", name="Show the whole map").click()
     assert np.array_equal(colours(page), before)
     shot(page, "studies-million")
@@ -125,10 +127,10 @@ def test_a_million_cells(
     endings = {0: "does not lift", 1: "stays standing", 2: "overturns"}
     assert endings[outcome] in words
     assert outcome != 2 or ("without" in words) is (impacts == 0)
-    page.evaluate("""addEventListener("pointermove", () => {
-      for (const until = performance.now() + 10; performance.now() < until;);
-    }, { capture: true })""")  # fmt: skip
-    assert statistics.median(moved(page, 20)) > 8.0
+    page.evaluate("""limit => addEventListener("pointermove", () => {
+      for (const until = performance.now() + 1.3 * limit; performance.now() < until;);
+    }, { capture: true })""", limit)  # fmt: skip
+    assert statistics.median(moved(page, 20)) > limit
 
 
 def test_a_frame_looks_closer(open_page: Callable[..., Any], served: Any, million: str) -> None:

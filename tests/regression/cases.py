@@ -39,12 +39,13 @@ PULSE = "sine:amplitude=3.2,period=0.8"
 
 
 def noise(factor: int, size: float, count: int = 600) -> rk.GroundMotion:
-    """Shaking by remainders of whole numbers."""
+    """Return a motion made of whole numbers: every processor has it to the last bit."""
     number = np.arange(count)
     walk = (number * number * factor + 11 * number) % 101 - 50
     slow = (number * factor // 7) % 41 - 20
-    wave = 24.0 * np.sin(number * 0.11) * np.exp(-(((number - 200) / 120.0) ** 2))
-    return rk.GroundMotion(size * (walk / 4.0 + slow + 2.0 * wave) / 64.0, STEP, name=f"noise {factor}")
+    phase, bump = number % 57, np.maximum(0, 200 * 200 - (number - 200) ** 2)
+    wave = np.where(phase < 29, 1, -1) * (phase % 29) * (29 - phase % 29) * bump  # arches, largest at sample 200
+    return rk.GroundMotion(size * (walk / 4.0 + slow + wave / 2.0**17) / 64.0, STEP, name=f"noise {factor}")
 
 
 def both(factor: int, size: float) -> rk.GroundMotion:

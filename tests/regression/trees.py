@@ -31,9 +31,10 @@ _PASSING = (
 )
 _NUMBER = re.compile(r"[-+]?\d+\.\d+(?:e[-+]?\d+)?")
 _SMALL = 1e-3  # what is smaller is compared as if it were this: sums that leave nothing but rounding
+_HASHES = ("sha256", "histories_key")
 _KEYS = {
     "id", "created", "date", "seconds", "worker_seconds", "begun", "ended", "elapsed", "written", "made", "machine",
-    "processor", "python",
+    "processor", "python", "events",
 }  # fmt: skip
 
 
@@ -59,8 +60,8 @@ def tree(value: Any) -> Any:  # noqa: PLR0911 - one a kind
 
 
 def _passing(key: str) -> bool:
-    """Whether a key is of what differs from run to run, or from processor to processor."""
-    return key in _KEYS or key.startswith("work_")
+    """Return whether the values of a key differ between runs or processors: times, hashes, counts of work."""
+    return key in _KEYS or (key.startswith("work_") and key != "work_of_ground") or key.endswith(_HASHES)
 
 
 def _of_dataset(data: xr.Dataset) -> dict[str, Any]:
@@ -69,6 +70,7 @@ def _of_dataset(data: xr.Dataset) -> dict[str, Any]:
         **{
             str(name): {"dims": list(map(str, one.dims)), "values": _plain(one.values), "attrs": tree(dict(one.attrs))}
             for name, one in data.variables.items()
+            if not _passing(str(name))
         },
     }
 

@@ -12,6 +12,7 @@ import re
 from pathlib import Path
 
 import pytest
+from waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -81,7 +82,7 @@ def test_a_notebook_runs_in_an_empty_folder(path, tmp_path, gallery):
     blocks = split_code_and_text_blocks(str(path))[1]
     conf = DEFAULT_GALLERY_CONF | {"notebook_extensions": {".py"}}
     notebook = nbformat.reads(json.dumps(gallery.notebook(blocks, conf, tmp_path)), as_version=4)
-    nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=HANG, resources={"metadata": {"path": str(tmp_path)}}).execute()
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     displays = [one.data for cell in cells for one in cell.outputs if one.output_type == "display_data"]
     shown = [data.get("image/png", data.get("image/gif")) for data in displays]

@@ -6,11 +6,10 @@ import sys
 import time
 
 import pytest
+from waiting import allowed
 
 import rocking as rk
 from rocking import conventions
-
-pytestmark = pytest.mark.timed
 
 HEAVY = ("scipy", "shapely", "matplotlib", "pydantic", "pandas", "sympy", "typer", "rich")
 
@@ -45,11 +44,12 @@ def test_blocks_and_closed_forms_load_nothing_heavy():
     assert not loaded_by(statement).intersection(HEAVY)
 
 
+@pytest.mark.speed
 def test_import_is_quick():
-    """`import rocking` takes under 0.3 s over an empty interpreter: 0.02 s here, so 0.3 s leaves CI a factor
-    of ten."""
-    assert seconds_of("import rocking") - seconds_of("pass") < 0.3
-    assert seconds_of("import time; time.sleep(0.4)") - seconds_of("pass") > 0.3
+    """`import rocking` takes 0.02 s more than an empty interpreter; the limit is 0.3 s at the pace of the machine."""
+    spent = seconds_of("import rocking") - seconds_of("pass")
+    assert spent < (limit := allowed(0.06))
+    assert seconds_of(f"import time; time.sleep({1.5 * limit})") - seconds_of("pass") > limit
 
 
 def test_every_public_name_is_there():

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from waiting import HANG
 
 from rocking.dynamics.plane import fast_engine
 
@@ -33,7 +34,7 @@ def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
     command = [sys.executable, str(driver), str(folder), *map(str, arguments)]
     said, wrong = (folder.with_name(f"{folder.name}-{name}") for name in ("said", "wrong"))
     with said.open("w") as out, wrong.open("w") as err:
-        done = subprocess.run(command, stdout=out, stderr=err, check=False, timeout=max(300.0, 20.0 * KILLS))
+        done = subprocess.run(command, stdout=out, stderr=err, check=False, timeout=HANG + 20.0 * KILLS)
     assert done.returncode == 0, wrong.read_text()
     return json.loads(said.read_text())
 

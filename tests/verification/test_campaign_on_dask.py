@@ -21,7 +21,6 @@ from slow import Motions, product
 pytest.importorskip("distributed")
 pytestmark = [
     pytest.mark.verifies(room="campaigns"),
-    pytest.mark.timed,
     pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.filterwarnings("default"),  # those of the cluster are not ours
 ]
@@ -61,6 +60,7 @@ def took(campaign: Campaign, workers: int) -> float:
     return (end - start) / (last - first) * last
 
 
+@pytest.mark.speed
 @pytest.mark.verifies("same bits", "one worker", within="the same file, 1.5 times as fast at least")
 def test_two_workers_share_one_chunk(tmp_path: Path) -> None:
     """120 motions of 0.1 s in one chunk: nearly twice as fast as one worker, no motion twice, the same file."""

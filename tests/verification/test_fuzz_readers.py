@@ -19,6 +19,7 @@ from unit.studies.inventory.museum_list import LIST, write_museum_list
 from unit.studies.inventory.test_lists import open_document
 from verification.record_mutations import mutated
 from verification.stated_by_headers import HEADERS
+from waiting import HANG
 
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
@@ -30,7 +31,7 @@ COPIES = int(os.environ.get("ROCKING_FUZZ", "1000"))
 BINARY = {"miniseed", "sac"}
 TEXT_FORMATS = [name for name in formats() if name not in BINARY]
 UNCLEAR = "read, though the second reading does not understand the header"
-SLOWEST = 10.0  # seconds for one file of some kilobytes: a hang, not a slow machine
+SLOWEST = HANG
 
 
 def samples(kind: RecordFormat) -> list[bytes]:

@@ -11,6 +11,7 @@ import pytest
 from myst_nb.core.config import NbParserConfig
 from myst_nb.core.read import create_nb_reader
 from myst_parser.config.main import MdParserConfig
+from waiting import HANG
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = sorted(path for path in (DOCS / "tutorials").glob("*.md") if path.name != "index.md")
@@ -40,7 +41,7 @@ def run(notebook, folder):
     scripts = str(Path(sys.executable).parent)
     kept = [part for part in os.environ["PATH"].split(os.pathsep) if part != scripts]
     environment = os.environ | {"PATH": os.pathsep.join(kept)}
-    client = nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}})
+    client = nbclient.NotebookClient(notebook, timeout=HANG, resources={"metadata": {"path": str(folder)}})
     client.execute(env=environment)
     return notebook
 

@@ -34,15 +34,12 @@ VARIABLES = {name for given in SETTINGS.values() for name in given}
 # SciPy's solver takes scalar products of its stages
 BLAS = {"bed, reference"}
 OTHER = {
-    # the plain kernels have no fused multiply-add
-    "OpenBLAS of SSE3, plain engines": {"space, batch", "plane, fast", *BLAS},
-    "OpenBLAS of AVX-512": BLAS, "OpenBLAS of AVX2": BLAS, "OpenBLAS of AVX": BLAS,
-    "Zen: OpenBLAS and numpy without AVX-512": BLAS,
-    # exp, log, powers and angles of processors that are older than 2013
-    "C library without fused multiply-add": {
+    # the plain kernels have no fused multiply-add; exp, log, powers and angles of processors that are older than 2013
+    "least processor": {
         "space, polygon, reference", "space, round base, reference", "space, batch", "bed, fast", "plane, fast",
         "plane, reference", "plane, coefficients", "plane, contact", *BLAS,
     },
+    **dict.fromkeys(("OpenBLAS of AVX-512", "OpenBLAS of AVX", "no AVX-512, Intel", "no AVX-512, AMD"), BLAS),
 }  # fmt: skip
 """Results that may have other last digits, by the setting."""
 QUICK = [

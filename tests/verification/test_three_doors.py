@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import HANG
 from web_clients import new_application, script_of
 
 import rocking as rk
@@ -122,7 +123,7 @@ def served(tmp_path_factory):
         told = json.loads(process.stdout.readline())
         url = told["url"].partition("/#")[0].rstrip("/")
         head = {"Authorization": f"Bearer {Path(told['key_file']).read_text().strip()}", "Origin": url}
-        with httpx.Client(base_url=url, headers=head, timeout=60.0) as client:
+        with httpx.Client(base_url=url, headers=head, timeout=HANG) as client:
             yield client
         process.terminate()
         process.wait(10)
@@ -156,7 +157,7 @@ def command_line(client, document, folder):
         files.extractall(folder)
     (toml,) = folder.rglob("*.toml")
     words = [sys.executable, "-m", "rocking", "simulate", str(toml), "--json"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ}, timeout=60)
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ}, timeout=HANG)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -266,7 +267,7 @@ def test_a_real_server_gives_the_same_answers(served, inside, record):
 def test_coefficients_are_those_of_the_command(inside):
     """POST /api/impact and `rocking cor --json` say the same of a block."""
     words = [sys.executable, "-m", "rocking", "cor", "--width", "0.5", "--height", "2", "--json"]
-    printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout)
+    printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=HANG).stdout)
     answer = inside.post("/api/impact", json={"body": {"units": "m", "width": 0.5, "height": 2}}).json()
     assert {key: answer[key] for key in printed if key != "body"} == {k: v for k, v in printed.items() if k != "body"}
     assert {key: answer["body"][key] for key in printed["body"]} == printed["body"]
@@ -276,7 +277,7 @@ def test_coefficients_are_those_of_the_command(inside):
 def test_motion_is_that_of_the_command(inside, record):
     """POST /api/motion and `rocking motion --json` say the same of a scaled record, but for its spectrum."""
     words = [sys.executable, "-m", "rocking", "motion", str(record), "--scale", "1.3", "--json"]
-    printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout)
+    printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=HANG).stdout)
     document = document_of("cabinet, record", inside, record)
     answer = inside.post("/api/motion", json={"motion": document["motion"]}).json()
     del printed["spectrum"]

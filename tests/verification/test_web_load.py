@@ -13,8 +13,9 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from waiting import HANG, allowed
 
-pytestmark = [pytest.mark.verifies(room="doors"), pytest.mark.timed]
+pytestmark = [pytest.mark.verifies(room="doors"), pytest.mark.speed]
 
 SECONDS = float(os.environ.get("ROCKING_WEB_LOAD", "8"))
 USERS = 50
@@ -49,7 +50,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]
             yield {"url": told["url"].rstrip("/"), "head": head}
         finally:
             process.terminate()
-            process.wait(timeout=20)
+            process.wait(timeout=HANG)
 
 
 async def one_user(client: httpx.AsyncClient, number: int, until: float) -> list[tuple[str, float, int]]:
@@ -74,17 +75,17 @@ async def one_user(client: httpx.AsyncClient, number: int, until: float) -> list
 async def all_users(served: dict[str, Any], until: float) -> list[tuple[str, float, int]]:
     """Return what fifty users saw."""
     limits = httpx.Limits(max_connections=USERS, max_keepalive_connections=USERS)
-    async with httpx.AsyncClient(base_url=served["url"], headers=served["head"], timeout=60.0, limits=limits) as client:
+    async with httpx.AsyncClient(base_url=served["url"], headers=served["head"], timeout=HANG, limits=limits) as client:
         found = await asyncio.gather(*(one_user(client, k, until) for k in range(USERS)))
     return [each for one in found for each in one]
 
 
 @pytest.mark.verifies("behaviour")
 def test_fifty_users_and_a_campaign(served: dict[str, Any]) -> None:
-    """No 5xx; the light endpoints answer 99 of 100 times within 300 ms; the campaign goes on."""
-    with httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0) as client:
+    """No 5xx; the light endpoints answer 99 of 100 times within the limit of 300 ms; the campaign goes on."""
+    with httpx.Client(base_url=served["url"], headers=served["head"], timeout=HANG) as client:
         # one stall of the machine is one in a hundred of these requests: the best of three rounds is the server's
-        assert any(fifty_users(served, client) < 0.3 for _ in range(3))
+        assert any(fifty_users(served, client) < allowed(0.3) for _ in range(3))
 
 
 def fifty_users(served: dict[str, Any], client: httpx.Client) -> float:

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from waiting import HANG
 
 from rocking.campaigns import Campaign, CampaignBusyError, CampaignDamagedError, CampaignStorageError, disk
 from rocking.campaigns.disk import FolderLock, holder
@@ -204,7 +205,7 @@ def test_forked_child_does_not_hold_on(tmp_path):
             signal.pause()
             os._exit(0)
     try:
-        deadline = time.monotonic() + 10.0  # the child must have run at all
+        deadline = time.monotonic() + HANG  # the child must have run at all
         while holder(tmp_path) and time.monotonic() < deadline:
             time.sleep(0.01)
         assert holder(tmp_path) is None

@@ -6,13 +6,14 @@ import threading
 import time
 
 import pytest
+from waiting import allowed
 
 from rocking.campaigns import Campaign, CampaignInterrupted
 from rocking.campaigns.chunks import DEFAULT_CHUNK
 from rocking.campaigns.executors import WorkerTask
 from rocking.studies import HistoryTable
 
-pytestmark = pytest.mark.timed
+pytestmark = pytest.mark.speed
 
 
 class Watched(HistoryTable):
@@ -46,7 +47,7 @@ def test_slow_histories_stop_soon(tmp_path, make):
     start = time.perf_counter()
     with pytest.raises(CampaignInterrupted):
         campaign.run(workers=1)
-    assert time.perf_counter() - start < 0.8 + 1.5  # 0.3 s for the piece, the rest for a busy machine
+    assert time.perf_counter() - start < 0.8 + allowed(0.3)
     assert pieces[0] == 64
     assert max(pieces) < 300
 
@@ -82,7 +83,7 @@ def test_workers_ask_within_a_chunk(tmp_path, make):
     start = time.perf_counter()
     job = WorkerTask(work, plan.engine, plan.software, tmp_path)
     assert job.compute(plan.chunk(0), 1, lambda: time.perf_counter() - start > 0.5) is None
-    assert time.perf_counter() - start < 2.0  # 0.8 s, and more on a busy machine
+    assert time.perf_counter() - start < allowed(0.8)
 
 
 def test_default_chunk_follows_the_engine(tmp_path, make):

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaign_jobs import flip
+from waiting import allowed
 
 from rocking.campaigns import Campaign, CampaignInterrupted, executors
 from rocking.campaigns.chunks import Plan
@@ -52,7 +53,7 @@ def stopped_after(campaign, count, **how):
         campaign.run(**({"workers": 1} | how), progress=stop)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path):
     """300 motions of 20 ms in one chunk of 6 s: a count every second or so, and hardly a motion made again."""
     motions = Motions(300, 0.02, tmp_path)
@@ -68,8 +69,8 @@ def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path):
 
     with pytest.raises(CampaignInterrupted, match="of 3600 histories are safe"):
         campaign.run(workers=1, progress=tell)
-    assert seen[1][0] < 3.0
-    assert max(np.diff([at for at, _ in seen])) < 3.0  # a second each, and more on a busy machine
+    assert seen[1][0] < allowed(3.0)
+    assert max(np.diff([at for at, _ in seen])) < allowed(3.0)  # a second each
     assert campaign.status().histories_done == seen[-1][1] > 1200
     campaign.run(workers=1)
     again = sum(count - 1 for count in Counter(motions.made()).values())

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from waiting import HANG
 
 from rocking.campaigns import Campaign, CampaignWorkerError, DaskExecutor, Progress, identity
 from rocking.campaigns.executors import WorkerTask
@@ -135,9 +136,9 @@ def test_orphans_end(tmp_path, start_method):
     (tmp_path / "run.py").write_text(ORPHANS, encoding="utf-8")
     arguments = [str(tmp_path / "c"), str(Path(__file__).parent), start_method]
     command = [sys.executable, str(tmp_path / "run.py"), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG, check=False)
     assert done.returncode == -signal.SIGKILL
-    left, deadline = list(map(int, done.stdout.split())), time.monotonic() + 10.0
+    left, deadline = list(map(int, done.stdout.split())), time.monotonic() + HANG
     assert left
     while (left := [pid for pid in left if alive(pid)]) and time.monotonic() < deadline:
         time.sleep(0.05)

@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from waiting import HANG
 
 from rocking.campaigns import Campaign, CampaignStorageError, disk
 
@@ -32,7 +33,7 @@ print("DONE", campaign.status().chunks_done, len(campaign.verify().damaged))
 HERE = Path(__file__).parent
 
 
-def tried(script, timeout=60.0):
+def tried(script, timeout=HANG):
     """What a shell script says that has a file system of its own; it calls $TRY with the folder."""
     call = f'{sys.executable} -c "$CODE" "$1" {HERE}'
     command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", f"attempt() {{ {call}; }}\n{script}"]

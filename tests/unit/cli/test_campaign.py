@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from waiting import HANG
 
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.jobs import status_of
@@ -365,7 +366,7 @@ def started(tmp_path, *words):
 
 def wait_for(folder, chunks):
     """Wait until some chunks are recorded."""
-    until = time.monotonic() + 30.0
+    until = time.monotonic() + HANG
     while time.monotonic() < until:
         if (folder / "histories" / "campaign.json").exists():
             done = status_of(folder).status.chunks_done
@@ -392,7 +393,7 @@ def test_kill_resume_export(run, job, tmp_path):
     process = started(tmp_path, "resume", folder, "--executor", "processes", "--workers", 1)
     wait_for(folder, before + 3)
     os.killpg(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=30)
+    out, err = process.communicate(timeout=HANG)
     assert (process.returncode, out) == (3, "")
     assert err.lstrip().startswith("rocking: stopped: ")
     assert len(err.strip().splitlines()) == 1

@@ -10,6 +10,7 @@ import pytest
 import rocking_sounds
 from benchmarks import identification_video
 from rocking_sounds import RATE, wav
+from waiting import allowed
 
 import rocking as rk
 from rocking.cli.page import plain
@@ -310,7 +311,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
     assert set(found.to_dict()) == {"source", "verdict", "refused", "doubts"}
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 @pytest.mark.verifies("behaviour", "a minute of sound at 44.1 kHz", within="2 s of CPU", room="doors")
 def test_a_minute_takes_seconds(answered, phone, tmp_path):
     """From file to answer, with a rocking body in the middle."""
@@ -322,10 +323,10 @@ def test_a_minute_takes_seconds(answered, phone, tmp_path):
     path.write_bytes(wav(np.concatenate([quiet[0], samples, quiet[1]])[: 60 * RATE].clip(-1.0, 1.0)))
     begun = time.process_time()
     answered(path, *SIZE)
-    assert time.process_time() - begun < 2.0
+    assert time.process_time() - begun < allowed(2.0)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 @pytest.mark.verifies("behaviour", "a folder of 200 trials of times", within="60 s, and 60 s of CPU", room="doors")
 def test_200_trials_take_a_minute(answered, rocked, tmp_path):
     """From folder to table, in as many processes as there are processors; CPU is theirs too."""
@@ -333,5 +334,5 @@ def test_200_trials_take_a_minute(answered, rocked, tmp_path):
         times_file(tmp_path / f"{k:03d}.csv", rocked[0], seed=k)
     begun, spent = time.perf_counter(), sum(os.times()[:4])
     assert len(answered(tmp_path, *SIZE, "--out", tmp_path / "all.csv")["trials"]) == 200
-    assert time.perf_counter() - begun < 60.0
-    assert sum(os.times()[:4]) - spent < 60.0
+    assert time.perf_counter() - begun < allowed(60.0)
+    assert sum(os.times()[:4]) - spent < allowed(60.0)

@@ -74,8 +74,10 @@ def test_published_rows_through_a_file(tmp_path):
     calibration = calibrate_on(own)
     for name in NAMES:
         assert calibration.summary[name] == pytest.approx(calibrate().summary[name], rel=1e-9)
-    assert (calibration.samples == calibrate().samples).all(axis=1).mean() > 0.995
-    assert calibrate_hierarchy(own).summary == calibrate_hierarchy().summary
+    # a sample at the end of its cell may move into the next one
+    assert np.isclose(calibration.samples, calibrate().samples, rtol=1e-9, atol=0.0).all(axis=1).mean() > 0.995
+    one, other = calibrate_hierarchy(own).summary, calibrate_hierarchy().summary
+    assert {name: pytest.approx(values, rel=1e-9) for name, values in one.items()} == other
     fewer = own.rows(range(38))
     assert league(measurements=fewer)[0].rmse != league()[0].rmse
 

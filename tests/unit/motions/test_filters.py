@@ -110,7 +110,7 @@ def test_a_seed_has_the_same_bits_on_every_processor():
         assert probes != {probe}
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 @pytest.mark.parametrize("model", ["filtered noise", "Kanai-Tajimi", "point source"])
 def test_a_synthetic_motion_costs_about_as_much_as_its_random_numbers(model):
     """At most 15 times as much CPU as its 4001 random numbers: 0.4 ms where these take 0.04 ms (once: 30 to 600)."""

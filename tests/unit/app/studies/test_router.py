@@ -5,12 +5,10 @@ from typing import Any
 
 import pytest
 from starlette.websockets import WebSocketDisconnect
+from waiting import HANG, allowed, wait_for
 
 from rocking.app.settings import ServerSettings
 from rocking.app.studies import router as live
-
-pytestmark = pytest.mark.timed
-
 
 Tables = dict[str, Any]
 LIVE = f"{ServerSettings().origin.replace('http', 'ws')}/api/studies/live"
@@ -23,7 +21,7 @@ def _launched(client, job, name=None):
 
 
 def _wait(client, study, state):
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + HANG
     while (facts := client.get(f"/api/studies/{study}").json())["state"] != state:
         assert time.monotonic() < deadline, facts
         time.sleep(0.05)
@@ -55,14 +53,15 @@ def test_a_study_from_launch_to_file(client, map_job):
     assert client.get(f"/api/studies/{study}").status_code == 404
 
 
+@pytest.mark.speed
 def test_a_result_is_quick(client, map_job):
-    """A map of 100 x 100 with two restitutions comes within 100 ms once it was looked at."""
+    """A map of 100 x 100 with two restitutions has a limit of 100 ms once it was looked at."""
     study = _launched(client, map_job(100))
     _wait(client, study, "done")
     first = client.get(f"/api/studies/{study}/result")
     begun = time.perf_counter()
     again = client.get(f"/api/studies/{study}/result")
-    assert time.perf_counter() - begun < 0.1
+    assert time.perf_counter() - begun < allowed(0.1)
     assert again.content == first.content
 
 
@@ -135,9 +134,7 @@ def test_too_many_browsers_are_turned_away(client, monkeypatch):
         socket.receive_json()
         with pytest.raises(WebSocketDisconnect), client.websocket_connect(LIVE) as other:
             other.receive_json()
-    deadline = time.monotonic() + 5.0
-    while client.app.state.rocking.studies.queue.watchers and time.monotonic() < deadline:
-        time.sleep(0.02)
+    wait_for(lambda: not client.app.state.rocking.studies.queue.watchers)
     with client.websocket_connect(LIVE) as socket:
         assert socket.receive_json() == {"studies": []}
 
@@ -149,6 +146,7 @@ def test_strangers_see_nothing(stranger, settings):
         pass
 
 
+@pytest.mark.speed
 def test_light_answers_stay_light_while_a_study_runs(client, long_job):
     """The list is answered from what is known: a hundred times in a row, in milliseconds each, while one computes."""
     study = _launched(client, long_job)
@@ -158,5 +156,5 @@ def test_light_answers_stay_light_while_a_study_runs(client, long_job):
         begun = time.perf_counter()
         assert client.get("/api/studies").status_code == 200
         times.append(time.perf_counter() - begun)
-    assert sorted(times)[98] < 0.3
+    assert sorted(times)[98] < allowed(0.3)
     client.post(f"/api/studies/{study}/cancel")

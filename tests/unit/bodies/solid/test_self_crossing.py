@@ -198,7 +198,7 @@ def test_shapes_that_only_bend():
     assert check_crossings(hollow)
 
 
-@pytest.mark.timed
+@pytest.mark.speed
 def test_fifty_thousand_faces():
     """Four times the faces of a ring, 50,000, take less than eight times as long; each with each would take sixteen."""
     seconds = []
