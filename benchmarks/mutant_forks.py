@@ -157,7 +157,7 @@ def main(seed: int, count: int, limit: float, packages: list[str]) -> None:
     quiet = ["-q", "-s", "--tb=no", "--no-header", "-p", "no:cacheprovider", "-W", "ignore:Module already imported"]
     chosen, _ = sample(seed, count, packages)
     loop = Loop(chosen, covering, folder / "verdicts.jsonl", limit)
-    pytest.main([*quiet, "-m", "not timed and not browser", *files], [loop])
+    pytest.main([*quiet, "-m", "not speed and not browser", *files], [loop])
 
 
 if __name__ == "__main__":
