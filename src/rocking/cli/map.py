@@ -194,7 +194,7 @@ class MapAnswer:
 
         arrays, problem, islands = self.arrays, self.problem, self.islands
         axes = [{"name": axis.name, "unit": axis.unit, "values": axis.values} for axis in self.axes]
-        names = ("cells", "area", "x", "y")
+        names = ("cells", "area", "x", "y", "modes", "still_rocking")
         return {
             **subject_facts(problem),
             "restitution": arrays.attributes["restitution"],
@@ -209,7 +209,9 @@ class MapAnswer:
             "modes": mode_shares(arrays["mode"]),
             "refined_points": arrays.points,
             "islands": {
+                "definition": islands.definition,
                 "count": len(islands),
+                "sentences": list(islands.sentences),
                 "all": [{name: getattr(island, name) for name in names} for island in islands.islands],
             },
             "overturning": self.extent(),
@@ -261,7 +263,8 @@ class MapAnswer:
         page.table(("how it ends", "cells", "share"), self._share_rows(), ("how it ends",))
         page.line()
         page.line(self._begins())
-        page.line(self._islands_sentence())
+        for line in self._islands_sentences():
+            page.line(line)
         page.warn(filter(None, [arrays.attributes["contact"]]))
         if arrays.points is not None:
             page.line(f"Refined along boundaries: {arrays.points} points.")
@@ -291,14 +294,14 @@ class MapAnswer:
             f"{self._value(x, first['x'])}; it lies within {self._span(x, extent['x'])}, {self._span(y, extent['y'])}."
         )
 
-    def _islands_sentence(self) -> str:
+    def _islands_sentences(self) -> list[str]:
         islands, (x, y) = self.islands, self.axes
-        if not len(islands):
-            return "No safe islands: no survival on this map is surrounded by overturning."
-        largest = islands[0]
-        cells = f"{largest.cells} cell{'s' if largest.cells != 1 else ''}"
-        spans = f"{self._span(x, largest.x)}, {self._span(y, largest.y)}"
-        return f"Safe islands: {len(islands)}; the largest has {cells}: {spans}."
+        lines = list(islands.sentences)
+        if len(islands):
+            largest = islands[0]
+            cells = f"{largest.cells} cell{'s' if largest.cells != 1 else ''}"
+            lines.insert(1, f"The largest has {cells}: {self._span(x, largest.x)}, {self._span(y, largest.y)}.")
+        return lines
 
     def _span(self, axis: "Axis", ends: Sequence[float]) -> str:
         unit, size = self.unit(axis)

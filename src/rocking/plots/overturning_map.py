@@ -45,7 +45,6 @@ CLASSES: dict[int, tuple[str, str]] = {
 _SHORT = {UNLIFTED: "", FIRST: "no impact", SECOND: "after 1 impact", LATER: "after 2 or more"}
 """Words where those of `CLASSES` do not fit."""
 
-_LEAST = 4  # islands of fewer points are drawn as any survival: a coarse grid cuts a narrow channel into such pieces
 _CONTOURS = (0.1, 0.25, 0.5, 0.75)
 _BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid_joinstyle": "round"}
 
@@ -114,8 +113,7 @@ def classes_of(found: "xr.Dataset") -> IntArray:
 
     kinds = _kinds(np.asarray(found["mode"].values))
     islands = safe_islands(found)
-    wide = [island.label for island in islands.islands if island.cells >= _LEAST]
-    kinds[np.isin(islands.labels, wide)] = ISLAND
+    kinds[islands.labels > 0] = ISLAND
     return kinds
 
 

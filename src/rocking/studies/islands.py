@@ -24,10 +24,16 @@ class Island:
     area: float  # its area in the units of the axes; a point stands for half the way to its neighbours
     x: tuple[float, float]  # x, y: least and greatest coordinates
     y: tuple[float, float]
-    # whether overturning in one and the same way surrounds it; otherwise it reaches the edge of the map or a point
-    # that failed, or lies between two ways of overturning, where survival may lead on as a strip too thin for the
-    # grid
+    # whether overturning surrounds it; otherwise it reaches the edge of the map or a point that failed
     enclosed: bool
+    # modes of overturning around it: between two of them a strip of survival too thin for the grid may go on
+    modes: tuple[int, ...]
+    still_rocking: int  # points at which the body was still rocking at the end of the computation, and may overturn
+
+    @property
+    def is_between_modes(self) -> bool:
+        """Whether it lies between two modes of overturning."""
+        return self.enclosed and len(self.modes) > 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +43,29 @@ class Islands:
     labels: IntArray  # number of the island at each point of the map; 0 for none
     islands: tuple[Island, ...]  # the largest first
     axes: tuple[str, str]  # names of the axes, x and y
+
+    definition = "A safe island is a region of cells that do not overturn, surrounded by overturning within the map."
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """How many islands there are, what the word means, and what is not decided."""
+        if not self.islands:
+            return (f"No safe islands. {self.definition}",)
+        cells = sum(island.cells for island in self.islands)
+        told = [f"Safe islands: {len(self.islands)}, with {cells} of {self.labels.size} cells. {self.definition}"]
+        still = sum(island.still_rocking for island in self.islands)
+        if still:
+            told.append(
+                f"Cells still rocking at the end of the computation: {still} of {cells}; whether the body overturns "
+                "later is not decided."
+            )
+        between = sum(island.is_between_modes for island in self.islands)
+        if between:
+            told.append(
+                f"Islands between two ways to overturn: {between} of {len(self.islands)}; on a finer map they may be "
+                "parts of one strip."
+            )
+        return tuple(told)
 
     def __len__(self) -> int:
         return len(self.islands)
@@ -55,9 +84,9 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     overturning : xarray.Dataset
         As of `overturning_map`.
     enclosed : bool
-        Whether to return only those that overturning after one and the same number of impacts surrounds within the
-        map. Two ways of overturning are parted by survival, thinner than the grid may be: what lies between them is
-        as a rule a piece of that strip, which the grid has cut, and no island.
+        Whether to return only those that overturning surrounds within the map. Two ways of overturning are parted by
+        survival, thinner than the grid may be: what lies between them may be a piece of that strip, which the grid has
+        cut (`Island.is_between_modes`).
 
     Returns
     -------
@@ -81,6 +110,7 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     (1, 0)
     """
     modes, x, y, axes = _read(overturning)
+    still = np.nan_to_num(np.asarray(overturning["still_rocking"], np.float64)) if _has(overturning) else 0.0 * modes
     labels = connected((modes < 0) & (modes != FAILED))
     apart = np.arange(labels.max(initial=0) + 1) > 0
     apart[labels[modes == UNLIFTED]] = False
@@ -90,14 +120,12 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     for label in np.flatnonzero(apart).tolist():
         mask = labels == label
         rows, columns = np.nonzero(mask)
-        free = not bool(near[mask].any())
-        if free:
-            around = slice(rows.min() - 1, rows.max() + 2), slice(columns.min() - 1, columns.max() + 2)
-            ring = modes[around][_grown(mask[around]) & ~mask[around]]
-            free = bool((ring == ring[0]).all())
+        free = not bool(near[mask].any())  # all around then overturns: survival would have joined it
         if free or not enclosed:
+            ring = np.unique(modes[_grown(mask) & ~mask])
             spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
-            islands.append(Island(label, rows.size, float(areas[mask].sum()), *spans, free))
+            around, going = tuple(ring[ring >= 0].tolist()), int(still[mask].sum())
+            islands.append(Island(label, rows.size, float(areas[mask].sum()), *spans, free, around, going))
     islands.sort(key=lambda island: (-island.area, island.label))
     numbers = np.zeros(apart.size, dtype=np.int64)
     numbers[[island.label for island in islands]] = np.arange(1, len(islands) + 1)
@@ -164,6 +192,11 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
     return beyond.rename("safe_beyond_overturning").assign_attrs(
         units="1", long_name=f"survives beyond overturning along {along}"
     )
+
+
+def _has(overturning: Any) -> bool:
+    """Return whether a map tells which bodies were still rocking."""
+    return "still_rocking" in (overturning.variables if isinstance(overturning, MapArrays) else overturning)
 
 
 def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:

@@ -8,10 +8,12 @@ import sys
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 import rocking as rk
 from rocking.cli.numbers import row
 from rocking.cli.page import bar
+from rocking.plots.overturning_map import ISLAND, classes_of
 from rocking.studies import axes, overturning_map, safe_islands
 from rocking.studies.sensitivity import map_sensitivity
 
@@ -39,6 +41,28 @@ def test_json_is_the_python_call(answered):
     assert told["overturning"]["first"]["y"] == told["y"]["values"][y.min()]
     assert told["overturning"]["x"] == [told["x"]["values"][x.min()], told["x"]["values"][x.max()]]
     assert (told["refined_points"], told["sensitivity"]) == (None, None)
+
+
+def test_islands_are_those_of_the_picture(run, answered):
+    """Cells without overturning that overturning surrounds are counted, drawn and defined, with what is not decided."""
+    words = ("--width", 0.6, "--height", 2, "--motion", "sine:amplitude=1,period=0.5")
+    axes = ("--x", "frequency_ratio=0.5:10:100", "--y", "amplitude_ratio=1:12:100")
+    told = answered(*words, *axes)
+    mode = np.array(told["mode"])
+    labels, count = ndimage.label(mode < 0, np.ones((3, 3)))  # an independent count: regions that touch no edge
+    edge = {*labels[0], *labels[-1], *labels[:, 0], *labels[:, -1]}
+    cells = sorted(int((labels == k).sum()) for k in range(1, count + 1) if k not in edge)
+    assert len(cells) > 0
+    assert sorted(island["cells"] for island in told["islands"]["all"]) == cells
+    assert told["islands"]["definition"] in told["islands"]["sentences"][0]
+    block, pulse = rk.Block(width=0.6, height=2.0), rk.pulses.sine(amplitude=1.0, period=0.5)
+    grid = ("frequency_ratio", np.linspace(0.5, 10, 100)), ("amplitude_ratio", np.linspace(1, 12, 100))
+    found = overturning_map(block, pulse, *grid, "ked")
+    assert (classes_of(found) == ISLAND).sum() == sum(cells)
+    still = sum(island["still_rocking"] for island in told["islands"]["all"])
+    page = run(*words, *axes)[1]
+    assert f"Safe islands: {len(cells)}, with {sum(cells)} of 10000 cells. A safe island is" in page
+    assert (f"Cells still rocking at the end of the computation: {still} of {sum(cells)}" in page) is (still > 0)
 
 
 def test_late_modes_are_one_line(run, tmp_path):

@@ -184,20 +184,40 @@ def drawn(*rows):
         (("######", "#sx###", "######", "......"), [], 1),
         # the largest first; an oblique strip is one island
         (("#######", "#s##ss#", "###s###", "##s####", "#######", "......."), [4, 1], 2),
-        # pieces of a strip between two modes are none; a hole in either mode is one, also beside the other mode
-        (("#######", "#s##s##", "11s111s", "1111111", "......."), [], 3),
+        # pieces of a strip between two modes are islands as well; that at the edge is none
+        (("#######", "#s##s##", "11s111s", "1111111", "......."), [2, 1], 3),
         (("#######", "#s#####", "#######", "1111111", "1111s11", "1111111", "......."), [1, 1], 2),
-        (("#######", "#s#####", "1111111", "1111111", "......."), [], 1),
+        (("#######", "#s#####", "1111111", "1111111", "......."), [1], 1),
     ],
 )
 def test_islands(rows, enclosed, every):
-    """Holes in one way of overturning are enclosed islands, by their cells; others are found where asked for."""
+    """Holes in overturning are enclosed islands, by their cells; others are found where asked for."""
     found, more = safe_islands(drawn(*rows)), safe_islands(drawn(*rows), enclosed=False)
     assert [island.cells for island in found.islands] == enclosed
     assert len(more) == every
     assert sum(island.enclosed for island in more.islands) == len(enclosed)
     assert found.labels.max() == len(enclosed)
     assert [int((found.labels == k).sum()) for k in range(1, 1 + len(enclosed))] == enclosed
+
+
+def test_words_of_islands():
+    """The answer defines the word, and counts cells that are not decided, and islands between two ways to overturn."""
+    found = drawn("#######", "#ss####", "1111111", "11111s1", "1111111", ".......")
+    still = np.zeros(found["mode"].shape)
+    still[4, 1] = 1.0  # a cell of the island between both ways
+    words = " ".join(safe_islands(found.assign(still_rocking=(("y", "x"), still))).sentences)
+    assert words.startswith(
+        "Safe islands: 2, with 3 of 42 cells. A safe island is a region of cells that do not overturn,"
+    )
+    assert "Cells still rocking at the end of the computation: 1 of 3" in words
+    assert "Islands between two ways to overturn: 1 of 2" in words
+    assert [(each.modes, each.is_between_modes, each.still_rocking) for each in safe_islands(found).islands] == [
+        ((0, 1), True, 0), ((1,), False, 0),
+    ]  # fmt: skip
+    one = safe_islands(drawn("####", "#s##", "####", "....")).sentences
+    assert len(one) == 1
+    none = safe_islands(drawn("####", "#ss#", "..s.")).sentences
+    assert none == (f"No safe islands. {safe_islands(found).definition}",)
 
 
 def test_extent_of_an_island():
@@ -218,14 +238,15 @@ def test_regions_are_those_of_scipy():
 
 @pytest.mark.parametrize("points", [100, 200])
 def test_a_grid_does_not_cut_islands_out_of_a_strip(points):
-    """The gap between modes I and II of the full sine is one strip: no grid makes enclosed islands of it."""
+    """The gap between modes I and II of the full sine is one strip: what the grid cuts out of it is said to be so."""
     block, pulse = rk.Block.from_angle(0.15, 1.0), rk.pulses.sine(1.0, 0.5)
     axes = ("frequency_ratio", np.linspace(1.0, 9.0, points)), ("amplitude_ratio", np.linspace(0.5, 12.0, points))
     found = overturning_map(block, pulse, *axes, 0.9, linear=True, threads=1)
-    assert len(safe_islands(found)) == 0
-    # negative control: the grid does cut it into pieces that overturning surrounds
-    pieces = safe_islands(found, enclosed=False).islands
-    assert sum(piece.x[0] > 1.0 and piece.x[1] < 9.0 and piece.y[1] < 12.0 for piece in pieces) >= 2
+    pieces = safe_islands(found).islands
+    assert len(pieces) >= 2
+    assert all(piece.is_between_modes for piece in pieces)
+    # negative control: a hole in one way to overturn is not
+    assert not safe_islands(drawn("####", "#s##", "####", "....")).islands[0].is_between_modes
 
 
 def test_safe_beyond_overturning():

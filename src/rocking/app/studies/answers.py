@@ -178,6 +178,7 @@ MapResult: Any = shape(
     peak=(list[list[list[Number]]] | Packed, f"{_PEAK} [-]; null if it was not computed"),
     impacts=Counts | Packed,
     shares=list[list[Share]],
+    islands=(list[list[str]], "sentences on safe islands, by restitution"),
     contours=(list[list[list[tuple[float, float]]]], "lines x, y around what overturns, in units"),
     body=str,
     motion=str,

@@ -18,6 +18,7 @@ from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
 from rocking.spec.document import ExportTable
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
+from rocking.studies.islands import safe_islands
 from rocking.version import __version__
 
 NAME = f"result-{__version__}.json"  # another version may tell other things
@@ -164,6 +165,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         "peak": packed(by_restitution(study, "peak_ratio")),
         "impacts": packed(by_restitution(study, "impacts")),
         "shares": [mode_shares(each) for each in modes],
+        "islands": [list(safe_islands(study.dataset(k)).sentences) for k in range(len(modes))],
         "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),

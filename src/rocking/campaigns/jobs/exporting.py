@@ -17,6 +17,7 @@ from rocking.campaigns.jobs.findings import (
     answer,
     comparable,
     comparison,
+    datasets,
     label_of,
     measure_comparison,
     refuse_unfinished,
@@ -32,6 +33,7 @@ from rocking.spec.document import ExportTable
 from rocking.statistics.goodness import FEWEST
 from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.studies.fragility.measure_comparison import MeasureComparison
+from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity.comparison import Sensitivity
 from rocking.tables import (
     Column,
@@ -49,6 +51,8 @@ from rocking.tables import (
 from rocking.tables.table import written_whole
 
 MOST_REPETITIONS = 100_000  # most repetitions of a bootstrap
+MOST_CELLS = 100_000  # of maps whose safe islands are counted
+MAP = ("mode", "still_rocking")  # what safe islands are found from
 COMPARED = ("flips", "differences")  # tables of a comparison
 
 FORMATS: dict[str, Callable[[Grid, Path], object]] = {
@@ -150,6 +154,8 @@ def export(
     target, what = checked(folder, path, what, restitution, crossing, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
+    if what == "histories" and folder.job.document.map is not None:
+        provenance |= {"safe_islands": _islands(folder)}
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"), written_whole(target) as unfinished:
         if what in ANALYSES:
             _write_fragility(folder, unfinished, what, restitution, crossing, bootstrap)
@@ -173,6 +179,14 @@ def provenance_of(folder: JobFolder) -> dict[str, Any]:
     if folder.job.study.search is None or (noted := finished_rounds(folder.path)) is None:
         return dict(folder.job.provenance)
     return {**folder.job.provenance, "rounds": noted["rounds"], "all_histories": noted["histories"]}
+
+
+def _islands(folder: JobFolder) -> dict[str, list[str]]:
+    """Return sentences on the safe islands of a map, by restitution; large maps are written in pieces, uncounted."""
+    if folder.campaign.plan.count > MOST_CELLS:
+        why = f"Safe islands are not counted in maps of more than {MOST_CELLS} cells."
+        return {label: [why] for label in folder.job.problem.restitutions}
+    return {label: list(safe_islands(found).sentences) for label, found in datasets(folder, MAP).items()}
 
 
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:

@@ -13,9 +13,11 @@ import pytest
 from rocking.campaigns import Campaign, CampaignIncompleteError, CampaignStorageError
 from rocking.campaigns.jobs import Job, JobFolder, export
 from rocking.campaigns.jobs.exporting import FORMATS
+from rocking.campaigns.jobs.findings import datasets
 from rocking.campaigns.jobs.study import TYPES
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.quantities import QUANTITIES
+from rocking.studies.islands import safe_islands
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
@@ -259,3 +261,17 @@ def test_memory_stays_bounded(tmp_path, text, end, most):
     # libraries and a few pieces: 44 and 167 MB, for four times the histories too; Arrow keeps 100 MB of that to itself
     assert 1024 * (after - before) < most
     assert 1024 * max(running, after) < 300_000_000
+
+
+@pytest.mark.parametrize("end", [".nc", ".csv"])
+def test_a_map_says_what_its_safe_islands_are(finished, tmp_path, end):
+    """The provenance in the file, or beside it, has the sentences of the Python attribute, by restitution."""
+    folder = finished("overturning-map")
+    path = export(folder, tmp_path / f"r{end}")
+    if end == ".nc":
+        with xr.open_dataset(path, engine="h5netcdf") as found:
+            told = json.loads(found.attrs["provenance"])["safe_islands"]
+    else:
+        told = json.loads(path.with_name(f"{path.name}.provenance.json").read_text("utf-8"))["safe_islands"]
+    assert told == {label: list(safe_islands(found).sentences) for label, found in datasets(folder).items()}
+    assert all("A safe island is" in sentences[0] for sentences in told.values())

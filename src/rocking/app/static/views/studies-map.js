@@ -110,6 +110,7 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
         <ul class="map-legend">${layer.legend.map(({ paint, words }) => html`
           <li key=${words}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${words}</li>`)}</ul><//>
       <div class="toolbar"><${Button} hidden=${looks.value === 0 || painter.current.isWhole()} onClick=${whole}>Show the whole map<//></div>
+      ${(found.islands?.[k.value] ?? []).map((/** @type {string} */ words) => html`<p key=${words} class="quiet" data-testid="map-islands">${words}</p>`)}
       <p class="map-told" aria-live="polite" data-testid="map-told">${aim.value ? cellWords(found, k.value, aim.value) : START}</p>
     </div>
     <div data-about=${looked ? cellWords(found, k.value, looked) : ""}><${Cell} cell=${cell} /></div>
