@@ -445,6 +445,36 @@ def test_a_convex_surface_is_its_own_hull():
     assert counts(one) == counts(two)
 
 
+def divided_box(sizes, count, turn):
+    """Points and triangles of a box whose faces are count x count squares, counter-clockwise seen from outside."""
+    line, points, faces = np.linspace(-0.5, 0.5, count + 1), [], []
+    for axis in range(3):
+        for side in (-0.5, 0.5):
+            grid = np.insert(np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2), axis, side, axis=1)
+            start, cells = sum(map(len, points)), np.arange((count + 1) * count).reshape(count, -1)[:, :-1].ravel()
+            squares = start + cells[:, None] + [0, 1, count + 2, count + 1]
+            triangles = np.concatenate([squares[:, [0, 1, 2]], squares[:, [0, 2, 3]]])
+            points.append(grid)
+            faces.append(triangles if (side > 0.0) == (axis != 1) else triangles[:, ::-1])
+    whole, number = np.unique(np.concatenate(points).round(9), axis=0, return_inverse=True)
+    return whole * sizes @ rotation_about((1.0, 2.0, 3.0), turn).T, number.ravel()[np.concatenate(faces)]
+
+
+@pytest.mark.verifies("closed form", "faces, edges and corners of a box", within="1e-12")
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_divided_box_is_a_box(turn):
+    """Triangles of one plane are one facet, and pieces of one straight edge are one edge: 6, 12 and 8."""
+    sizes = np.array([1.0, 1.4, 3.0])
+    points, faces = divided_box(sizes, 3, turn)
+    assert len(faces) == 2 * len(points) - 4  # closed, by Euler
+    for given in (faces, None):
+        hull = equilibria(points, np.zeros(3), 1.0, faces=given).hull
+        assert (len(hull.normals), len(hull.ends), len(hull.vertices)) == (6, 12, 8)
+        np.testing.assert_allclose(np.sort(hull.heights), np.repeat(np.sort(sizes) / 2.0, 2), rtol=1e-12)
+        lengths = np.linalg.norm(np.diff(hull.vertices[hull.ends], axis=1)[:, 0], axis=1)
+        np.testing.assert_allclose(np.sort(lengths), np.repeat(np.sort(sizes), 4), rtol=1e-12)
+
+
 @pytest.mark.verifies("behaviour")
 @pytest.mark.speed
 @pytest.mark.skipif(not CAMPAIGN, reason="a million faces: make campaign")
