@@ -445,6 +445,21 @@ def test_a_convex_surface_is_its_own_hull():
     assert counts(one) == counts(two)
 
 
+@pytest.mark.verifies("closed form", "m g times the rise of a box", within="1e-12")
+def test_energies_of_a_box_are_its_weight_times_the_rise():
+    """Edges and corners of a box are as far from its centre as half the diagonals of its faces and of itself."""
+    mass, sides = 700.0, (1.0, 1.4, 3.0)
+    found = Solid(box(*sides), mass=mass).equilibria()
+    lowest = 0.5 * min(sides)
+    for several, wanted in (
+        (found.stable, np.repeat(sides, 2)),
+        (found.saddles, np.repeat([math.hypot(a, b) for a, b in zip(sides, np.roll(sides, 1), strict=True)], 4)),
+        (found.summits, np.repeat(math.hypot(*sides), 8)),
+    ):
+        energies = mass * g * (0.5 * np.sort(wanted) - lowest)
+        np.testing.assert_allclose(sorted(each.energy for each in several), energies, rtol=1e-12, atol=1e-9)
+
+
 def divided_box(sizes, count, turn):
     """Points and triangles of a box whose faces are count x count squares, counter-clockwise seen from outside."""
     line, points, faces = np.linspace(-0.5, 0.5, count + 1), [], []

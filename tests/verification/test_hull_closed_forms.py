@@ -5,15 +5,18 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
 
 import rocking as rk
 from rocking.bodies.solid import Solid, box
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, valid
 from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import HullGround, added, applied, back, cross, dot, frame, length, scaled
-from rocking.dynamics.hull.history import HullSettings
-from rocking.dynamics.hull.motion import standing
+from rocking.dynamics.hull.ground import HullGround, added, applied, back, cross, dot, frame, length, product, scaled
+from rocking.dynamics.hull.histories import results_of, start_of
+from rocking.dynamics.hull.history import HullHistory, HullSettings
+from rocking.dynamics.hull.motion import levelled, point_velocity, standing
 from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
@@ -120,3 +123,63 @@ def test_an_edge_sticks_wherever_some_forces_hold_it():
             assert shares[0] == pytest.approx(shares[1], rel=1e-9, abs=1e-12)
     assert 50 < held < 350
     assert missed > 5
+
+
+def tower():
+    """An asymmetric body on a base of five corners."""
+    base = np.array([[-0.2, -0.15], [0.25, -0.2], [0.3, 0.1], [0.05, 0.25], [-0.15, 0.2]])
+    points = np.concatenate([np.column_stack([base, np.zeros(5)]), np.column_stack([1.2 * base, np.full(5, 1.1)])])
+    return HullBody(points, 200.0, (0.03, -0.02, 0.5), np.diag([25.0, 22.0, 8.0]))
+
+
+@pytest.mark.verifies("computed anew", "rotations of SciPy", within="1e-14", control="within")
+def test_quaternions_turn_one_after_the_other():
+    """The product of two quaternions is the rotation by the second and then by the first; not the other way round."""
+    rng = np.random.default_rng(80)
+    for _ in range(20):
+        one, two = (Rotation.from_rotvec(rng.normal(size=3)) for _ in range(2))
+        p, q = (tuple(np.roll(each.as_quat(), 1).tolist()) for each in (one, two))
+        found = Rotation.from_quat(np.roll(product(p, q), -1))
+        assert (found.inv() * one * two).magnitude() < 1e-14
+        assert (found.inv() * two * one).magnitude() > 1e-3
+
+
+@pytest.mark.verifies("invariant", "vertices of one height, no turn about the vertical", within="1e-12")
+@pytest.mark.parametrize("corners", [2, 3, 5])
+def test_drift_out_of_a_plane_is_turned_back(corners):
+    """An edge or a facet that is off the level by 1e-5 is turned onto it about a level axis."""
+    body = tower()
+    for turned in ((1e-5, 0.0, 0.0), (-4e-6, 7e-6, 0.0), (0.0, -1e-5, 0.0)):
+        start = Rotation.from_rotvec(turned)
+        attitude = tuple(np.roll(start.as_quat(), 1).tolist())
+        members = tuple(i for i, p in enumerate(body.points) if p[2] < 0.0)[:corners]
+        assert len(members) == corners
+        found = levelled(body, levelled(body, attitude, members), members)
+        axes = frame(found)
+        heights = [applied(axes, body.points[i])[2] for i in members]
+        assert np.ptp(heights) < 1e-12
+        change = Rotation.from_quat(np.roll(found, -1)) * start.inv()
+        assert abs(change.as_rotvec()[2]) < 1e-9
+        assert change.magnitude() < 1.5e-5
+
+
+@pytest.mark.verifies("invariant", "the lowest vertex of a start is at rest on the ground", within="1e-12")
+@pytest.mark.parametrize("spin", [(0.3, 0.0, 0.0), (0.0, -0.4, 0.0), (0.0, 0.0, 0.5), (0.3, -0.4, 0.5)])
+def test_the_lowest_vertex_of_a_start_is_at_rest(spin):
+    body = tower()
+    state = start_of(body, SpatialStart(tilt=0.2, azimuth=0.7, yaw=0.4, angular_velocity=spin))
+    axes = frame(state.attitude)
+    heights = [state.place[2] + dot(axes[2], p) for p in body.points]
+    low = int(np.argmin(heights))
+    assert heights[low] == pytest.approx(0.0, abs=1e-12)
+    assert length(point_velocity(body, state, low)) < 1e-12
+    assert length(state.spin) == pytest.approx(math.hypot(*spin), rel=1e-12)
+    assert max(length(point_velocity(body, state, i)) for i in range(len(heights))) > 0.01
+
+
+@pytest.mark.verifies("closed form", "hypotenuse of 3 and 4", within="1e-15")
+def test_a_body_is_displaced_by_the_straight_distance():
+    history, start = HullHistory(), standing(tower())
+    history.states = [start._replace(place=(1.0, 2.0, 0.5)), start._replace(place=(4.0, 6.0, 0.7))]
+    history.time = [0.0, 1.0]
+    assert 5.0 in results_of(history)[0]

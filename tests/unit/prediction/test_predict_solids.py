@@ -181,3 +181,15 @@ def test_a_body_wider_than_its_base_is_measured_as_its_section():
     found = SpaceMechanics(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
     r = restitution_distribution(section, onto="left").tables["left"]  # the nearer one
     assert found.inputs["restitution"].words.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
+
+
+@pytest.mark.verifies("closed form", "corners moved towards the middle by a length", within="1e-12")
+def test_a_smaller_base_is_smaller_in_both_directions():
+    """Each corner of the base lies 10 mm nearer to the plumb line, in its own direction."""
+    what = mechanics(stone())
+    (plain, small) = (np.array(what._shape(base, 1.0).body.vertices) for base in (0.0, -0.01))
+    moved = np.abs(plain - small).max(axis=1) > 1e-6
+    assert moved.sum() == 5
+    far = np.linalg.norm(plain[moved, :2], axis=1)
+    np.testing.assert_allclose(small[moved, :2], plain[moved, :2] * (1.0 - 0.01 / far)[:, None], rtol=1e-12)
+    np.testing.assert_allclose(small[moved, 2], plain[moved, 2], rtol=1e-12)
