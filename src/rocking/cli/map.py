@@ -253,7 +253,7 @@ class MapAnswer:
         problem, arrays = self.problem, self.arrays
         varied = "friction" in {axis.name for axis in self.axes}
         page.facts(body_lines(problem.bodies[0], problem.settings, self.length, varied=varied))
-        page.line(f"motion:       {problem.motions[0].name}")
+        page.line(f"motion:       {arrays.attributes['motion']}")
         page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
         page.line(f"restitution:  {arrays.attributes['restitution']};  engine: {arrays.attributes['engine']}")
         for name, axis in zip(("x", "y"), self.axes, strict=True):

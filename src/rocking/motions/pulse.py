@@ -32,9 +32,24 @@ class Pulse(ABC):
     """
 
     @property
-    @abstractmethod
     def name(self) -> str:
-        """What to call it in titles and tables."""
+        """What to call it in titles and tables: its shape, strength and period."""
+        return self.named()
+
+    @abstractmethod
+    def named(self, *, strength: bool = True, period: bool = True) -> str:
+        """Return the shape of the pulse, with its strength and period unless they are left out.
+
+        Parameters
+        ----------
+        strength, period : bool
+            Whether to name them.
+
+        Returns
+        -------
+        str
+            In words, with units.
+        """
 
     @property
     @abstractmethod
@@ -192,18 +207,20 @@ class Pulse(ABC):
 class Sinusoids(Pulse):
     """A sum of sinusoids from time zero to `duration`."""
 
-    title: str  # what to call it
+    shape: str  # what its shape is called
     waves: tuple[Wave, ...]  # amplitude [m/s2], circular frequency [rad/s] and phase [rad] of each sine
     length: float  # duration [s]
     largest: float  # peak acceleration [m/s2]
+    strength: float  # what its name states of its strength, in `unit`
+    period: float  # what its name states of its time [s]
+    unit: str = "m/s2"
 
     def __post_init__(self) -> None:
         self._check_peak()
 
-    @property
-    def name(self) -> str:
-        """What to call it in titles and tables."""
-        return self.title
+    def named(self, *, strength: bool = True, period: bool = True) -> str:
+        """Return the shape of the pulse, with its strength and period unless they are left out."""
+        return _named(self.shape, self.strength, self.unit, self.period, strength=strength, period=period)
 
     @property
     def duration(self) -> float:
@@ -224,7 +241,8 @@ class Sinusoids(Pulse):
         """Return the pulse with its acceleration multiplied by a factor."""
         factor = checks.number("factor", factor)
         waves = tuple((factor * amplitude, frequency, phase) for amplitude, frequency, phase in self.waves)
-        return replace(self, waves=waves, largest=abs(factor) * self.largest)
+        strength = abs(factor) * self.strength
+        return replace(self, waves=waves, largest=abs(factor) * self.largest, strength=strength)
 
     def _inside(self, time: FloatArray, derivative: int) -> FloatArray:
         total = np.zeros_like(time)
@@ -257,10 +275,10 @@ class Ricker(Pulse):
     def __post_init__(self) -> None:
         self._check_peak()
 
-    @property
-    def name(self) -> str:
-        """What to call it in titles and tables."""
-        return f"{self.shape} Ricker wavelet, {abs(self.amplitude):.3g} m/s2, {self.period:.3g} s"
+    def named(self, *, strength: bool = True, period: bool = True) -> str:
+        """Return the shape of the wavelet, with its amplitude and period unless they are left out."""
+        shape = f"{self.shape} Ricker wavelet"
+        return _named(shape, self.amplitude, "m/s2", self.period, strength=strength, period=period)
 
     @property
     def duration(self) -> float:
@@ -291,6 +309,11 @@ class Ricker(Pulse):
         z = t / unit
         part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
         return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)
+
+
+def _named(shape: str, value: float, unit: str, time: float, *, strength: bool, period: bool) -> str:
+    how = [f"{abs(value):.3g} {unit}"] if strength else []
+    return ", ".join([shape, *how, *([f"{time:.3g} s"] if period else [])])
 
 
 def _times(time: Any) -> FloatArray:

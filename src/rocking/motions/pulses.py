@@ -53,10 +53,12 @@ def rectangular(amplitude: float, duration: float) -> Sinusoids:
     """
     amplitude, duration = _amplitude(amplitude), checks.positive("duration", duration, "s")
     return Sinusoids(
-        f"rectangular pulse, {amplitude:.3g} m/s2, {duration:.3g} s",
+        "rectangular pulse",
         ((amplitude, 0.0, 0.5 * math.pi),),
         duration,
         abs(amplitude),
+        abs(amplitude),
+        duration,
     )
 
 
@@ -248,12 +250,13 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
         (-share * frequency, frequency, phase - frequency * 0.5 * cycles * period)  # Eq. 159
         for share, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
     )
-    title = f"Mavroeidis-Papageorgiou pulse, {velocity:.3g} m/s, {period:.3g} s"
+    shape = "Mavroeidis-Papageorgiou pulse"
     # of 1 m/s first: whether the velocity is too large is known before anything overflows
-    most = LARGEST_ACCELERATION / _largest(Sinusoids(title, waves, cycles * period, 0.0))
+    most = LARGEST_ACCELERATION / _largest(Sinusoids(shape, waves, cycles * period, 0.0, 0.0, period))
     velocity = checks.within("velocity", velocity, -most, most, unit="m/s", hint="the acceleration would pass 1e6 m/s2")
     scaled = tuple((velocity * amplitude, frequency, phase) for amplitude, frequency, phase in waves)
-    return Sinusoids(title, scaled, cycles * period, abs(velocity) / most * LARGEST_ACCELERATION)
+    largest = abs(velocity) / most * LARGEST_ACCELERATION
+    return Sinusoids(shape, scaled, cycles * period, largest, abs(velocity), period, "m/s")
 
 
 def harmonic(amplitude: float, period: float, cycles: float, phase: float = 0.0) -> Sinusoids:
@@ -360,10 +363,10 @@ _ALL: tuple[Callable[..., Pulse], ...] = (
 )
 
 
-def _windowed(title: str, amplitude: float, period: float, phase: float, cycles: float) -> Sinusoids:
+def _windowed(shape: str, amplitude: float, period: float, phase: float, cycles: float) -> Sinusoids:
     amplitude, period = _amplitude(amplitude), _period(period)
-    name = f"{title}, {abs(amplitude):.3g} m/s2, {period:.3g} s"
-    return Sinusoids(name, ((amplitude, 2.0 * math.pi / period, phase),), cycles * period, abs(amplitude))
+    waves, peak = ((amplitude, 2.0 * math.pi / period, phase),), abs(amplitude)
+    return Sinusoids(shape, waves, cycles * period, peak, peak, period)
 
 
 def _amplitude(value: Any) -> float:

@@ -251,7 +251,7 @@ def _level(impact: SpatialImpact, height: float, count: int) -> tuple[FloatArray
 
 
 _MARKS = {"stable": ("o", COLORS[0]), "saddle": ("x", "white"), "summit": ("^", COLORS[1])}
-_TILTS, _AZIMUTHS, _FEW = 91, 181, 40
+_TILTS, _AZIMUTHS, _FEW, _MANY = 91, 181, 40, 24
 
 
 @in_journal_style
@@ -297,11 +297,15 @@ def _landscape(figure: "Figure", axes: "PolarAxes", found: Equilibria, pose: Sta
         mark, color = _MARKS[kind]
         places = np.array([tilt_towards(pose, one.down) for one in members]).reshape(-1, 2)
         edge: dict[str, Any] = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
-        axes.scatter(places[:, 1], np.rad2deg(places[:, 0]), s=22, marker=mark, color=color, zorder=4, **edge)
+        size = 22.0 * min(1.0, _MANY / max(len(members), 1))  # many marks do not cover one another, nor the pose
+        level = 5 if kind == "stable" else 4
+        axes.scatter(places[:, 1], np.rad2deg(places[:, 0]), s=size, marker=mark, color=color, zorder=level, **edge)
         # white on white paper cannot be seen in a legend
         shown = INK if color == "white" else color
         name = kind if len(members) == 1 or kind == "stable" else f"{kind}s"
         handles.append(stroke(f"{len(members)} {name}", marker=mark, color=shown, linestyle="none"))
+    axes.scatter([0.0], [0.0], s=22, marker=_MARKS["stable"][0], color=_MARKS["stable"][1], zorder=6,
+                 edgecolors="white", linewidths=0.5)  # fmt: skip
     if found.rings:
         handles.insert(0, stroke(f"{len(found.rings)} rings, not marked", linestyle="none"))
     axes.set_rlim(0.0, 180.0)

@@ -243,7 +243,7 @@ def write_html(document: Document, pictures: Path, path: Path) -> None:
 
 def render_pdf(document: Document, pictures: Path, path: Path) -> None:
     """Write a report as PDF."""
-    path.write_bytes(_pdf(document, "report.typ", pictures, _fonts() if any(pictures.glob("*.svg")) else []))
+    path.write_bytes(_pdf(document, "report.typ", pictures, _fonts()))
 
 
 Content = tuple[Document, dict[str, Callable[[], Any]]]
@@ -275,8 +275,11 @@ def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
 
 
 def _fonts() -> list[str]:
-    """Return where the fonts of the pictures are."""
-    from matplotlib import get_data_path
+    """Return where the typeface of pictures, words and tables is; none where nothing draws."""
+    try:
+        from matplotlib import get_data_path
+    except ImportError:
+        return []
 
     return [str(Path(get_data_path()) / "fonts" / "ttf")]
 

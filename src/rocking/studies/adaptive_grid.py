@@ -13,7 +13,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
-from rocking.studies.axis import Axis, axis_of, friction_beside
+from rocking.studies.axis import Axis, axis_of, friction_beside, varied_name
 from rocking.studies.question import Case, Question
 
 
@@ -45,7 +45,7 @@ class Plane:
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
         """Return what was computed from what and how, as plain values."""
-        stated = self.question.attributes(work)
+        stated = self.question.attributes(work) | {"motion": varied_name(self.question.motion, (self.x, self.y))}
         if "friction" in {self.x.name, self.y.name}:
             del stated["setting_friction"]
         return stated

@@ -15,7 +15,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import peak_ground_velocity
 from rocking.motions.components import leading
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Motion, Ricker, Sinusoids
+from rocking.motions.pulse import Motion, Pulse, Ricker, Sinusoids
 from rocking.studies.question import Case, Question
 
 BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)  # stages in which axes are applied, in this order
@@ -186,6 +186,16 @@ def _check_in_plane(axis: Axis, question: Question) -> None:
 def _check_in_space(axis: Axis, question: Question) -> None:
     if isinstance(question.body, Body):
         raise InvalidValueError(f"{axis.name} varies only for a body in space, got {question.body!r:.60}")
+
+
+def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
+    """Return the name of a motion without the strength and the period that axes vary."""
+    motion = leading(motion)
+    if not isinstance(motion, Pulse):
+        return str(motion.name)
+    stages = {axis.stage for axis in axes}
+    strength, period = bool(stages & {AMPLITUDE, VELOCITY}), TIME in stages
+    return motion.named(strength=not strength, period=not period)
 
 
 def friction_beside(axes: Sequence[Axis], stated: float | None) -> dict[str, float]:

@@ -397,3 +397,16 @@ def test_unknown_words(message: str) -> None:
     for words in UNKNOWN[message]:
         with pytest.raises(UnknownModelError, match=message):
             pulses.pulse(words)
+
+
+def test_a_scaled_pulse_is_called_by_its_own_strength():
+    """The name states the strength after scaling, and leaves out what a map varies."""
+    for pulse, scaled, bare in (
+        (pulses.sine(2.0, 0.8), "sine pulse, 3 m/s2, 0.8 s", "sine pulse"),
+        (pulses.rectangular(2.0, 0.5), "rectangular pulse, 3 m/s2, 0.5 s", "rectangular pulse"),
+        (pulses.ricker(2.0, 1.0), "symmetric Ricker wavelet, 3 m/s2, 1 s", "symmetric Ricker wavelet"),
+    ):
+        assert pulse.scaled(-1.5).name == scaled
+        assert pulse.scaled(1.5).scaled(2.0 / 3.0).name == pulse.name
+        assert pulse.named(strength=False, period=False) == bare
+        assert pulse.named(strength=False) == f"{bare}, {scaled.rpartition(', ')[2]}"

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rocking.bodies.solid import Solid, box, cylinder
+from rocking.bodies.solid import Solid, box, cylinder, extrusion
 from rocking.plots import equilibria_picture
 
 
@@ -39,3 +39,19 @@ def test_rings_are_said():
     """A drum has circles of equilibria, which bear no marks."""
     figure = equilibria_picture(Solid(cylinder(1.0, 2.0)))
     assert "3 rings, not marked" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_the_standing_pose_is_not_covered():
+    """Its mark lies over all others, and marks of many equilibria shrink; those of few keep their size."""
+    few = equilibria_picture(Solid(box(1.0, 2.0, 3.0)))
+    polar = next(axes for axes in few.axes if axes.name == "polar")
+    *others, pose = [each for each in polar.collections if len(each.get_offsets())]
+    assert np.asarray(pose.get_offsets()).tolist() == [[0.0, 0.0]]
+    assert pose.get_zorder() > max(each.get_zorder() for each in others)
+    assert {float(each.get_sizes()[0]) for each in others if len(each.get_offsets()) > 1} == {22.0}
+    angles = np.linspace(0.0, 2.0 * math.pi, 40, endpoint=False)
+    drum = Solid(extrusion(np.column_stack([np.cos(angles), 1.1 * np.sin(angles)]), 2.0))
+    polar = next(axes for axes in equilibria_picture(drum).axes if axes.name == "polar")
+    crowded = [each for each in polar.collections if len(each.get_offsets()) > 48]
+    assert crowded
+    assert all(float(each.get_sizes()[0]) <= 11.0 for each in crowded)

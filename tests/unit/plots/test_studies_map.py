@@ -193,3 +193,17 @@ def test_words():
     assert geometric(np.geomspace(1.0, 9.0, 5))
     assert not geometric(np.linspace(1.0, 9.0, 5))
     assert not geometric(np.array([-1.0, 1.0, 3.0]))
+
+
+def test_the_title_leaves_out_what_the_axes_vary():
+    """Amplitude and period of the base motion stand in the title only where no axis varies them."""
+    block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
+    ratios, angles = [1.0, 2.0], [0.2, 0.3]
+    for axes, words in (
+        ((("frequency_ratio", ratios), ("amplitude_ratio", ratios)), "sine pulse;"),
+        ((("pga", ratios), ("slenderness_angle", angles)), "sine pulse, 0.6 s;"),
+        ((("period", ratios), ("slenderness_angle", angles)), "sine pulse, 3 m/s$^2$;"),
+        ((("semi_diagonal", ratios), ("slenderness_angle", angles)), "sine pulse, 3 m/s$^2$, 0.6 s;"),
+    ):
+        figure = overturning_map_picture(overturning_map(block, pulse, *axes, 0.9))
+        assert figure.axes[0].get_title(loc="left").startswith(words)

@@ -120,3 +120,20 @@ def test_the_section_on_explanations():
         canvas.draw()
         inked = (np.asarray(canvas.buffer_rgba())[..., :3].min(axis=2) < 200).mean()
         assert 0.01 < inked < 0.9
+
+
+def test_words_tables_and_pictures_have_one_typeface():
+    """Both layouts of documents and the style of pictures name DejaVu Sans first; pages and their pictures alike."""
+    from importlib.resources import files
+
+    from rocking.plots.style import journal_style
+
+    folder = files("rocking.reports")
+    for name in ("report.typ", "response.typ"):
+        assert '#set text(font: ("DejaVu Sans"' in folder.joinpath(name).read_text("utf-8")
+    page = folder.joinpath("report.html.jinja").read_text("utf-8")
+    assert 'body, svg text, svg tspan { font-family: "DejaVu Sans"' in page
+    with journal_style():
+        import matplotlib as mpl
+
+        assert mpl.rcParams["font.sans-serif"] == ["DejaVu Sans"]
