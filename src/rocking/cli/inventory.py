@@ -1,5 +1,6 @@
 """`rocking inventory`: which objects of a list stay standing, the worst first."""
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 _SHAKING = "How it shakes"
 _MOST_PLANNED = 5
 _MOST_REASONS = 5
+NOTHING_ASSESSED = 1
+"""Exit status where the list is read and no object of it has a verdict."""
+
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 
@@ -74,7 +78,8 @@ def inventory(
     with bar("motions", quiet=as_json) as progress:
         assessment = problem.answer(progress)
     if not assessment.verdicts:
-        raise InvalidValueError(nothing_assessed(assessment))
+        print(f"rocking: {nothing_assessed(assessment)}", file=sys.stderr)
+        raise typer.Exit(NOTHING_ASSESSED)
     written, left_out = _write(assessment, targets)
     deliver(InventoryAnswer(assessment), as_json=as_json)
     if not as_json:

@@ -143,9 +143,10 @@ def _finish(figure: "Figure", right: "Axes", assessment: Assessment, shown: int)
     level, say = assessment.hazard.level, words_of(assessment)
     if level is not None and level.kind == "PGA":
         right.axvline(level.value / g, **_PEAK)
+        right.set_xlim(right=max(right.get_xlim()[1], 1.05 * level.value / g))
     shaking = f"{assessment.hazard.words(say.code)}; {say.translated(assessment.hazard.source)}"
     of_all = len(assessment.verdicts)
-    shaking += f"; {say('picture.shown', shown=shown, count=of_all)}" if shown < of_all else ""
+    shaking += f"\n{say('picture.shown', shown=shown, count=of_all)}" if shown < of_all else ""
     figure.suptitle(plain(shaking), x=0.01, ha="left", fontsize=7)
     _legend(figure, assessment)
 

@@ -146,13 +146,17 @@ def test_one_default_seed(printed, objects, tmp_path):
     assert json.loads(printed(job, "--json"))["objects"] != told["objects"]
 
 
-def test_no_object_assessed_is_a_failure(refuses, tmp_path):
+def test_no_object_assessed_is_a_failure(run, tmp_path):
     """A list of which no row can be assessed ends with status 1, its rows and reasons, and no file."""
     path = tmp_path / "list.csv"
     path.write_text("name,width_cm,depth_cm,height_cm\n" + "".join(f"x{k},?,1,1\n" for k in range(7)), "utf-8")
     out = tmp_path / "out"
-    refuses((path, "--pga", "0.3g", *FEW, "--out", out), "line 2: width_cm is '?'")
-    refuses((path, "--pga", "0.3g", *FEW, "--out", tmp_path / "x.pdf"), "and 2 more lines")
+    for words in (("--out", out), ("--out", tmp_path / "x.pdf"), ("--json",)):
+        code, told, error = run(path, "--pga", "0.3g", *FEW, *words)
+        assert (code, told) == (1, "")
+        assert error.startswith("rocking: list.csv: no object could be assessed")
+        assert "line 2: width_cm is '?'" in error
+        assert "and 2 more lines" in error
     assert not out.exists()
     assert not (tmp_path / "x.pdf").exists()
 

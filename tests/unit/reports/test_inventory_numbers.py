@@ -54,6 +54,7 @@ def test_json(found, tmp_path):
     )
     assert plain["not_objects"] == [{"row": 5, "text": "Summe: 3", "reason": "a sum or an average"}]
     assert plain["plan"][0]["number"] == "A-17"
+    assert plain["header_lines"] == [1]
     assert plain["plan"][0]["in_words"].startswith("A-17 Vase: ")
 
 
@@ -150,6 +151,7 @@ def test_pictures(found, hazard, tmp_path):
     drawn = inventory_picture(long, MOST_DRAWN)
     assert len(drawn.axes[0].get_yticklabels()) == MOST_DRAWN
     assert drawn.axes[0].get_yticklabels()[0].get_text() == long.verdicts[0].item.label
+    assert drawn.axes[1].get_xlim()[1] > 0.3  # the peak of the shaking is within, also where no object reaches it
     assert drawn.get_suptitle().endswith(f"the worst {MOST_DRAWN} of {many} objects")
     for panel in inventory_distribution(long).axes:
         assert sum(bar.get_height() for bar in panel.patches) == many

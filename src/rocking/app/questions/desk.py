@@ -370,7 +370,7 @@ def _why(place: Path, code: int | None) -> str:
         )
     lines = (place / _LOG).read_text(encoding="utf-8", errors="replace").splitlines()
     said = [line.removeprefix("rocking: ") for line in lines if line.startswith("rocking: ")]
-    if code == 2 and said:
+    if code in {1, 2} and said:
         return said[-1].replace(f"{place}{os.sep}", "").removeprefix(f"{QUESTION}: ")[:1000]
     return "it needed more memory or time than a page gives, or failed: its log is in the data folder"
 

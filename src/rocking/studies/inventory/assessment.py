@@ -122,6 +122,7 @@ class Assessment:
     language: str = "en"  # of the report
     not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are no objects
     stated: tuple[str, ...] = ()  # what the list states beside its table and was used
+    header_lines: tuple[int, ...] = ()  # lines of the header of the list
 
     def pieces(self) -> dict[Light, int]:
         """Return how many pieces show each light, the worst first."""
@@ -455,6 +456,7 @@ class _Assessor:
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
             plan=self._plan(verdicts, threads), drawn=self.drawn, language=self.inventory.language,
             not_objects=self.inventory.not_objects, stated=self.inventory.stated,
+            header_lines=self.inventory.header_lines,
         )  # fmt: skip
 
     def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[PlanEntry, ...]:

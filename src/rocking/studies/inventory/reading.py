@@ -64,6 +64,8 @@ class Inventory:
         Rows that are no objects: titles, headings, sums, remarks, and the header again.
     stated : tuple of str
         What the list states beside its table and was used: a unit, or the order of measures.
+    header_lines : tuple of int
+        Lines of its header [-].
     """
 
     objects: tuple[InventoryObject, ...]
@@ -73,6 +75,7 @@ class Inventory:
     language: str = "en"
     not_objects: tuple[NotAssessed, ...] = ()
     stated: tuple[str, ...] = ()
+    header_lines: tuple[int, ...] = ()
 
 
 def read_inventory(
@@ -250,7 +253,8 @@ class _Reader:
         if not objects and not refused:
             raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
         ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
-        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language, passed, stated)
+        lines = tuple(line for line, _ in self.sheet.rows[self.found.first : self.found.end])
+        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language, passed, stated, lines)
 
     def _column(self, place: int) -> Iterator[str]:
         """Yield the texts of a column; numbers of spreadsheets have no mark."""

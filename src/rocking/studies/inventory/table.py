@@ -174,6 +174,7 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
         "not_objects": [{"row": each.row, "text": each.name, "reason": each.reason} for each in assessment.not_objects],
         "columns_not_read": list(assessment.ignored),
         "stated": list(assessment.stated),
+        "header_lines": list(assessment.header_lines),
         "assumptions": limits(assessment),
     }
 
