@@ -244,7 +244,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
 def test_nrml_reproduces_the_curve(tmp_path, agreement):
     """Read by a parser of its own and evaluated by mpmath as OpenQuake does, the file gives P(im) to 1e-12."""
     found = fragility_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
-    made = model_of(found, "block <1>")
+    made = model_of(found, "block <1>", crossing="refuse")
     with pytest.raises(InvalidValueError, match="curves must not cross, but at"):
         to_nrml(made, tmp_path / "fragility.xml")
     assert not list(tmp_path.iterdir())

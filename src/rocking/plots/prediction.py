@@ -281,7 +281,8 @@ def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
             outside = f"outside: {found.outside.get(name, '')}".removesuffix(": ")
             words = "no factor overturns" if np.isfinite(capacity).any() else outside
             place: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "left", "va": "center"}
-            axes.text(0.02, row, words, fontsize=6.5, color=INK, **place)
+            box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.8}
+            axes.text(0.02, row, words, fontsize=6.5, color=INK, bbox=box, **place)
         ends += ratio.tolist()
     axes.axvspan(1.0, 1.5 * max(ends), color=PALE, linewidth=0.0, zorder=0)
     axes.set_xlim(min(ends) / 1.5, 1.5 * max(ends))
