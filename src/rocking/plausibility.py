@@ -22,6 +22,9 @@ DENSITIES = 10.0, 23000.0  # polystyrene foam; osmium, the densest element, has 
 LARGEST_PGA = 41.0
 """No record has more: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
 
+LEAST_PGA = 1e-4
+"""Ten millionths of g: accelerometers of strong motion have about as much noise [m/s2]."""
+
 LARGEST_PGV, LARGEST_PGD = 5.0, 15.0
 """Round limits above what stations on faults show, some 4 m/s and 10 m at TCU068, Chi-Chi 1999 [m/s], [m]."""
 
@@ -79,6 +82,16 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
     return (
         f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) is more than any recorded, {LARGEST_PGA:g} "
         "m/s2; is its unit or its scale another?",
+    )
+
+
+def of_quiet(peak: float) -> tuple[str, ...]:
+    """Return the doubt about a record that hardly moves, by its peak ground acceleration [m/s2]."""
+    if peak >= LEAST_PGA:
+        return ()
+    return (
+        f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) at most is less than the noise of an "
+        f"accelerometer, about {LEAST_PGA:g} m/s2; is the channel dead, or its unit another?",
     )
 
 

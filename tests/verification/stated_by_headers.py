@@ -67,7 +67,12 @@ def _csmip_v2(text: str) -> list[Stated]:
     peaks = ["".join(_all(r"^PEAK ACCELERATION *= *(-?[\d.]+)", "\n".join(lines[k : k + 25]))[:1]) for k in starts]
     rows = zip(counts, steps, peaks, strict=True)
     found = [(int(n), float(step), peak) for n, step, peak in rows]
-    return [Stated(n, step, abs(float(peak)), _unit_of(peak)) if peak else Stated(n, step) for n, step, peak in found]
+    # words may round the peak that the numbers of the header state: within 5 % they are doubted
+    slack = [max(_unit_of(peak), 0.055 * abs(float(peak))) if peak else 0.0 for _, _, peak in found]
+    return [
+        Stated(n, step, abs(float(peak)), rounding) if peak else Stated(n, step)
+        for (n, step, peak), rounding in zip(found, slack, strict=True)
+    ]
 
 
 def _smc(text: str) -> list[Stated]:

@@ -25,7 +25,7 @@ Tables = dict[str, Any]
 _AS_TYPED = (
     (re.compile(r'\bunits="(\w+)"'), r"--units \1"),
     (re.compile(r"\bunits="), "--units"),
-    (re.compile(r"\b(format|time_step)="), r"--set motion.\1="),
+    (re.compile(r"\b(format|time_step|skip)="), r"--set motion.\1="),
     (re.compile(r'\b(repair|surface|inner_parts)="(\w+)"'), r"--set body.\1=\2"),
     (re.compile(r"\b(base_tolerance|up|wall)="), r"--set body.\1="),
     (re.compile(r"\b(up|repair|surface|wall|inner_parts|base_tolerance) must be"), r"body.\1 must be"),
@@ -43,7 +43,7 @@ _AS_TYPED = (
 _PLACE = re.compile(r"(body|motion|[xyz]|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)")
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
-_OF_EVERY_FILE = {"format", "units", "time_step", "process"}
+_OF_EVERY_FILE = {"format", "units", "time_step", "skip", "process"}
 NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
 
 

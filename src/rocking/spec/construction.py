@@ -291,7 +291,8 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
 def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
     upright = None if table.vertical_file is None else inputs.file(table.vertical_file)
     keys = (table.format, table.units, table.time_step, table.component, table.vertical)
-    return read_motion(path, *keys, vertical_path=upright, stations=stations_of(with_files(table, inputs)))
+    stations = stations_of(with_files(table, inputs))
+    return read_motion(path, *keys, vertical_path=upright, stations=stations, skip=table.skip or 0)
 
 
 def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:

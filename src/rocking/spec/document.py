@@ -38,7 +38,7 @@ _ONLY = {
     "fragility.factor": "cloud",
     "fragility.tolerance": "incremental",
 }
-OF_FILES = {"format", "units", "time_step", "component", "vertical", "vertical_file", "process"}
+OF_FILES = {"format", "units", "time_step", "skip", "component", "vertical", "vertical_file", "process"}
 """Keys of a motion that are for record files only."""
 
 
@@ -115,6 +115,7 @@ class MotionKeys(JobTable):
     format: Text | None = _key("format of the record file, if not found by content: see rocking formats")
     units: Text | None = _key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
     time_step: Positive | None = _key("step between samples where the file does not state it [s]")
+    skip: int | None = _key("lines at the top of a text file that are passed over", None, ge=0, le=100_000)
     component: Text | None = _key("horizontal component of the file, by name")
     vertical: Text | None = _key("vertical component, by name")
     vertical_file: Text | None = _key("file of the vertical component, where it has its own")

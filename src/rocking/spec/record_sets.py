@@ -44,7 +44,12 @@ def record_set(
         _note(name, inputs)
         with located(f"records: {name}"):
             keys = (table.format, table.units, table.time_step)
-            how: dict[str, Any] = {"stations": stations, "workers": workers, "progress": progress}
+            how: dict[str, Any] = {
+                "stations": stations,
+                "skip": table.skip or 0,
+                "workers": workers,
+                "progress": progress,
+            }
             found = read_records(inputs.folder / name, *keys, **how)
             if is_pattern(name) and found.left_out:  # these files were named
                 raise InvalidValueError(": ".join(found.left_out[0]))

@@ -92,7 +92,7 @@ def test_damage_is_refused(text: str, message: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["Header\n1 2\n", "1 2\n1 2 3\n", "\0\0", "# none\n", "#SampleRate(Hz): 50\n0 1\n1 2\n",
+    ["Header\n1 2\n", "1 2\n1 2 3\n", "\0\0", "# none\n", "#RecordLength(sec): 50\n#NDATA 3\n0 1\n1 2\n",
      "time,acc\ns,g\n0.0,1\n0.1,2", "hello world\n" * 5],
 )  # fmt: skip
 def test_recognition_is_by_the_first_lines(text: str) -> None:
@@ -179,13 +179,20 @@ def test_what_a_german_spreadsheet_writes(gap: str, alphabet: str) -> None:
     [("m/s^2", "m/s2"), ("m/s/s", "m/s2"), ("cm/sec**2", "cm/s2"), ("Gal", "gal"), ("MM/S2", "mm/s2"), ("mg", "mg")],
 )
 def test_spellings_of_units(unit: str, read: str) -> None:
-    """Units are known in their usual spellings; a capital G may be another, is asked for, and stays in the name."""
+    """Units are known in their usual spellings, before a remark too; one that is not known contradicts every other."""
     assert COLUMNS.read(_source(f"acc ({unit})\n1\n2\n"), time_step=0.01).components[0].unit == read
-    for other in ("G", "Mg", "NS", "m/s2 filtered"):
+    for other, stated in (("G", "g"), ("m/s2 filtered", "m/s2"), ("cm/s/s filtered", "cm/s2")):
+        (part,) = COLUMNS.read(_source(f"acc [{other}]\n1\n2\n"), time_step=0.01).components
+        assert part.unit == stated
+    for other in ("Mg", "furlong/s2", "NS", "corrected"):
         source = _source(f"acc [{other}]\n1\n2\n")
         with pytest.raises(RecordError, match="say units="):
             COLUMNS.read(source, time_step=0.01)
-        assert COLUMNS.read(source, "g", 0.01).components[0].name == f"acc [{other}]"
+        if other in {"NS", "corrected"}:
+            assert COLUMNS.read(source, "g", 0.01).components[0].name == f"acc [{other}]"
+            continue
+        with pytest.raises(RecordError, match=f"states the unit '{other}', you say g; known are m/s2"):
+            COLUMNS.read(source, "g", 0.01)
 
 
 def test_what_is_no_acceleration_is_left_out_and_told() -> None:

@@ -43,7 +43,9 @@ def test_files_are_recognised_by_content_alone(name: str, made_up, tmp_path: Pat
     write_record(made_up("90"), path, name)
     assert read_record(path).format == name
     source, known = Source.of_path(path), formats()
-    assert [one.name for one in known.values() if one.recognises(source)] == [name]
+    found = [one.name for one in known.values() if one.recognises(source)]
+    # words above numbers may be those of columns too, which are tried where no other format is found
+    assert [one for one in found if one != "columns" or name == "columns"] == [name]
     assert known[name].name == name
     assert known[name].title
 
@@ -158,7 +160,7 @@ def test_no_finite_number_further_down_is_named_as_ever(tmp_path: Path) -> None:
         "nan x\n0.1 1\n0.2 2\n",  # another damage on the same line
         "x5\n1\nnan\n",  # damage of another kind before it
         "nano\n1\n2\n",  # a name
-        "#SampleRate(Hz): 50\n0 nan\n1 2\n",  # a comment of another format
+        "#RecordLength(sec): 50\n0 nan\n1 2\n",  # a comment of another format
         "nan\0\n1\n",  # no text
     ],
 )

@@ -4,13 +4,16 @@ import csv
 import re
 from dataclasses import dataclass, replace
 
-from rocking.conventions import ACCELERATION_UNITS
+from rocking.conventions import ACCELERATION_UNITS, FloatArray
+from rocking.motions.formats.directions import orientation
 from rocking.motions.formats.headers import acceleration_unit
-from rocking.motions.formats.record import Source
+from rocking.motions.formats.record import Source, readable
 
 MOST_NAMED = 20  # columns of a file that names them
 _FIRST_ROWS = 50
 MARK = "\xef\xbb\xbf"  # the three bytes with which some programs begin a file in UTF-8
+_MOST_WORDS = 60  # lines of words above the numbers
+_WORD = re.compile(r"[^\W\d_]{3,}")
 _BLANKS = " \t\x1a"
 _MIXED = re.compile(r"\s*,\s*|\s+")
 _QUOTED = re.compile(r'"[^"]*"')
@@ -26,9 +29,29 @@ SAMPLING_LINE = re.compile(r"NPTS\s*=\s*\d+\s*,?\s*DT\s*=\s*[\d.eE+-]+\s*(?:s|se
 """The line above the samples of a PEER file, where the lines above it were taken away."""
 
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
-_TAIL = re.compile(r"(.*[^\W_])_((?:mm|cm|m)_s2?)")
+_TAIL = re.compile(
+    r"(.*[^\W_])_((?:mm|cm|m)_s2?)"
+    r"|(.*[^\W_]{2})[_ ]((?:mm|cm|m)_?s_?2|(?:mm|cm|m)_s_s|(?:mm|cm|m)/s(?:/s|\^?2)|g|gal|mg|ms|us|min)"
+)
+_PLAIN_WORD = re.compile(r"[^\W\d_]{4,}(?:[ -][^\W\d_]+)*")
 _SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
-_TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
+_TIMES = {
+    "zaman",
+    "czas",
+    "vrijeme",
+    "cas",
+    "\u010das",
+    "id\u0151",
+    "\u0432\u0440\u0435\u043c\u044f",
+    "time",
+    "times",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tid",
+    "tijd",
+}
 _OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
 _COUNTS = {"count", "counts", "cnt"}
 _VELOCITIES, _LENGTHS = {"m/s", "cm/s", "mm/s", "in/s", "ft/s"}, {"m", "cm", "mm", "in", "ft"}
@@ -38,7 +61,10 @@ _OTHER_UNITS = {
     *("v", "mv", "n", "kn", "pa", "kpa", "mpa", *_COUNTS, "%", "%g", "-", "1"),
 }
 _OF_ANY_CASE = {unit for unit in ACCELERATION_UNITS if unit not in {"g", "mg", "g/10"}}
-_SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2", "cm.s-2": "cm/s2", "gals": "gal"}
+_SPELT = {
+    **{f"{length}{second}": f"{length}/s2" for length in ("m", "cm", "mm") for second in ("/s/s", "s2", "s-2", ".s-2")},
+    "gals": "gal",
+}
 _UNITS = ", ".join(ACCELERATION_UNITS)
 
 
@@ -51,31 +77,58 @@ class ColumnText:
 
     names: tuple[str, ...] | None  # what the columns are called, with their units; None if the file begins with numbers
     heading: str  # the line of the names; empty if there is none
+    words: tuple[tuple[int, str], ...]  # lines above that are neither, without a mark of comments
     rows: list[tuple[int, list[str]]]  # index of each line of numbers, and its cells
     separator: str  # ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part
 
     @classmethod
     def of(cls, source: Source, most: int | None = None) -> "ColumnText":
         """Part a file into cells."""
-        lines = _lines(source, None if most is None else max(most, _FIRST_ROWS) + 1)
-        if not lines:
-            return cls(None, "", [], "")
-        first = lines[0][1]
-        separator = _separator(first)
-        names = _names(first, separator)
-        body = lines if names is None else lines[1:]
+        lines = _lines(source, None if most is None else max(most, _FIRST_ROWS) + _MOST_WORDS + 1)
+        if most is None:
+            lines = [each for each in lines if each[0] < source.end]
+        top = next((k for k, (_, text) in enumerate(lines[: _MOST_WORDS + 1]) if not is_words(text)), 0)
+        names, body, above = None, lines[top:], lines[:top]
+        if above and not body:
+            return cls(None, "", (), [], "")
+        if above and (names := _names_above(above, body)) is not None:
+            above = above[:-1]
+        elif not above and lines and (names := _names(lines[0][1], _separator(lines[0][1]))) is not None:
+            above, body = [], lines[1:]
+        first = lines[len(lines) - len(body) - 1][1] if names else ""
+        separator = _separator(first) if names else ""
         if names is None or separator == " ":
             separator = " " if names and len(names) == 1 else _separator_of_numbers([text for _, text in body])
         rows = [(line, _cells(text, separator, names)) for line, text in body[:most]]
-        return cls(names, readable(first) if names else "", rows, separator)
+        return cls(names, readable(first), tuple(above), rows, separator)
 
 
-def readable(text: str) -> str:
-    """Return a line in the alphabet in which it was written: UTF-8 where it is that, Latin-1 otherwise."""
-    try:
-        return text.encode("latin-1").decode("utf-8")
-    except UnicodeError:
-        return text
+def is_words(text: str) -> bool:
+    """Return whether a line is of words, and none of numbers of which one is damaged.
+
+    >>> [is_words(text) for text in ("Station A", "1940 El Centro NS", "0.01 nan", "0.5 x3 1.0", "acc [g]")]
+    [True, True, False, False, True]
+    """
+    words = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
+    begins = re.match(r"[-+.,\d]", text.strip()) is not None
+    stated = re.match(r"[^\W\d_]{2,20}\s*[=:]", text.strip()) is not None
+    return (len(words) > begins or stated) and len(text) <= 100 * MOST_NAMED
+
+
+def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> tuple[str, ...] | None:
+    """Return the names in the last line of words, if it has as many as there are columns, or is alone with marks."""
+    text = above[-1][1]
+    separator = _separator(text)
+    names = _names(text, separator)
+    if names is None:
+        return None
+    first = _cells(body[0][1], _separator_of_numbers([row for _, row in body]), None)
+    fits = len(names) == len(first)
+    if len(above) == 1 and (fits or separator in {";", "\t", ","} or len(names) == 1):
+        return names
+    columns = [ColumnName.of(place, name) for place, name in enumerate(names)]
+    said = any(one.is_time for one in columns) or all(one.unit for one in columns) or separator != " "
+    return names if fits and (said or all(orientation(one.name) is not None for one in columns)) else None
 
 
 def states_sampling(text: str) -> bool:
@@ -110,6 +163,19 @@ def unit_named(source: Source, line: int | None, word: str) -> str | None:
     return unit
 
 
+def looks_like_unit(text: str, *, square: bool = True) -> bool:
+    """Return whether a text in brackets may be a unit: no direction, no word of a remark.
+
+    >>> [looks_like_unit(text) for text in ("furlong/s2", "Mg", "NS", "x", "corrected")]
+    [True, True, False, False, False]
+    """
+    if len(text) < 2 or orientation(text) is not None or text.isdigit():
+        return False
+    if re.search(r"[/^*\xb2]|\d", text):
+        return True
+    return len(text) <= 3 if not square else _PLAIN_WORD.fullmatch(text) is None
+
+
 @dataclass(frozen=True, slots=True)
 class ColumnName:
     """A column by what stands above it."""
@@ -119,19 +185,27 @@ class ColumnName:
     name: str  # without a unit of ours
     unit: str | None = None  # A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets
     behind: str = ""  # what else stands in the brackets, in small letters and without exponents' marks
+    odd: str = ""  # a unit in brackets that is not known
 
     @classmethod
     def of(cls, place: int, text: str) -> "ColumnName":
         """Read what stands above a column."""
         # as our own tables name them: acceleration_m_s2
         tail = _TAIL.fullmatch(text)
-        found = _BRACKETS.fullmatch(f"{tail[1]} [{tail[2].replace('_', '/')}]" if tail else text)
+        ends = (tail[1], tail[2]) if tail and tail[1] else (tail[3], tail[4]) if tail else ("", "")
+        found = _BRACKETS.fullmatch(f"{ends[0]} [{ends[1].replace('_', '/')}]" if tail else text)
         if found is None:
             return cls(place, text, text)
-        behind = _plain(found[2] if found[2] is not None else found[3])
+        inside = (found[2] if found[2] is not None else found[3]).strip()
+        behind = _plain(inside)
         small = _SPELT.get(behind.lower(), behind.lower())
         unit, known = kind_of(behind)
-        return cls(place, text, found[1].strip() if known and found[1].strip() else text, unit, small)
+        if not known:  # a unit and a remark, or the capital of g
+            first = re.split(r"[\s,;]", inside)[0]
+            unit, known = ("g", "acceleration") if first in {"G", "g's", "gn"} else kind_of(first)
+        name = found[1].strip() if known and found[1].strip() and known != "" and kind_of(behind)[1] else text
+        odd = "" if known or not looks_like_unit(inside, square=found[2] is not None) else inside
+        return cls(place, text, name, unit, small, odd)
 
     @property
     def is_time(self) -> bool:
@@ -161,6 +235,7 @@ class NamedColumns:
     time: ColumnName | None
     accelerations: tuple[ColumnName, ...]
     left_out: tuple[str, ...]  # what is neither
+    more_times: tuple[ColumnName, ...] = ()  # columns that are called a time as well
 
     @classmethod
     def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
@@ -169,12 +244,10 @@ class NamedColumns:
         for one in named:
             if not one.text:
                 raise source.error(None, f"column {one.place + 1} has no name; name it, or remove it")
-            if one.name.casefold() in {other.name.casefold() for other in named[: one.place]}:
+            if not one.is_time and one.name.casefold() in {other.name.casefold() for other in named[: one.place]}:
                 raise source.error(None, f"two columns are called {one.name!r:.60}; rename or remove one")
         times = [one for one in named if one.is_time]
         found = tuple(one for one in named if one.is_acceleration)
-        if len(times) > 1:
-            raise source.error(None, f"{_listed(times)} are both called a time; remove all but one")
         if not found:
             kinds = {kind_of(one.behind)[1] for one in named} & _TAKEN_FOR
             hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
@@ -193,10 +266,29 @@ class NamedColumns:
                 f"which of {_listed(found)} is the time? Name it time [s], or write the unit behind every "
                 "acceleration, or remove all columns but one acceleration",
             )
+        times.sort(key=lambda one: one.behind not in {"", *_SECONDS})
         if times and times[0].behind not in {"", *_SECONDS}:
             raise source.error(None, f"{_listed(times)}: the times must be in seconds; convert them, or remove them")
         left_out = tuple(one.text for one in named if one not in found and one not in times)
-        return cls(times[0] if times else None, found, left_out)
+        return cls(times[0] if times else None, found, left_out, tuple(times[1:]))
+
+    def with_one_time(self, source: Source, values: FloatArray) -> "NamedColumns":
+        """Return the same with one time, of which the others must be copies."""
+        if not self.more_times or self.time is None:
+            return self
+        if any((values[:, one.place] != values[:, self.time.place]).any() for one in self.more_times):
+            times = _listed([self.time, *self.more_times])
+            raise source.error(None, f"{times} are both called a time; remove all but one")
+        return replace(self, more_times=(), left_out=(*self.left_out, *(one.text for one in self.more_times)))
+
+    def with_stated_unit(self, source: Source, unit: str | None, odd: str, asked: str | None) -> "NamedColumns":
+        """Return the same with a unit that words state for all; one that is not known contradicts every other."""
+        odd = next((one.odd for one in self.accelerations if one.odd and one.unit is None), odd if unit is None else "")
+        if odd and asked is not None and all(one.unit is None for one in self.accelerations):
+            raise source.error(None, f"the file states the unit {odd[:20]!r}, you say {asked}; known are {_UNITS}")
+        if unit is None or any(one.unit is not None for one in self.accelerations):
+            return self
+        return replace(self, accelerations=tuple(replace(one, unit=unit) for one in self.accelerations))
 
     def with_unit(self, source: Source, asked: str | None) -> "NamedColumns":
         """Return the same with a unit for every acceleration."""

@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,17 +16,16 @@ from rocking.motions.formats.column_text import (
     ColumnName,
     ColumnText,
     NamedColumns,
-    kind_of,
     names_on,
-    readable,
     states_sampling,
-    unit_named,
 )
+from rocking.motions.formats.column_words import Said, is_understood
 from rocking.motions.formats.header_values import columns_of
 from rocking.motions.formats.headers import step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
+SKIP = "pass over the lines above the numbers with skip=N"
 _MOST_COLUMNS = 4
 _LOOK = 5
 _LONGEST_HEADER = 100
@@ -45,6 +43,11 @@ class Columns(RecordFormat):
     seconds; one in another unit (m/s, m, rad), or called a velocity or displacement, is left out, and the metadata
     say so. Without a time the step is asked for, if the rest is clear: otherwise the error names the columns and says
     what to write or remove. Semicolons, tabs, commas or blanks part names and numbers alike.
+
+    Words may stand above the numbers without a mark. What they and the comments state is used: ``Time Step: 0.01``,
+    ``acceleration in g``, ``sampling rate 200 Hz``, ``NPTS = 600``, ``Component NS``; what states a sampling in other
+    words is refused. Several columns of equal times are one. A word behind the last number, such as ``END``, is
+    passed over with a doubt.
 
     Where commas part nothing they are decimal points, as a spreadsheet of much of Europe writes them; a file with
     both, or one where commas may be either, is refused.
@@ -101,7 +104,9 @@ class Columns(RecordFormat):
         for line, cells in text.rows[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
         comments = _comments(source)
-        said = Said.of(source, comments, len(text.rows[0][1]))
+        said = Said.of(source, [*comments, *text.words], len(text.rows[0][1]))
+        if odd := next((one for one in text.words if states_sampling(one[1]) and not is_understood(one[1])), None):
+            raise source.error(odd[0], f"{odd[1].strip()[:60]!r} is not understood; {SKIP}")
         names = text.names or said.names
         wide = names is None and len(text.rows[0][1]) > _MOST_COLUMNS
         if wide:
@@ -109,6 +114,9 @@ class Columns(RecordFormat):
         else:
             chosen = _by_place(source, text) if names is None else NamedColumns.of(source, names)
             values = _table(source, text, ragged=False)
+        if text.words and names is None:
+            _check_first(source, text, values)
+        chosen = chosen.with_one_time(source, values)
         told = time_step if said.step is None else step_between_samples(source, said.step, time_step)
         step, metadata = told, {}
         if chosen.time is not None:
@@ -118,15 +126,16 @@ class Columns(RecordFormat):
         step = step_between_samples(source, None, step)
         if said.count is not None:
             headers.check_count(source, said.count, len(values))
-        if said.unit is not None and all(one.unit is None for one in chosen.accelerations):
-            chosen = replace(chosen, accelerations=tuple(replace(one, unit=said.unit) for one in chosen.accelerations))
+        chosen = chosen.with_stated_unit(source, said.unit, said.odd_unit, units)
         if chosen.left_out:
             metadata["left out"] = ", ".join(chosen.left_out)
+        accelerations = chosen.with_unit(source, units).accelerations
+        about = {"direction": said.side} if said.side and len(accelerations) == 1 else {}
         parts = tuple(
-            Component(one.name, values[:, one.place].copy(), one.unit or "", step)
-            for one in chosen.with_unit(source, units).accelerations
+            Component(_name(one, about), values[:, one.place].copy(), one.unit or "", step, None, about)
+            for one in accelerations
         )
-        header = [*(comment for _, comment in comments), *filter(None, [text.heading])]
+        header = [*(words for _, words in (*comments, *text.words)), *filter(None, [text.heading])]
         return Record(self.name, parts, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
@@ -144,12 +153,28 @@ class Columns(RecordFormat):
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 
+def _name(column: ColumnName, about: dict[str, str]) -> str:
+    """Return the name of a component: that of its column, or the direction that words above it state."""
+    return about["direction"] if about and column.name in {"acceleration", "column 2"} else column.name
+
+
+def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
+    """Refuse a first number under words that is the number of those behind it."""
+    first, line = values[0], text.rows[0][0]
+    if first.size == 1 and first[0] >= 10.0 and first[0] in {len(values) - 1, len(values) - 2}:
+        raise source.error(line, f"{first[0]:g} may be the number of samples, no sample; {SKIP}")
+
+
 def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     """Return the first lines of cells, not yet numbers, that decide whether these are columns; None if they are not."""
     comments = [text for _, text in _comments(source, _LONGEST_HEADER)]
     if not source.is_text or any(states_sampling(text) and not is_understood(text) for text in comments):
         return None
     text = ColumnText.of(source, _LOOK)
+    if text.words and (
+        len(text.rows) < _LOOK or any(states_sampling(w) and not is_understood(w) for _, w in text.words)
+    ):
+        return None
     # damage further down is told by the reader, with its line, where names say that these are columns
     looked = text.rows if text.names is None else text.rows[:1]
     # an acceleration that goes on row after row ends where it ends
@@ -231,74 +256,3 @@ def _table(source: Source, text: ColumnText, *, ragged: bool) -> FloatArray:
 
 def _value(source: Source, line: int, cell: str) -> float:
     return number(source, line, cell.replace(",", "."))
-
-
-# what comments above columns say of them, or that these are no accelerations
-_NUMBER = r"(\d*\.?\d+(?:[eE][-+]?\d+)?)"
-_SAYS = r"\b[^\d=:]{0,20}[=:]\s*"
-_BOTH = re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+{_NUMBER}", re.IGNORECASE)
-_COUNT = re.compile(rf"\b(?:npts|nsamples|number of (?:points|samples|data)){_SAYS}(\d+)\b", re.IGNORECASE)
-_STEP = re.compile(
-    rf"\b(?:(?:dt|delta_?t|time[_ -]?(?:step|increment)|sampling[_ -](?:interval|period|step)){_SAYS}"
-    rf"|(?:zeitschritt|abtastintervall|passo temporale|paso de tiempo)\b\s*[=:]?\s*)"
-    r"(\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*(ms\b)?",
-    re.I,
-)
-_SPECTRUM = re.compile(
-    r"^\W*(?:periods?|t)\s*[\[(]\s*s(?:ec)?\s*[\])][\s,;|]+(?:p?s[adv]|spectral)(?![^\W_])", re.IGNORECASE
-)
-_COUNTS = re.compile(r"^\W*(?:raw\s+)?counts?\b(?!\s*[:=]?\s*\d)", re.IGNORECASE)
-_RATE = re.compile(rf"\b(?:sampling|sample)[_ -](?:rate|freq\w*){_SAYS}{_NUMBER}", re.IGNORECASE)
-_UNIT = re.compile(r"\bunits?\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
-_UNIT_OF = re.compile(r"\b(?:accel|veloc|displ)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
-_OTHER = re.compile(
-    r"^\W*(?:ground )?(velocity|displacement)(?:\b.*(?:series|histor|record|trace)|\s*$)", re.IGNORECASE
-)
-
-
-@dataclass(frozen=True)
-class Said:
-    """What the comments of a file say; None and nothing where they are silent."""
-
-    names: tuple[str, ...] | None = None
-    unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
-    step: float | None = None  # [s]
-    count: int | None = None
-
-    @classmethod
-    def of(cls, source: Source, comments: list[tuple[int, str]], columns: int) -> "Said":
-        """Read comments by their lines; what speaks of velocities or displacements alone is refused."""
-        names, unit, step, count = None, None, None, None
-        for line, text in comments:
-            bare = readable(text.strip().lstrip("#% \t")[:400])
-            if _SPECTRUM.search(bare):
-                raise source.error(line, f"{bare[:40]!r}: a response spectrum is no record; motion.target= takes one")
-            if _COUNTS.search(bare):
-                raise source.error(line, f"{bare[:40]!r}: counts of a recorder are no accelerations; divide them first")
-            if both := _BOTH.search(bare):
-                count, step = int(both[1][:9]), number(source, line, both[2])
-            elif found := _COUNT.search(bare):
-                count = int(found[1][:9])
-            if not both and (found := _STEP.search(bare)):
-                step = number(source, line, found[1].replace(",", ".")) * (1e-3 if found[2] else 1.0)
-            if (found := _RATE.search(bare)) and (rate := number(source, line, found[1])) > 0.0:
-                step = 1.0 / rate
-            for word in (*_UNIT.findall(bare), *_UNIT_OF.findall(bare)):
-                said = unit_named(source, line, word.rstrip(".-"))
-                unit = headers.acceleration_unit(source, unit, said) if said else unit
-            called = names_on(bare)
-            found_names = [ColumnName.of(place, one) for place, one in enumerate(called or ())]
-            # words with a unit somewhere are names if they name a time, or are accelerations all
-            named = any(one.is_time for one in found_names) or all(one.unit for one in found_names)
-            if len(found_names) == columns and named and any(kind_of(one.behind)[1] for one in found_names):
-                names = called
-        spoken = " ".join(text for _, text in comments).lower()
-        other = next((one for _, text in comments if (one := _OTHER.match(text[:200]))), None)
-        if other and not unit and not names and "accel" not in spoken:
-            headers.refuse_other(source, other[1])
-        return cls(names, unit, step, count)
-
-
-def is_understood(text: str) -> bool:
-    """Return whether a comment that speaks of a sampling says it in a way that is read here."""
-    return any(form.search(text[:400]) for form in (_BOTH, _COUNT, _STEP, _RATE))

@@ -13,6 +13,7 @@ from rocking.motions.formats.numbers import fixed, fortran_form, in_width, numbe
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7
+_HEADER_LINES = _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
 _SPACED = re.compile(r"\s*(\d+)\s+POINTS\b.*\bEQUALLY SPACED AT\s+(\S+?)\s*SEC\b[.,]?\s*(.*)", re.IGNORECASE)
 _RATED = re.compile(r"\s*(\d+)\s+(?:\w+\s+)?(?:POINTS|PTS)\s+AT\s+(\S+)\s+(?:PTS|POINTS|SAMPLES)/SEC\b[.,]?(.*)", re.I)
 _POINTS = re.compile(r"NO\. OF POINTS\s*=\s*(\d{1,9})\b", re.IGNORECASE)
@@ -62,14 +63,15 @@ class CsmipV1(RecordFormat):
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
     def _channel(self, source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
-        after = first + _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
+        after = first + _HEADER_LINES
         if len(source.lines) <= after or not self.begins.match(source.lines[first]):
             raise source.error(first, f"UNCORRECTED ACCELEROGRAM DATA and {after - first} header lines expected")
         header = source.lines[first:after]
         wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
         # the last line of the reals is written full or not
-        last = -(-len(source.lines[after - 1].rstrip()) // 10)
-        figures, line = fixed(source, reals, 48 + min(8, max(1, last)), 8, 10)
+        figures, line = fixed(
+            source, reals, 48 + min(8, max(1, -(-len(source.lines[after - 1].rstrip()) // 10))), 8, 10
+        )
         stated = next((wholes[place] for place in self._counts if wholes[place]), 0.0)
         count = whole(source, first + _TEXT_LINES, f"{stated:.0f}", "number of samples", 2)
         for text in header[:_TEXT_LINES]:
@@ -95,10 +97,12 @@ class CsmipV1(RecordFormat):
         if length > 0.0 and abs(length - lasts) > step + 0.06:
             source.doubt(None, f"the header states a record of {length:g} s, the last sample is at {lasts:g} s")
         in_g = ACCELERATION_UNITS[unit] / g
-        told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], headers.half_digit(printed) * in_g * g)
         peak, at = (float(figures[place]) for place in (_PEAK, _PEAK_TIME))
-        if self._has_peak and peak not in {0.0, _UNKNOWN}:
-            rounding = headers.half_digit(word(source, reals, _PEAK, 8, 10)) + in_g * headers.half_digit(printed)
+        in_numbers = self._has_peak and peak not in {0.0, _UNKNOWN}
+        digit = headers.half_digit(printed) * in_g
+        told = _check_text(source, first, raw * ACCELERATION_UNITS[unit], digit * g, confirmed=in_numbers)
+        if in_numbers:
+            rounding = headers.half_digit(word(source, reals, _PEAK, 8, 10)) + digit
             check_peak(source, peak, raw * in_g, rounding)
             headers.check_peak_time(source, at - zero, values * in_g, step, rounding)
             told = abs(peak) * g
@@ -164,7 +168,7 @@ def _unit(texts: Sequence[str]) -> str | None:
     return None
 
 
-def _check_text(source: Source, first: int, values: FloatArray, rounding: float) -> float | None:
+def _check_text(source: Source, first: int, values: FloatArray, rounding: float, *, confirmed: bool) -> float | None:
     """Compare samples with the peak that the text lines state, if they do, and return it; samples, rounding in m/s2."""
     for line in range(first, first + _TEXT_LINES):
         found = _STATED_MAX.search(source.lines[line][:LONGEST_LINE].upper())
@@ -174,7 +178,7 @@ def _check_text(source: Source, first: int, values: FloatArray, rounding: float)
             raise source.error(line, "MAX = a number and its unit expected; damaged?")
         factor = ACCELERATION_UNITS[_UNITS[found[2]]]
         slack = headers.half_digit(found[1]) + rounding / factor
-        check_peak(source, float(found[1]), values / factor, slack, "MAX")
+        headers.check_said_peak(source, float(found[1]), values / factor, slack, "MAX", confirmed=confirmed)
         return abs(float(found[1])) * factor
     return None
 

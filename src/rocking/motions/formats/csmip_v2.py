@@ -129,7 +129,8 @@ def _check_texts(
             raise source.error(line, f"PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {text[:60]!r}")
         if peak:
             slack = max(rounding, headers.half_digit(peak[1]))
-            check_peak(source, number(source, line, peak[1], "peak"), values, slack)
+            stated = number(source, line, peak[1], "peak")
+            headers.check_said_peak(source, stated, values, slack, "peak in words", confirmed=True)
             check_peak_time(source, number(source, line, peak[2], "time"), values, step, slack)
         if points:
             check_count(source, int(points[1][:9]), values.size)

@@ -86,6 +86,9 @@ def _of_words(words: Sequence[str]) -> Direction:
     if len(sides) > 1:
         return UNCLEAR
     upright = next((side for _, side in stated if isinstance(side, str)), None)
+    if len(stated) == 2 and upright is None:  # North-South
+        first, second = (float(side) for _, side in stated)
+        return first if abs(first - second) == 180.0 else None
     return upright or (stated[0][1] if len(stated) == 1 else None)
 
 

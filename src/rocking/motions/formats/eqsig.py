@@ -37,7 +37,11 @@ class Eqsig(RecordFormat):
             return False
         # two numbers a line may be times and samples, of which the first looks the same
         pairs = all(len(text.replace(",", " ").split()) == 2 for text in follow)
-        return line > 0 or not pairs
+        if not pairs:
+            return True
+        stated = _SIZE.fullmatch(source.lines[line][:80])
+        count = 0 if stated is None else int(stated[1])
+        return line > 0 and count == sum(len(text.replace(",", " ").split()) for text in source.lines[line + 1 :])
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         line = _size_line(source)

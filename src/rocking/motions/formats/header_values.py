@@ -9,6 +9,7 @@ from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
 from rocking.motions.formats.record import Component, Record, Source
 
+_MOST_MORE = 5  # rows behind those that are stated, where peaks confirm these
 _LONGEST = 200  # characters of a header line that patterns look at
 
 
@@ -63,9 +64,17 @@ def side_by_side(
     across = len(record.components)
     if form is None:
         values = numbers.rows(source, first, len(source.lines))
+        if peaks and 0 < values.size - count * across <= _MOST_MORE * across:
+            _doubt_more(source, count, values.size // across)
+            values = values[: count * across]
     else:
         values, behind = numbers.fixed(source, first, count * across, *form)
-        headers.check_end(source, behind)
+        more = sum(1 for line in range(behind, source.end) if source.lines[line].strip())
+        if peaks and 0 < more <= _MOST_MORE and form[0] == across:
+            numbers.fixed(source, behind, more * across, *form)
+            _doubt_more(source, count, count + more)
+        else:
+            headers.check_end(source, behind)
     if values.size != count * across:
         raise source.error(None, f"the header states {count} samples, the file holds {values.size / across:g}")
     if count < 2:
@@ -81,6 +90,12 @@ def side_by_side(
             stated = abs(float(peaks[place]))
         parts.append(Component(part.name, column, part.unit, part.time_step, stated, part.metadata))
     return Record(record.format, tuple(parts), "\n".join(source.lines[:first]), record.metadata)
+
+
+def _doubt_more(source: Source, count: int, found: int) -> None:
+    source.doubt(
+        None, f"the header states {count} samples, the file holds {found}; the last {found - count} are left out"
+    )
 
 
 def columns_of(record: Record, name: str, unit: str | None, most: int) -> tuple[np.ndarray, float]:

@@ -97,13 +97,25 @@ def step_of_times(source: Source, times: FloatArray, words: list[str], told: flo
     # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
     places = min(powers) if powers else max(plain)
     digit = float(10.0 ** -min(15, max(-3, places)))
-    step = uniform_step(source, times, digit)
-    if told is not None and abs(step - told) * times.size <= 2.0 * digit:
+    last = digit if powers else np.maximum(digit, _last_digits(times, plain))
+    step = uniform_step(source, times, last)
+    if told is not None and abs(step - told) * times.size <= 2.0 * float(np.max(last)):
         return told
     return step_between_samples(source, step, told)
 
 
-def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
+def _last_digits(times: FloatArray, decimals: list[int]) -> FloatArray:
+    """Return the last digit of each time, where all above 1 s have so many digits as the longest of them [s].
+
+    Programs that print six digits write 9.98625, and 40.9862 for 40.98625.
+    """
+    before = np.floor(np.log10(np.maximum(np.abs(times), 1.0))) + 1.0
+    digits = before + np.array(decimals, dtype=np.float64)
+    beyond = digits[np.abs(times) >= 1.0]
+    return np.asarray(10.0 ** (before - float((beyond if beyond.size else digits).max())), dtype=np.float64)
+
+
+def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) -> float:
     """Return the step of times uniform to rounding at `unit`, the last digit: the shortest decimal that fits [s]."""
     if times.size < 2:
         raise source.error(None, f"at least 2 samples are needed, found {times.size}")
@@ -113,17 +125,18 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
         raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
     # beyond rounding or cutting at the last digit, times that went through single precision are accepted
     slack = unit + 1.2e-7 * float(np.abs(times).max())
+    most = float(np.max(slack))
     rounded = (round(mean, digits) for digits in range(1, 10))
-    step = next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= slack), mean)
-    even = mean
-    if slack > 0.26 * mean:
+    step = next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= most), mean)
+    even = mean if np.ndim(unit) == 0 or np.ptp(unit) == 0.0 else step
+    if most > 0.26 * mean:
         # so few digits could hide a missing line: the times must lie on the decimal step itself
         even, slack = step, 0.501 * unit
-    if slack > 0.51 * mean:
+    if float(np.max(slack)) > 0.51 * mean:
         raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
     off = np.abs(times - times[0] - even * np.arange(times.size))
-    worst = int(off.argmax())
-    if off[worst] > slack:
+    worst = int((off - slack).argmax())
+    if off[worst] > np.broadcast_to(slack, off.shape)[worst]:
         raise source.error(
             None,
             f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
@@ -177,16 +190,28 @@ def check_count(source: Source, stated: int, found: int) -> None:
         raise source.error(None, f"the header states {stated} samples, the file holds {found}")
 
 
+def check_said_peak(
+    source: Source, stated: float, values: FloatArray, rounding: float, what: str, *, confirmed: bool
+) -> None:
+    """Check a peak in words, which may be rounded: a doubt within 5 % where numbers of the header confirm the data."""
+    largest = float(np.abs(values).max())
+    if confirmed and abs(abs(stated) - largest) <= 0.05 * largest:
+        with source.doubting():
+            check_peak(source, stated, values, rounding, what)
+    else:
+        check_peak(source, stated, values, rounding, what)
+
+
 def check_peak(source: Source, stated: float, values: FloatArray, rounding: float, what: str = "peak") -> None:
     """Refuse a file whose largest value is not the one that its header states."""
     check_stated(source, abs(stated), float(np.abs(values).max()), rounding, what)
 
 
 def check_end(source: Source, first: int) -> None:
-    """Refuse anything but blank lines from some line to the end of the file."""
-    for line in range(first, len(source.lines)):
-        # Ctrl-Z padded files to whole blocks under CP/M and DOS
-        if source.lines[line].strip(" \t\r\x1a"):
+    """Refuse anything but blank lines and words that close the file from some line to its end."""
+    more = [line for line in range(first, len(source.lines)) if source.lines[line].strip(" \t\r\x1a")]
+    for line in more:
+        if line < source.end:
             raise source.error(line, "nothing may follow the last sample, found more; wrong count in the header?")
 
 

@@ -44,6 +44,11 @@ class Knet(RecordFormat):
     marks: ClassVar[tuple[str, ...]] = tuple(re.escape(_KEYS[k]) for k in (0, 10, 13, 14))
     top: ClassVar[int] = len(_KEYS) + 3
 
+    def resembles(self, source: Source) -> bool:
+        """Return whether several keys of its header are there."""
+        top = source.lines[: self.top] if source.is_text else []
+        return sum(any(line.startswith(key) for line in top) for key in _KEYS) > 3
+
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram without its mean."""
         said = _header(source)

@@ -11,7 +11,7 @@ import numpy as np
 from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
 from rocking.motions.formats.header_values import after, columns_of, header_text, header_value, side_by_side
-from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line, readable
 
 _PEAK = r"\(([^()]+)\)\s*([-+]?\d*\.?\d+)"
 _KEYS = {"event": "EARTHQUAKE DATE", "station": "PLACE", "station number": "STATION ID", "Record Time": "RECORD TIME"}
@@ -43,7 +43,8 @@ class Nsmn(RecordFormat):
             raise source.error(
                 first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others"
             )
-        metadata = {key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
+        texts = {key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
+        metadata = {key: readable(text, turkish=True) for key, text in texts.items()}
         metadata = metadata_of(**{key.replace(" ", "_"): text for key, text in metadata.items()})
         about = Record(self.name, tuple(Component(name, np.empty(0), unit, step) for name in names), "", metadata)
         return side_by_side(source, about, first, count, [peak for _, peak in peaks])

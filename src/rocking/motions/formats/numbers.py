@@ -56,6 +56,7 @@ def free(source: Source, first: int, last: int, columns: int | None = None) -> F
 def rows(source: Source, first: int, last: int) -> FloatArray:
     """Return the numbers on some lines, which hold as many as the first of them, save the last; blank ones none."""
     columns, short = 0, False
+    last = min(last, source.end) if last == len(source.lines) else last
     for line in range(first, last):
         words = len(source.lines[line].split())
         columns = columns or words

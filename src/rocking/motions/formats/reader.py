@@ -73,7 +73,12 @@ def format_named(name: str) -> RecordFormat:
 
 
 def read_record(
-    path: str | PathLike[str], format: str | None = None, units: str | None = None, time_step: float | None = None
+    path: str | PathLike[str],
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    *,
+    skip: int = 0,
 ) -> Record:
     r"""Return all components of a record file, in the unit of the file.
 
@@ -87,6 +92,8 @@ def read_record(
         Unit of acceleration, where the file does not state it: a key of `rocking.conventions.ACCELERATION_UNITS`.
     time_step : float, optional
         Step between samples, where the file does not state it [s].
+    skip : int
+        Lines at the top of a text file that are passed over.
 
     Returns
     -------
@@ -110,10 +117,10 @@ def read_record(
     >>> record.format, record.components[0].time_step, record.components[0].peak
     ('columns', 0.01, 0.5)
     """
-    return _read(Source.of_path(Path(path)), format, units, time_step)
+    return _read(Source.of_path(Path(path), skip), format, units, time_step)
 
 
-def read_motion(
+def read_motion(  # noqa: PLR0913 - every one of them is a property of some files
     path: str | PathLike[str],
     format: str | None = None,
     units: str | None = None,
@@ -123,6 +130,7 @@ def read_motion(
     *,
     vertical_path: str | PathLike[str] | None = None,
     stations: Places | None = None,
+    skip: int = 0,
 ) -> GroundMotion:
     """Return one component of a record file as a ground motion, with a second one as its vertical part if wanted.
 
@@ -147,6 +155,8 @@ def read_motion(
         Another file, which has the vertical component: of the same step and start; the longer one is cut.
     stations : path-like or sequence of path-like, optional
         StationXML files, or folders of them, by which the counts of a miniSEED file become accelerations.
+    skip : int
+        Lines at the top of a text file that are passed over.
 
     Returns
     -------
@@ -172,11 +182,11 @@ def read_motion(
     >>> motion
     <GroundMotion 'three-components': 3801 samples at 0.01 s, peak 3.923 m/s2, with vertical>
     """
-    source = Source.of_path(Path(path))
+    source = Source.of_path(Path(path), skip)
     record = _read(source, format, units, time_step, stations)
     if vertical_path is not None:
         motion = _motion(source, record, _chosen(record, "component", component))
-        beside = Source.of_path(Path(vertical_path))
+        beside = Source.of_path(Path(vertical_path), skip)
         other = _read(beside, format, units, time_step, stations)
         upright = _chosen(other, "vertical", vertical)
         return _joined(motion, _motion(beside, other, upright), beside, same_file=beside.content == source.content)
@@ -202,9 +212,10 @@ def motions_in(
     units: str | None = None,
     time_step: float | None = None,
     stations: Places | None = None,
+    skip: int = 0,
 ) -> list[GroundMotion]:
     """Return every component of a record file as a motion of its own; stations: StationXML files, which counts need."""
-    source = Source.of_path(path)
+    source = Source.of_path(path, skip)
     record = _read(source, format, units, time_step, stations)
     return [_motion(source, record, part) for part in record.components]
 
@@ -273,6 +284,7 @@ def _read(
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
     stated = {"format": format, "unit": units, "time step": None if time_step is None else f"{time_step:g} s"}
+    stated["lines at the top passed over"] = str(source.skip) if source.skip else None
     source.stated.extend(f"{name} {value}" for name, value in stated.items() if value is not None)
     chosen: RecordFormat | None = None
     try:
@@ -306,6 +318,9 @@ def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
     by_hand = [f"stated by the user: {', '.join(source.stated)}"] if source.stated else []
     motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *by_hand, *source.doubts))
+    if quiet := plausibility.of_quiet(motion.peak):
+        motion = motion.changed(f"{source.name}: {quiet[0]}")
+        plausibility.warn(f"{source.name}: component {part.name}: {doubt}" for doubt in quiet)
     velocity, displacement = ground_velocity(motion), ground_displacement(motion)
     ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
     plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))
@@ -350,7 +365,7 @@ def _seconds(said: str) -> float:
 
 
 def _recognised(source: Source) -> RecordFormat:
-    known = (format_named(name) for name in _CLASSES if name != LAST_RESORT)
+    known = [format_named(name) for name in _CLASSES if name != LAST_RESORT]
     found = [one for one in known if one.recognises(source)]
     if len(found) > 1:
         names = ", ".join(one.name for one in found)
@@ -358,12 +373,17 @@ def _recognised(source: Source) -> RecordFormat:
     if found:
         return found[0]
     last = format_named(LAST_RESORT)
+    if near := next((one for one in known if one.resembles(source)), None):
+        raise source.error(
+            None, f"its header is nearly that of {near.name}; damaged? Say format={near.name} to see where"
+        )
     if last.recognises(source):
         return last
     unknown = f"not recognised as any of {', '.join(_CLASSES)}; damaged, or another format?"
     top = " ".join(source.lines[:5])[:1000].lower() if source.is_text else ""
     held = next((word for word in ("spectra", "spectrum", "velocity", "displacement", "counts") if word in top), None)
-    beside = f"; it speaks of {held}, and accelerations over time are needed" if held and "accel" not in top else ""
+    speaks = held is not None and (held.startswith("spectr") or "accel" not in top)
+    beside = f"; it holds {held}, and accelerations over time are needed" if speaks else ""
     raise last.refusal(source) or source.error(None, unknown + beside)
 
 

@@ -11,10 +11,17 @@ from typing import ClassVar
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats import directions
 
+_CLOSING = re.compile(r"[\W_]*(?:end|eof|ende|fin|fine|son)(?![^\W_])[^\d]{0,60}", re.IGNORECASE)
+_MOST_CLOSING = 2
+_TURKISH = re.compile(
+    r"[İi]vme|zaman|d[üu]şey|doğu|bat[\u0131i]|kuzey|güney|istasyon|bileşen|birim|örnekleme|deprem|saat|süre|kay[\u0131i]t",
+    re.IGNORECASE,
+)
 LARGEST_FILE = 256 * 1024 * 1024  # larger files are refused [bytes]
 
 
@@ -26,10 +33,11 @@ class Source:
     content: bytes  # what is in it
     doubts: list[str] = field(default_factory=list, compare=False)  # what a reader found odd and did not refuse
     stated: list[str] = field(default_factory=list, compare=False)  # what the user stated of it by hand
+    skip: int = 0  # lines at the top that the user passes over
 
     @classmethod
-    def of_path(cls, path: Path) -> "Source":
-        """Read a file, within limits."""
+    def of_path(cls, path: Path, skip: int = 0) -> "Source":
+        """Read a file, within limits; skip: lines at its top to pass over."""
         if not path.is_file():
             raise RecordError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
         try:
@@ -41,7 +49,7 @@ class Source:
             raise RecordError(f"{path}: {error.strerror or error}") from error
         if not content.strip():
             raise RecordError(f"{path}: the file is empty")
-        return cls(path.name, content)
+        return cls(path.name, content, skip=checks.whole("skip", skip, 0, 100_000))
 
     @cached_property
     def is_text(self) -> bool:
@@ -52,7 +60,23 @@ class Source:
     def lines(self) -> list[str]:
         """Lines without their ends; CR, LF, CR LF and CR CR LF all end one."""
         text = self.content.decode("latin-1")
-        return text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        lines = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        return [*([""] * min(self.skip, len(lines))), *lines[self.skip :]]
+
+    @cached_property
+    def end(self) -> int:
+        """Number of lines up to words that close the file, such as ``END``, which are doubted, and to blanks."""
+        # Ctrl-Z padded files to whole blocks under CP/M and DOS
+        last, closing = len(self.lines), 0
+        while last:
+            bare = self.lines[last - 1].strip(" \t\r\x1a")
+            if bare and not (closing < _MOST_CLOSING and _CLOSING.fullmatch(bare)):
+                break
+            if bare:
+                self.doubt(last - 1, f"{bare[:40]!r} behind the last number is passed over")
+                closing += 1
+            last -= 1
+        return last
 
     def error(self, line: int | None, cause: str) -> RecordError:
         """Return the error for a line, to be raised."""
@@ -181,8 +205,15 @@ class RecordFormat(ABC):
     def recognises(self, source: Source) -> bool:
         """Return whether the content looks like this format: all marks but one are there; never raises."""
         # a damaged header must not turn a file into a nameless table of numbers
+        return bool(self.marks) and self._marks_in(source) >= len(self.marks) - 1
+
+    def resembles(self, source: Source) -> bool:
+        """Return whether half of the marks of this format are there, as in a damaged header."""
+        return len(self.marks) > 3 and 2 * self._marks_in(source) >= len(self.marks)
+
+    def _marks_in(self, source: Source) -> int:
         top = source.lines[: self.top] if source.is_text else []
-        return sum(any(re.match(mark, line) for line in top) for mark in self.marks) >= len(self.marks) - 1
+        return sum(any(re.match(mark, line[:400]) for line in top) for mark in self.marks)
 
     def refusal(self, source: Source) -> RecordError | None:
         """Return why a file that no format recognises would be of this one but for a damage that can be named."""
@@ -195,6 +226,20 @@ class RecordFormat(ABC):
     @abstractmethod
     def write(self, record: Record) -> bytes:
         """Return the content of a file that `read` reads back, to the digits that the format can hold."""
+
+
+def readable(text: str, *, turkish: bool = False) -> str:
+    r"""Return a line in the alphabet in which it was written: UTF-8 where it is that, Turkish by its words, or Latin-1.
+
+    >>> readable("\xddvme (g)"), readable("\xc5\xa0i\xc5\xa1")
+    ('İvme (g)', 'Šiš')
+    """
+    content = text.encode("latin-1", "ignore")
+    try:
+        return content.decode("utf-8")
+    except UnicodeError:
+        in_turkish = content.decode("cp1254", "replace")
+        return in_turkish if turkish or _TURKISH.search(in_turkish) else text
 
 
 def one_line(text: object, width: int) -> str:
@@ -213,4 +258,4 @@ def metadata_of(**texts: str) -> dict[str, str]:
     >>> metadata_of(event="Kobe", station_name=" ")
     {'event': 'Kobe'}
     """
-    return {key.replace("_", " "): text.strip() for key, text in texts.items() if text.strip()}
+    return {key.replace("_", " "): readable(text.strip()) for key, text in texts.items() if text.strip()}

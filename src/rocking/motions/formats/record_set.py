@@ -124,6 +124,7 @@ def read_records(
     time_step: float | None = None,
     *,
     stations: Places | None = None,
+    skip: int = 0,
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> RecordSet:
@@ -146,6 +147,8 @@ def read_records(
     stations : path-like or sequence of path-like, optional
         StationXML files, or folders of them, by which the counts of miniSEED files become accelerations: by network,
         station, location, channel and date. Those among the files of `where` are used without being named.
+    skip : int
+        Lines at the top of every text file that are passed over.
     workers : int
         Processes that read many files.
     progress : callable, optional
@@ -176,7 +179,8 @@ def read_records(
     rows = rows_of_list(path)
     paths = [] if rows is not None else paths_of(where)
     beside = [one for one in paths if is_station_file(one)]
-    read = partial(_read, format=format, units=units, time_step=time_step, stations=stations or beside or None)
+    options: dict[str, Any] = {"format": format, "units": units, "time_step": time_step, "skip": skip}
+    read = partial(_read, **options, stations=stations or beside or None)
     if rows is not None:
         names = list(dict.fromkeys(file for row in rows for file in row.files.values()))
         files = dict(zip(names, mapped(read, [path.parent / name for name in names], workers, progress), strict=True))

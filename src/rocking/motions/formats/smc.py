@@ -152,7 +152,8 @@ class SmcUsgs(RecordFormat):
                 source.doubt(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
         printed = re.search(r"pk[a-z ]*=\s*([+-]?\d+\.?\d*(?:E[+-]\d+)?)", source.lines[6])
         if printed:
-            headers.check_peak(source, float(printed[1]), values, headers.half_digit(printed[1]), "pk")
+            rounding, confirmed = headers.half_digit(printed[1]), None not in extremes
+            headers.check_said_peak(source, float(printed[1]), values, rounding, "pk", confirmed=confirmed)
         known = [abs(value) for value in extremes if value is not None]
         if len(known) == 1:
             raise source.error(None, "the header states one extreme without the other; header lines out of order?")

@@ -22,6 +22,7 @@ from rocking.studies.histories import Product, results_of
 
 ANALYSES = ("stripes", "cloud", "incremental")
 
+_MOST_FACTOR = 1e6  # on a motion, as in all histories [-]
 _REACH = (0.9, 9.0, 16)
 """Levels that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
 
@@ -58,6 +59,7 @@ class FragilityQuestion:
         else:
             at = default_levels(subject) if levels is None else checked_levels("levels", levels, measure.unit)
             factors = measure.factors(subject.intensities, at)
+            _check_factors(subject, factors)
         histories = subject.product(factors)
         if kind == "incremental":
             check_repeatable(histories.law)
@@ -78,6 +80,18 @@ class FragilityQuestion:
     def computed(self, threads: int | None = None, progress: Progress = None) -> MultipleStripeAnalysis | CloudAnalysis:
         """Return the analysis, its histories computed in memory."""
         return self.answer(results_of(self.histories, threads=threads, progress=progress), threads)
+
+
+def _check_factors(subject: Subject, factors: FloatArray) -> None:
+    """Refuse a motion that a factor beyond those of all histories would bring to the levels: a dead channel."""
+    least = np.atleast_2d(factors).min(axis=1)
+    if (most := int(least.argmax())) >= 0 and not least[most] <= _MOST_FACTOR:
+        value, unit = float(subject.intensities[most]), subject.measure.unit
+        raise InvalidValueError(
+            f"motion {subject.motions[most].name!r:.80} has {subject.measure.name} = {value:.3g} {unit}; a factor of "
+            f"{least[most]:.3g} brings it to the lowest level, and up to {_MOST_FACTOR:g} are allowed; is its channel "
+            "dead? Leave it out"
+        )
 
 
 def default_levels(subject: Subject) -> FloatArray:

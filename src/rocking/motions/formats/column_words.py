@@ -1,0 +1,185 @@
+"""The words above columns of numbers, in comments or without a mark: names, unit, step, count and direction."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from rocking.motions.formats import headers
+from rocking.motions.formats.column_text import (
+    ColumnName,
+    kind_of,
+    looks_like_unit,
+    names_on,
+    states_sampling,
+    unit_named,
+)
+from rocking.motions.formats.directions import orientation
+from rocking.motions.formats.numbers import number
+from rocking.motions.formats.record import Source, readable
+
+_NUMBER = r"(\d*[.,]?\d+(?:[eE][-+]?\d+)?)"
+_SAYS = r"(?![^\W_])[^\d=:]{0,20}[=:]\s*"
+_BOTH = re.compile(r"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+(\d*\.?\d+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
+_COUNT = re.compile(
+    rf"\b(?:npts|nsamples|ndata|number of (?:points|samples|data)|num\w* de muestras|anzahl){_SAYS}(\d+)\b",
+    re.IGNORECASE,
+)
+_LENGTH = re.compile(r"\W*length\s*[:=]\s*(\d+)\W*", re.IGNORECASE)
+_SAMPLED = r"(?:sampl\w*|digiti\w*|abtast\w*|scan|acquisition|recording|[öo]rnekleme)"
+_STEPS = (
+    r"(?:dt|d_t|delta[ _]?t|t[ _]?step|time[ _-]?(?:step|increment|interval)"
+    rf"|{_SAMPLED}[ _-]?(?:interval|period|step|time)|step[ _]?size|zeitschritt|abtastintervall|abtastschritt"
+    r"|passo temporale|intervallo di campionamento|paso de tiempo|intervalo de muestreo|pas de temps"
+    r"|[öo]rnekleme aral[\u0131i][ğg][\u0131i])"
+)
+_UNIT_OF_TIME = r"\s*(m(?:illi)?s(?:ec\w*)?\b|us\b|µs\b)?"
+_STEP = re.compile(
+    rf"(?:\b{_STEPS}{_SAYS}|^\W*(?:delta|step|interval|increment)\s*(?:[\[(]\w+[\])])?\s*[:=]\s*){_NUMBER}{_UNIT_OF_TIME}",
+    re.IGNORECASE,
+)
+_STEP_IN_WORDS = re.compile(
+    rf"\b(?:{_STEPS}|step|interval)\s+(?:of\s+|is\s+|in\s+\w+\s+)?{_NUMBER}\s*(m(?:illi)?s(?:ec\w*)?|s(?:ec\w*)?|sek\w*)\b",
+    re.I,
+)
+_RATES = (
+    rf"(?:{_SAMPLED}[_ -]?(?:rate|freq\w*|frequenz|frekans\w*|h[\u0131i]z\w*)|abtastrate|abtastfrequenz|sps|fs|f_s"
+    r"|frequenza di campionamento|frecuencia de muestreo|tasa de muestreo|fr[eé]quence d.[eé]chantillonnage"
+    r"|(?:samples|points) per sec\w*|samples/s(?:ec)?)"
+)
+_RATE = re.compile(rf"\b{_RATES}{_SAYS}{_NUMBER}\s*(kHz)?", re.IGNORECASE)
+_RATE_IN_WORDS = re.compile(
+    rf"\b(?:{_RATES}\s+(?:of\s+|is\s+)?{_NUMBER}\s*(k?Hz|sps)\b|{_NUMBER}\s*(?:sps\b|(?:samples?|points?|pts)\s*(?:per|/)\s*s\w*))",
+    re.IGNORECASE,
+)
+_OF_STEPS = (_BOTH, _COUNT, _STEP, _STEP_IN_WORDS, _RATE, _RATE_IN_WORDS)
+_ODD = re.compile(
+    r"\W*((?:[^\W\d_]|[ _.-]){0,40}(?:rate|step|interval|delta|dt|sps|sampling)[^=:\d]{0,20})[:=]\s*[\d.,]+",
+    re.IGNORECASE,
+)
+_OF_OTHERS = re.compile(
+    r"filt|corner|cut|pass|natural|band|fault|strike|dip|epic|hypo|distance|angle|azim", re.IGNORECASE
+)
+_SPECTRUM = re.compile(
+    r"^\W*(?:periods?|t)\s*[\[(]\s*s(?:ec)?\s*[\])][\s,;|]+(?:p?s[adv]|spectral)(?![^\W_])"
+    r"|\b(?:response|fourier)\b.{0,30}\bspectr(?:um|a)\b(?!.{0,20}(?:compatible|match))",
+    re.IGNORECASE,
+)
+_COUNTS = re.compile(r"^\W*(?:raw\s+)?counts?\b(?!\s*[:=]?\s*\d)", re.IGNORECASE)
+_UNIT = re.compile(
+    r"\b(?:units?|einheit|unidad(?:es)?|unit[àa]|birim)\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.I
+)
+_UNIT_OF = re.compile(
+    r"\b(?:accel|veloc|displ|beschleun|aceler|ivme|İvme)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)"
+    r"|\bacc\w*\s*[=:]\s*([A-Za-z][\w/^*.-]*)\s*$",
+    re.IGNORECASE,
+)
+_STATED_UNIT = re.compile(
+    r"\b(?:units?|einheit|unidad(?:es)?|birim)\b\s*[:=]\s*[\[(]?\s*(\S+?)[\])]?\s*$", re.IGNORECASE
+)
+_OTHER = re.compile(
+    r"^\W*(?:ground )?(velocity|displacement)(?:\b.*(?:series|histor|record|trace)|\s*$)", re.IGNORECASE
+)
+_SIDE = re.compile(
+    r"\W*(?:comp(?:onente?)?|channel|direction|orientation|dir|richtung|bile[sş]en)\b\.?\s*[:=]?\s*"
+    r"([\w+./-]+(?: ?[EW])?)\W*",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Said:
+    """What the words of a file say; None and nothing where they are silent."""
+
+    names: tuple[str, ...] | None = None
+    unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
+    odd_unit: str = ""  # a unit that is stated and not known
+    step: float | None = None  # [s]
+    count: int | None = None
+    side: str = ""  # direction of the component, as it stands
+
+    @classmethod
+    def of(cls, source: Source, words: Sequence[tuple[int, str]], columns: int) -> "Said":
+        """Read words by their lines; what speaks of velocities, displacements or spectra alone is refused."""
+        said = cls()
+        for line, text in words:
+            bare = readable(text.strip().lstrip("#% \t")[:400])
+            _refuse_others(source, line, bare)
+            said = said._with_sampling(source, line, bare)._with_unit(source, line, bare)
+            if (found := _SIDE.fullmatch(bare)) and orientation(found[1]) is not None:
+                said = replace(said, side=found[1])
+            if names := _names_of(bare, columns):
+                said = replace(said, names=names)
+        spoken = " ".join(text for _, text in words).lower()
+        other = next((one for _, text in words if (one := _OTHER.match(text[:200]))), None)
+        if other and not said.unit and not said.names and "accel" not in spoken:
+            headers.refuse_other(source, other[1])
+        return said._with_length(words)
+
+    def _with_sampling(self, source: Source, line: int, bare: str) -> "Said":
+        step, count = None, self.count
+        if both := _BOTH.search(bare):
+            count, step = int(both[1][:9]), number(source, line, both[2])
+        elif found := _COUNT.search(bare):
+            count = int(found[1][:9])
+        for form in (_STEP, _STEP_IN_WORDS):
+            if not both and step is None and (found := form.search(bare)):
+                small = (found[2] or "").lower()
+                factor = 1e-3 if small.startswith("m") else 1e-6 if small[:1] in {"u", "µ"} else 1.0
+                step = _decimal(source, line, found[1]) * factor
+        for form in (_RATE, _RATE_IN_WORDS):
+            if (found := form.search(bare)) and (rate := _decimal(source, line, found[1] or found[3])) > 0.0:
+                other = 1.0 / (rate * (1000.0 if (found[2] or "").lower() == "khz" else 1.0))
+                step = self._agreed(source, line, step, other)
+        if step is None and count == self.count and (odd := _ODD.match(bare)) and not _OF_OTHERS.search(odd[1]):
+            source.doubt(line, f"{bare[:60]!r} is not understood, and not used")
+        return replace(self, step=self._agreed(source, line, self.step, step), count=count)
+
+    @staticmethod
+    def _agreed(source: Source, line: int, stated: float | None, step: float | None) -> float | None:
+        if stated is not None and step is not None and abs(stated - step) > 1e-6 * stated:
+            raise source.error(line, f"a time step of {step:g} s, and one of {stated:g} s elsewhere in the header")
+        return step if stated is None else stated
+
+    def _with_unit(self, source: Source, line: int, bare: str) -> "Said":
+        unit, odd = self.unit, self.odd_unit
+        for word in (*_UNIT.findall(bare), *(one or other for one, other in _UNIT_OF.findall(bare))):
+            found = unit_named(source, line, word.rstrip(".-"))
+            unit = headers.acceleration_unit(source, unit, found) if found else unit
+        stated = _STATED_UNIT.search(bare)
+        if stated and unit_named(source, line, stated[1].rstrip(".-")) is None and looks_like_unit(stated[1]):
+            odd = stated[1] if kind_of(stated[1])[1] != "other" else odd
+        return replace(self, unit=unit, odd_unit=odd)
+
+    def _with_length(self, words: Sequence[tuple[int, str]]) -> "Said":
+        """SeismicHandler's files state the number of samples as LENGTH, beside DELTA."""
+        bare = [text.strip().lstrip("#% \t")[:200] for _, text in words]
+        length = next((int(found[1][:9]) for text in bare if (found := _LENGTH.fullmatch(text))), None)
+        has_delta = any(re.match(r"delta\s*[:=]", text, re.IGNORECASE) for text in bare)
+        return replace(self, count=length) if length and has_delta and self.count is None else self
+
+
+def is_understood(text: str) -> bool:
+    """Return whether what words say of a sampling is read here, all of it."""
+    rest = text[:400]
+    for form in _OF_STEPS:
+        rest = form.sub(" ", rest)
+    return not states_sampling(rest)
+
+
+def _decimal(source: Source, line: int, word: str) -> float:
+    return number(source, line, word.replace(",", "."))
+
+
+def _names_of(bare: str, columns: int) -> tuple[str, ...] | None:
+    called = names_on(bare)
+    found = [ColumnName.of(place, one) for place, one in enumerate(called or ())]
+    # words with a unit somewhere are names if they name a time, or are accelerations all
+    named = any(one.is_time for one in found) or all(one.unit for one in found)
+    return called if len(found) == columns and named and any(kind_of(one.behind)[1] for one in found) else None
+
+
+def _refuse_others(source: Source, line: int, bare: str) -> None:
+    if _SPECTRUM.search(bare):
+        raise source.error(line, f"{bare[:40]!r}: a response spectrum is no record; motion.target= takes one")
+    if _COUNTS.search(bare):
+        raise source.error(line, f"{bare[:40]!r}: counts of a recorder are no accelerations; divide them first")
