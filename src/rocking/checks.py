@@ -2,13 +2,14 @@
 
 import difflib
 import math
+import os
 import re
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
 import numpy as np
 
-from rocking.conventions import FEET, LENGTH_UNITS, Assumed, FloatArray, Foot
+from rocking.conventions import FEET, LENGTH_UNITS, UNITS, Assumed, FloatArray, Foot
 from rocking.errors import InvalidValueError
 
 Word = TypeVar("Word", bound=str)
@@ -34,7 +35,27 @@ def number(name: str, value: Any, unit: str = "-") -> float:
 def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str) -> None:
     """Refuse what is of another kind than the one that the words say."""
     if not isinstance(value, kind):
-        raise InvalidValueError(f"{name} must be {words}, got {value!r:.60}")
+        raise InvalidValueError(f"{name} must be {words}, got {given(name, value)}")
+
+
+_READERS = {"motion": "read_motion", "motions": "read_motion", "body": "read_body", "bodies": "read_body"}
+
+
+def given(name: str, value: object) -> str:
+    """Return what was given for a parameter, and the function that makes a motion or a body of it.
+
+    >>> given("motion", "x.at2"), given("body", 3.0)
+    ("'x.at2'; rocking.read_motion('x.at2') reads a file", '3.0')
+    """
+    reader, shown = _READERS.get(name), f"{value!r:.60}"
+    if reader and isinstance(value, (str, os.PathLike)):
+        path = str(value)
+        if reader == "read_motion" and re.match(r"[a-z-]+:\w+=", path):
+            return f"{shown}; rocking.pulses.pulse({path!r:.60}) makes a pulse of words"
+        return f"{shown}; rocking.{reader}({path!r:.60}) reads a file"
+    if reader == "read_motion" and isinstance(value, (list, np.ndarray)) and not np.ndim(value) > 1:
+        return f"{shown}; rocking.GroundMotion(acceleration, time_step) makes a motion of samples [m/s2] and step [s]"
+    return shown
 
 
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
@@ -92,6 +113,17 @@ def within(
         allowed = f"{brackets[0]}{low:g}, {top}{brackets[1]}"
         raise InvalidValueError(f"{name} must be in {allowed}{_in(unit)}, got {result:g}{_because(hint)}")
     return result
+
+
+def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
+    """Refuse a row of values that does not increase: the first value that is not above the one before."""
+    falls = np.flatnonzero(np.diff(values) <= 0.0)
+    if falls.size:
+        before, after = values[falls[0] : falls[0] + 2].tolist()
+        descending = values.size > 1 and bool((np.diff(values) < 0.0).all())
+        what = "these decrease: reverse them" if descending else f"{after:g} follows {before:g} at index {falls[0] + 1}"
+        shown = "" if unit in {"-", "1", ""} else f" [{unit}]"
+        raise InvalidValueError(f"{name} must increase{shown} from value to value; {what}")
 
 
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
@@ -209,6 +241,26 @@ def number_hint(words: str) -> str:
         return f"; it takes no unit behind the number, {unit[1]}: the help says how to give one"
     found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
     return f"; numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
+
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
+
+
+def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
+    """Return one number [unit], and the unit in which it was written, empty if none.
+
+    >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
+    ((0.4, 'cm'), (2.0, ''))
+    """
+    match, known = _NUMBER.fullmatch(text.strip()), UNITS[unit]
+    if match is None or (match[2] and match[2] not in known):
+        allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
+        hint = "" if match else number_hint(text)
+        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{hint}")
+    value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
+    if not math.isfinite(value):
+        raise InvalidValueError(f"{name} must be a finite number, got {text!r:.60}")
+    return value, match[2] or ""
 
 
 def _in(unit: str) -> str:

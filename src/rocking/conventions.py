@@ -6,6 +6,7 @@ coefficient of restitution is the ratio of angular velocities, ``theta_dot_after
 is the energy ratio only for symmetric bodies.
 """
 
+import math
 from typing import Final, Literal
 
 import numpy as np
@@ -38,6 +39,18 @@ ACCELERATION_UNITS: Final[dict[str, float]] = {
     "mg": 0.001 * g,
 }
 """One unit of acceleration in m/s2; `g/10` is what BHRC files hold, `mg` is a thousandth of g."""
+
+
+UNITS: Final[dict[str, dict[str, float]]] = {
+    "m/s2": ACCELERATION_UNITS,
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
+    "m": LENGTH_UNITS,
+    "s": {"s": 1.0, "ms": 0.001},
+    "rad": {"rad": 1.0, "deg": math.pi / 180.0},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
+    "1": {},
+}
+"""By the unit in which a value is computed: the units in which it may be written."""
 
 
 class Assumed(float):

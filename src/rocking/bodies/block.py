@@ -8,10 +8,10 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies._known import Known, density_of
-from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
+from rocking.bodies.body import DEFAULT_DENSITY, GROUND_TOLERANCE, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
-from rocking.errors import InvalidValueError
+from rocking.errors import GeometryError, InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.bodies.section import Section
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, init=False)
 class Block(Body):
-    """A rectangular block standing on its whole base, homogeneous if nothing else is known.
+    """A rectangular block, homogeneous if nothing else is known.
+
+    The block stands on its whole base, or on two feet within it.
 
     Parameters
     ----------
@@ -37,13 +39,17 @@ class Block(Body):
         Centre of mass, from the lower left corner, if known; the middle if not given [m].
     moment_of_inertia : float, optional
         Polar moment about the centre of mass, if known [kg m2].
+    feet : (float, float), optional
+        Positions of the left and the right foot, from the lower left corner; the corners of the base if not given.
+        The base between them is flat [m].
 
     Raises
     ------
     InvalidValueError
         If a value is not a finite number above zero, or mass and density are both given.
     GeometryError
-        If the centre of mass lies outside the block, or no mass within it has such a moment of inertia.
+        If a foot lies outside the base, the centre of mass lies outside the block or not between the feet, or no mass
+        within the block has such a moment of inertia.
 
     Notes
     -----
@@ -67,6 +73,12 @@ class Block(Body):
     (1.666666666667, 1.842105263158)
     >>> round(cabinet.moment_of_inertia, 6), cabinet.mass
     (106.96, 300.0)
+
+    A cabinet on two feet, 5 cm and 10 cm inside its corners, is more slender to the right:
+
+    >>> cabinet = rk.Block(width=0.8, height=2.0, feet=(0.05, 0.70))
+    >>> round(cabinet.side("left").half_width, 12), round(cabinet.side("right").half_width, 12)
+    (0.35, 0.3)
     """
 
     width: float
@@ -74,6 +86,7 @@ class Block(Body):
     depth: float
     density: float
     known: Known | None
+    feet: Interval
 
     def __init__(
         self,
@@ -85,6 +98,7 @@ class Block(Body):
         mass: float | None = None,
         centre: tuple[float, float] | None = None,
         moment_of_inertia: float | None = None,
+        feet: tuple[float, float] | None = None,
     ) -> None:
         for name, value in (("width", width), ("height", height), ("depth", depth)):
             object.__setattr__(self, name, checks.length(name, value))
@@ -92,11 +106,22 @@ class Block(Body):
             density = density_of(mass, self.width * self.height * self.depth, (density,))
         object.__setattr__(self, "density", checks.density("density", density))
         object.__setattr__(self, "known", Known.of(centre, moment_of_inertia))
+        object.__setattr__(self, "feet", (0.0, self.width) if feet is None else self._on_base(feet_of(feet)))
         self._check_support()
+
+    def _on_base(self, feet: Interval) -> Interval:
+        left, right = feet
+        slack = GROUND_TOLERANCE * max(self.width, self.height)
+        if not -slack <= left < right <= self.width + slack:
+            raise GeometryError(
+                f"feet must be a left and a right foot on the base, x in [0, {self.width:.9g}] m from the lower left "
+                f"corner, got {left:.9g} and {right:.9g} m"
+            )
+        return max(left, 0.0), min(right, self.width)
 
     def __repr__(self) -> str:
         named = {name: getattr(self, name) for name in ("width", "height", "depth", "density")}
-        named |= {} if self.known is None else self.known.given()
+        named |= self._stated
         return f"Block({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
     @classmethod
@@ -139,9 +164,21 @@ class Block(Body):
             hint="degrees?",
         )
         size = checks.positive("semi_diagonal", semi_diagonal, "m")
-        if options.get("centre") is not None:
-            raise InvalidValueError("angle and semi-diagonal say where the centre of mass is: leave centre out")
+        for name in ("centre", "feet"):
+            if options.get(name) is not None:
+                raise InvalidValueError(f"angle and semi-diagonal define centre of mass and feet: leave {name} out")
         return cls(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha), **options)
+
+    @property
+    def stands_on_corners(self) -> bool:
+        """Whether the feet are the corners of the base."""
+        return self.feet == (0.0, self.width)
+
+    @property
+    def _stated(self) -> dict[str, Any]:
+        """What was given beside sizes and density, by the names of the arguments."""
+        feet = {} if self.stands_on_corners else {"feet": self.feet}
+        return ({} if self.known is None else self.known.given()) | feet
 
     @property
     def densities(self) -> tuple[float, ...]:
@@ -159,8 +196,8 @@ class Block(Body):
 
     @property
     def local_feet(self) -> Interval:
-        """The two lower corners, x = 0 and x = width [m]."""
-        return 0.0, self.width
+        """The two feet; the lower corners, x = 0 and x = width, if no others were given [m]."""
+        return self.feet
 
     @property
     def local_moments(self) -> PlaneMoments:
@@ -176,7 +213,7 @@ class Block(Body):
 
     @property
     def local_contact(self) -> tuple[Interval, ...]:
-        """The whole base [m]."""
+        """The base between the feet [m]."""
         return (self.local_feet,)
 
     @property
@@ -189,25 +226,30 @@ class Block(Body):
         return np.where(inside, self.density, 0.0)
 
     def mirrored(self) -> "Block":
-        """Return the block seen in a vertical mirror through its middle; a homogeneous one is the same."""
-        return self if self.known is None else self._changed(1.0, 1.0, self.known.mirrored(self.width))
+        """Return the block seen in a vertical mirror through its middle, equal to a homogeneous one on its corners."""
+        if self.known is None and self.stands_on_corners:
+            return self
+        left, right = self.feet
+        known = self.known and self.known.mirrored(self.width)
+        return self._changed(1.0, 1.0, known, (self.width - right, self.width - left))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Block":
         size, density = checks.positive("size", size), checks.positive("density", density)
-        return self._changed(size, density, self.known and self.known.scaled(size, density))
+        known, (left, right) = self.known and self.known.scaled(size, density), self.feet
+        return self._changed(size, density, known, (left * size, right * size))
 
-    def _changed(self, size: float, density: float, known: Known | None) -> "Block":
+    def _changed(self, size: float, density: float, known: Known | None, feet: Interval) -> "Block":
         return Block(
             width=self.width * size,
             height=self.height * size,
             depth=self.depth * size,
             density=type(self.density)(self.density * density),
+            feet=feet,
             **({} if known is None else known.given()),
         )
 
-    def with_feet(self, left: float, right: float) -> "Section":
-        """Return the block standing on feet inside its base, which makes it a `Section`."""
-        return self.to_section().with_feet(left, right)
+    def with_feet(self, left: float, right: float) -> "Block":
+        return self._changed(1.0, 1.0, self.known, (left, right))
 
     def to_section(self) -> "Section":
         """Return the same body as a `Section` of one region.
@@ -219,5 +261,4 @@ class Block(Body):
         """
         from rocking.bodies.section import Section
 
-        known = {} if self.known is None else self.known.given()
-        return Section.from_rectangle(self.width, self.height, density=self.density, depth=self.depth, **known)
+        return Section.from_rectangle(self.width, self.height, density=self.density, depth=self.depth, **self._stated)

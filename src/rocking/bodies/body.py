@@ -76,6 +76,9 @@ Interval = tuple[float, float]
 
 DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it
 
+GROUND_TOLERANCE = 1e-9
+"""Vertices this close to the ground, and feet this close to the base, relative to the body's size, are on it."""
+
 # Feet closer to the plumb line of the centre than this, relative to their distance, are no support.
 _SUPPORT_TOLERANCE = 1e-12
 

@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import shapes
 from rocking.bodies._known import Known, density_of
-from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval, feet_of
+from rocking.bodies.body import DEFAULT_DENSITY, GROUND_TOLERANCE, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region, check_disjoint
 from rocking.conventions import FloatArray
@@ -345,9 +345,6 @@ class Section(Body):
                     f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + origin:.9g}"
                 )
         return max(left, base[0]), min(right, base[1])
-
-
-GROUND_TOLERANCE = 1e-9  # vertices this close to the ground, relative to the body's size, stand on it
 
 
 def _level_edges(outline: FloatArray, tolerance: float) -> FloatArray:

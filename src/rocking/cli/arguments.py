@@ -156,8 +156,8 @@ def typed(context: "typer.Context", *names: str) -> list[str]:
 def document_file(
     context: "typer.Context", word: str | None, tables: Collection[str], beside: Collection[str] = (), has: str = ""
 ) -> Path | None:
-    """Return the file with everything, TOML with one of some tables; beside: other options that go with it."""
-    if word is None or not set(tables) & set(tables_in(Path(word)) or ()):
+    """Return the file with everything, TOML with [body] or another table; beside: options that go with it."""
+    if word is None or not {*tables, "body"} & set(tables_in(Path(word)) or ()):
         return None
     taken = {"body", "objects", "motions", "out", "as_json", "sets", *beside}
     if stated := typed(context, *(name for name in context.params if name not in taken)):

@@ -22,7 +22,7 @@ from rocking.campaigns import (
 from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
 from rocking.campaigns.jobs.folder import JOB, JobStatus
 from rocking.campaigns.jobs.rounds import resume
-from rocking.cli.page import print_json
+from rocking.cli.page import lines, print_json
 from rocking.errors import InvalidValueError
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes beside 0 (done) and 2 (bad input)
@@ -200,7 +200,21 @@ def _sentence(job_status: JobStatus) -> str:
 
 @contextmanager
 def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show on a terminal how far it is, how fast, and how long it will take."""
+    """Show the progress, the rate and the time left: a bar on a terminal, else a line every few seconds."""
+    if quiet:
+        yield lambda progress: None
+        return
+    if not sys.stderr.isatty():
+        said = f"{what}: 0 of {total} histories"
+
+        def note(progress: Progress) -> None:
+            nonlocal said
+            left = "" if progress.left is None else f", {time_left(progress.left)}"
+            said = f"{what}: {progress.done_histories} of {progress.total} histories{left}"
+
+        with lines(lambda: said):
+            yield note
+        return
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -209,9 +223,7 @@ def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], 
         TextColumn("{task.description}"), BarColumn(bar_width=20), TextColumn("{task.percentage:.0f} %"),
         TextColumn("{task.fields[rate]}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
     )  # fmt: skip
-    hidden = quiet or not sys.stderr.isatty()
-    # quiet too: older versions of rich end a bar that is not shown with an empty line
-    with Bar(*columns, console=Console(stderr=True, quiet=hidden), transient=True, disable=hidden) as shown:
+    with Bar(*columns, console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task(what.replace("[", "\\["), total=total, rate="", left="")
 
         def tell(progress: Progress) -> None:

@@ -51,7 +51,7 @@ class FragilityAnswer:
     @property
     def unit(self) -> tuple[str, float]:
         """Unit that the levels were written in, that of the measure if in none, and its size."""
-        from rocking.cli.numbers import UNITS
+        from rocking.conventions import UNITS
 
         unit = self.first.subject.measure.unit
         return (self.written, UNITS[unit][self.written]) if self.written else (unit, 1.0)

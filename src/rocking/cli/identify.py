@@ -70,7 +70,8 @@ def identify(
                 trials = problem.answers(table, workers, progress)
             deliver(TrialsAnswer(trials), exports, as_json=as_json)
             return
-        found = problem.answer()
+        with bar("measurement", quiet=as_json):
+            found = problem.answer()
     answer = IdentifiedAnswer(found, Path(body or "").stem if record else "")
     if found.refused:
         written = exports.write(answer)
@@ -208,5 +209,7 @@ class TrialsAnswer:
         kept = len(found.rows) - found.computed
         if kept:
             page.line(f"{kept} of {len(found.rows)} were there already, and were not computed again.")
+        if found.passed_over:
+            page.line(found.passed_over_verdict)
         page.warn(found.doubts)
         page.warn(f"{row['trial']}: {as_options(row['refused'])}" for row in found.rows if row["refused"])

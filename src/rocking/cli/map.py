@@ -167,7 +167,7 @@ class MapAnswer:
 
     def unit(self, axis: "Axis") -> tuple[str, float]:
         """Return the unit that an axis was written in, its own if in none, and its size."""
-        from rocking.cli.numbers import UNITS
+        from rocking.conventions import UNITS
 
         unit = self.written.get(axis.name, "")
         return (unit, UNITS[axis.unit][unit]) if unit else (axis.unit, 1.0)

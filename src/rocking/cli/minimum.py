@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking import checks
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports, write_columns
-from rocking.cli.numbers import beside_g, in_unit, quantity
+from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.errors import InvalidValueError
@@ -85,7 +86,7 @@ def minimum(
 def _range(lowest: str | None, highest: str | None) -> dict[str, float]:
     """Return the range of accelerations as keys of the table [minimum] [m/s2]."""
     texts = {"lowest": lowest, "highest": highest}
-    ends = {name: quantity(f"--{name}", text, "m/s2")[0] for name, text in texts.items() if text is not None}
+    ends = {name: checks.quantity(f"--{name}", text, "m/s2")[0] for name, text in texts.items() if text is not None}
     if len(ends) == 2 and not ends["lowest"] < ends["highest"]:
         raise InvalidValueError(f"--lowest must be below --highest, got {lowest} and {highest}")
     return ends

@@ -11,35 +11,7 @@ from rocking.cli.page import Page
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray
 from rocking.errors import InvalidValueError
 
-UNITS: dict[str, dict[str, float]] = {
-    "m/s2": ACCELERATION_UNITS,
-    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
-    "m": LENGTH_UNITS,
-    "s": {"s": 1.0, "ms": 0.001},
-    "rad": {"rad": 1.0, "deg": math.pi / 180.0},
-    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
-    "1": {},
-}
-"""By the unit in which a value is computed: the units in which it may be written."""
-
 MOST_VALUES = 100_000  # no row of values has more
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
-
-
-def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
-    """Return one number [unit], and the unit in which it was written, empty if none.
-
-    >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
-    ((0.4, 'cm'), (2.0, ''))
-    """
-    match, known = _NUMBER.fullmatch(text.strip()), UNITS[unit]
-    if match is None or (match[2] and match[2] not in known):
-        allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
-        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{checks.number_hint(text)}")
-    value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
-    if not math.isfinite(value):
-        raise InvalidValueError(f"{name} must be a finite number, got {text!r:.60}")
-    return value, match[2] or ""
 
 
 def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[dict[str, Any], str]:
@@ -78,7 +50,7 @@ def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[Float
 def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:
     if len(texts) > MOST_VALUES:
         raise InvalidValueError(f"{name} must have at most {MOST_VALUES} values, got {len(texts)}")
-    pairs = [quantity(name, text, unit) for text in texts]
+    pairs = [checks.quantity(name, text, unit) for text in texts]
     written = [one for _, one in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
         why = checks.number_hint(",".join(texts))

@@ -2,6 +2,8 @@
 
 import json
 import sys
+import threading
+import time
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -103,11 +105,47 @@ def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json:
         print(f"wrote {path}")
 
 
+SECONDS = 10.0
+"""Time between two lines about the progress where standard error is no terminal."""
+
+
+@contextmanager
+def lines(text: Callable[[], str]) -> Iterator[None]:
+    """Write a line with a text and the time since the beginning every `SECONDS`, on standard error."""
+    began, over = time.monotonic(), threading.Event()
+
+    def write() -> None:
+        while not over.wait(SECONDS):
+            print(f"rocking: {text()}, {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+
+    writer = threading.Thread(target=write, daemon=True)
+    writer.start()
+    try:
+        yield
+    finally:
+        over.set()
+        writer.join()
+
+
 @contextmanager
 def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator[Callable[..., None]]:
-    """Show on a terminal how far it is; what is yielded takes the number done since, and what is done now."""
-    if quiet or not sys.stderr.isatty():
+    """Show the progress on standard error; what is yielded takes the number done since, and the current step.
+
+    A terminal has a bar, a file or a pipe a line every `SECONDS`.
+    """
+    if quiet:
         yield lambda done, now="": None
+        return
+    if not sys.stderr.isatty():
+        count, step = 0, what
+
+        def tell(done: int, now: str = what) -> None:
+            nonlocal count, step
+            count, step = count + done, now
+
+        of = "" if total is None else f" of {total}"
+        with lines(lambda: f"{step}: {count}{of}" if count or total else step):
+            yield tell
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn

@@ -24,7 +24,8 @@ def paper(
     from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce
 
-    result = reproduce(selected(which)) if which else reproduce()
+    with bar("recomputing tables and claims", quiet=as_json):
+        result = reproduce(selected(which)) if which else reproduce()
     if as_json:
         from rocking.reports.paper_folder import as_plain
 

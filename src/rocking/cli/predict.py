@@ -60,7 +60,8 @@ def predict(
         told = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
         document, inputs = typed(context, PredictionDocument, told)
     with as_typed():
-        problem = PredictionProblem.of(document, inputs)
+        with bar("reading body and motions", quiet=as_json):
+            problem = PredictionProblem.of(document, inputs)
         with bar("motions", len(problem.motions), quiet=as_json) as progress:
             found = problem.answer(lambda done: progress(1), threads)
     deliver(PredictionAnswer(found, Path(body or "").stem), exports, as_json=as_json)
@@ -183,7 +184,8 @@ def assess(
         own = {"assess": {"restitutions": None if restitution is None else [*map(number_or_name, restitution)]}}
         document, inputs = typed(context, AssessmentDocument, {"friction": friction, "pga": pga}, own)
     with as_typed():
-        problem = PredictionProblem.of(document, inputs)
+        with bar("reading body and motions", quiet=as_json):
+            problem = PredictionProblem.of(document, inputs)
         with bar("histories", quiet=as_json) as progress:
             found = problem.assessed(document.assess, inputs, progress, threads)
     name = Path(body).stem if body and is_body(body) else ""

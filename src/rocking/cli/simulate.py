@@ -96,7 +96,7 @@ def simulate(
     in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
     length: str | None = None
     acceleration: str | None = None
-    if file := document_file(context, body, ("response",), has="has a table [response] and "):
+    if file := document_file(context, body, ("response",), has="has a table [body] and "):
         with located(str(file)):
             tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
             problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent), in_space=in_space)
@@ -115,7 +115,8 @@ def simulate(
         _check_share(problem.body, problem.free, "response.free" if file else "--free")
     if in_space and problem.mechanics != "space with friction":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
-    answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
+    with bar("history", quiet=as_json):
+        answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
     deliver(answer, exports, as_json=as_json)
 
 

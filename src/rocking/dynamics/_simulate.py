@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rocking import conventions, errors
+from rocking import checks, conventions, errors
 from rocking.bodies import Body
 from rocking.dynamics.response import Response, response_of_rocking
 from rocking.dynamics.settings import Settings, in_space
@@ -384,7 +384,7 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
         raise InvalidValueError(f"a motion has at most three components, x, y and z, got {len(parts)}")
     for part in parts:
         if not isinstance(part, (GroundMotion, Pulse)) and part is not None:
-            raise InvalidValueError(f"motion must be {_HOW}, got {part!r:.60}")
+            raise InvalidValueError(f"motion must be {_HOW}, got {checks.given('motion', part)}")
     if all(part is None for part in parts):
         raise InvalidValueError(f"motion must be {_HOW}, got none; free_rocking lets a body go on ground at rest")
     x, y, z = (*parts, None, None)[:3]

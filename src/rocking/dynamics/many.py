@@ -255,6 +255,8 @@ def _dataset(
     dims = ("body", "motion", *axes)
     shape = (len(bodies), len(motions), *map(len, axes.values()))
     sides = [body.side("right", settings.gravity) for body in bodies]
+    numbers = [name for name in ("scale", "friction") if name in axes]
+    counted: dict[str, Any] = {name: (name, axes[name], {"units": "1"}) for name in numbers}
     made: xr.Dataset = xarray.Dataset(
         {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
         coords={
@@ -263,7 +265,7 @@ def _dataset(
             "motion": [m.name for m in motions],
             "motion_provenance": ("motion", ["; ".join(provenance_of(m)) for m in motions]),
             "restitution": axes["restitution"],
-            **{name: (name, axes[name], {"units": "1"}) for name in ("scale", "friction") if name in axes},
+            **counted,
             **_coordinates(starts),
         },
         attrs={
@@ -330,18 +332,21 @@ def _pieces(
     return rows
 
 
+_KINDS = {"bodies": "Block, Section and MassPoints", "motions": "GroundMotion, Pulse and mapping"}
+
+
 def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
-    wanted = f"{name} must be one or more of {', '.join(k.__name__ for k in kinds)}"
+    wanted = f"{name} must be one or more of {_KINDS[name]}"
     if isinstance(given, kinds):
         return [given]
     if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InvalidValueError(f"{wanted}, got {given!r:.60}")
+        raise InvalidValueError(f"{wanted}, got {checks.given(name, given)}")
     found = list(given)
     if not found:
         raise InvalidValueError(f"{wanted}, got none")
     for k, item in enumerate(found):
         if not isinstance(item, kinds):
-            raise InvalidValueError(f"{wanted}, got {item!r:.60} at index {k}")
+            raise InvalidValueError(f"{wanted}, got at index {k} {checks.given(name, item)}")
     return found
 
 

@@ -12,14 +12,13 @@ from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.dynamics.settings import in_space
 from rocking.errors import InvalidValueError
-from rocking.restitution import RestitutionModel, model
 from rocking.restitution._implied import energy_bound
+from rocking.restitution.registry import BOUND_ROUNDING, energy_refusal
+from rocking.restitution.registry import coefficients_of as _coefficients_of
 
 COMPLEMENTARITY = "complementarity alone"  # what restitution=None is called, with friction
 UNIMPOSED = -1.0  # a coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]
 
-# rounding in I_O and r together
-_ROUNDING = 1e-9
 _SAID = 1e-4
 
 
@@ -176,10 +175,12 @@ class RockingParameters:
         if not isinstance(body, Body):
             if in_space(body):
                 return cls._in_space(body, restitution, gravity)
-            raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
+            raise InvalidValueError(
+                f"body must be a Block, Section, MassPoints or Solid, got {checks.given('body', body)}"
+            )
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
-        coefficients: Mapping[str, float]
+        coefficients: Mapping[Foot, float]
         if friction is not None and is_none(base):
             coefficients, label = dict.fromkeys(FEET, UNIMPOSED), COMPLEMENTARITY
         else:
@@ -250,16 +251,13 @@ def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
     drawn = _truncated(law)
     largest = r * (drawn.quantile(1.0, onto) if drawn else law.largest)
-    if largest <= most * (1.0 + _ROUNDING):
+    if largest <= most * (1.0 + BOUND_ROUNDING):
         return 1.0
     if drawn:
         share = drawn.share_within(most / r, onto)
         plausibility.of_truncation(1.0 - share, onto, most)  # refuses what next to nothing is left of
         return share
-    raise InvalidValueError(
-        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {largest:.6g}: "
-        "the impact would create energy"
-    )
+    raise energy_refusal(onto, most, largest)
 
 
 def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:
@@ -278,25 +276,10 @@ def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
     return f"at random: {ends} times {base}{cut_words(_cut(law, shares))}"
 
 
-def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str]:
-    """Return the coefficients for landing left and right, and what to call them [-]."""
+def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
+    """Return the coefficients for landing left and right, and their label [-]; None leaves them to complementarity."""
     if is_none(restitution):
         raise InvalidValueError(
             f"restitution={restitution!r} leaves impacts to complementarity, which needs friction=: give it, or a model"
         )
-    if isinstance(restitution, (str, RestitutionModel)):
-        found = model(restitution)
-        return {foot: found.coefficient(body, foot) for foot in FEET}, found.label
-    if isinstance(restitution, Mapping):
-        if set(restitution) != set(FEET):
-            raise InvalidValueError(f'restitution by side is {{"left": r, "right": r}}, got {restitution!r:.60}')
-        pair: dict[str, float] = {foot: _coefficient(f"restitution[{foot!r}]", restitution[foot]) for foot in FEET}
-        return pair, f"left {pair['left']:.6g}, right {pair['right']:.6g}"
-    r = _coefficient("restitution", restitution)
-    return dict.fromkeys(FEET, r), f"{r:.6g}"
-
-
-def _coefficient(name: str, value: Any) -> float:
-    r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
-    plausibility.warn(plausibility.of_coefficient(r))
-    return r
+    return _coefficients_of(restitution, body)

@@ -307,8 +307,8 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
     """
     if found.refused:
         raise InvalidValueError(f"what was refused is no measurement: {found.refused[0]}")
-    if not isinstance(body, Block):
-        raise InvalidValueError(f"body must be a Block: evidence is of rectangles, got {body!r:.60}")
+    if not isinstance(body, Block) or not body.stands_on_corners:
+        raise InvalidValueError(f"body must be a Block on its corners: evidence is of rectangles, got {body!r}")
     spread = (found.mean.high - found.mean.low) / (2.0 * NORMAL_95)
     keys = {
         "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,

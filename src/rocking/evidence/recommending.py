@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies import Body, Solid
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning, RockingError
@@ -45,7 +46,7 @@ def recommendation_for(
     if isinstance(given, Solid):
         return _in_space(given, motion, models)
     if not isinstance(given, Body):
-        raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {body!r:.60}")
+        raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {checks.given('body', body)}")
     data = all_measurements() if measurements is None else measurements
     known: object = data
     if not isinstance(known, DataSet) or not len(known):

@@ -1,12 +1,11 @@
 """One chain of steps that a record goes through, in words: the same in Python, job files and on the command line."""
 
 import inspect
-import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from rocking import checks
-from rocking.conventions import ACCELERATION_UNITS
+from rocking.conventions import UNITS
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions import processing
 from rocking.motions.components import Components, rotated
@@ -16,7 +15,6 @@ from rocking.motions.motion import GroundMotion, checked_motion
 
 Steps = list[tuple[str, dict[str, Any]]]
 LONGEST_PADDING = 3600.0  # [s] twelve times a record of 300 s, which is long: more is a wrong unit, and hours of work
-_WITH_UNIT = re.compile(rf"([0-9]*[.]?[0-9]+(?:[eE][+-]?[0-9]+)?)\s*({'|'.join(map(re.escape, ACCELERATION_UNITS))})")
 
 
 def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
@@ -178,8 +176,8 @@ def _step(words: str) -> tuple[str, dict[str, Any]]:
 
 def _value(name: str, key: str, text: str, parameter: inspect.Parameter | None) -> Any:
     kind = "float" if parameter is None else str(parameter.annotation)
-    if parameter is None and measure(key).unit == "m/s2" and (found := _WITH_UNIT.fullmatch(text)):
-        return float(found[1]) * ACCELERATION_UNITS[found[2]]
+    if parameter is None and (unit := measure(key).unit) in UNITS:
+        return checks.quantity(key, text, unit)[0]
     if "float" not in kind and "int" not in kind:
         return text
     try:

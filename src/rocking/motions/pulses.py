@@ -302,7 +302,8 @@ def pulse(words: str) -> Pulse:
     Parameters
     ----------
     words : str
-        ``name:parameter=value,parameter=value``.
+        ``name:parameter=value,parameter=value``. A value may have a unit: m/s2, cm/s2, mm/s2, gal or g of an amplitude,
+        s or ms of a time, m/s, cm/s or mm/s of a velocity, rad or deg of a phase.
 
     Returns
     -------
@@ -320,6 +321,8 @@ def pulse(words: str) -> Pulse:
     --------
     >>> pulse("sine:amplitude=3,period=0.8").duration
     0.8
+    >>> pulse("sine:amplitude=0.3g,period=800ms").peak
+    2.941995
     """
     given_words: object = words
     if not isinstance(given_words, str):
@@ -336,15 +339,22 @@ def pulse(words: str) -> Pulse:
         if not equals or key in given:
             why = checks.number_hint(words)
             raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}{why}")
-        try:
-            given[key] = int(value) if key == "n" else float(value)
-        except ValueError as error:
-            raise InvalidValueError(f"{key} must be a number, got {value!r}{checks.number_hint(value)}") from error
+        given[key] = whole_or_number(key, value)
     try:
         return known[name](**given)
     except TypeError as error:
         names = ", ".join(key for key in known[name].__annotations__ if key != "return")
         raise UnknownModelError(f"pulse {name!r} takes {names}; got {', '.join(given) or 'none'}") from error
+
+
+UNITS_OF = {"amplitude": "m/s2", "period": "s", "duration": "s", "velocity": "m/s", "phase": "rad"}
+"""Units of the parameters of pulses; the others are numbers."""
+
+
+def whole_or_number(key: str, text: str) -> float:
+    """Return the value of a parameter in its unit, from a number with or without a unit; n is a whole number."""
+    value = checks.quantity(key, text, UNITS_OF.get(key, "1"))[0]
+    return int(value) if key == "n" and value.is_integer() else value
 
 
 _ALL: tuple[Callable[..., Pulse], ...] = (

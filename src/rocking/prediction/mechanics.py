@@ -235,7 +235,9 @@ def several(motions: Any, pga: float | None = None) -> Any:
     if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
         motions = [motions]
     if isinstance(motions, str) or not motions:
-        raise InvalidValueError(f"motions must be one or more records, pulses or pairs x and y, got {motions!r:.60}")
+        raise InvalidValueError(
+            f"motions must be one or more records, pulses or pairs x and y, got {checks.given('motions', motions)}"
+        )
     return motions if pga is None else _ScaledToPeak(motions, pga)
 
 

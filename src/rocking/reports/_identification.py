@@ -38,6 +38,7 @@ def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
             Picture("trials", "The coefficient of every trial with its interval, and that of the mean", 70),
             table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], trial_rows(found)),
             *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
+            *([Paragraph(found.passed_over_verdict)] if found.passed_over else []),
         ]),
         *_doubts(found.doubts),
         *_compared(found.models),

@@ -147,7 +147,7 @@ class Ked(RestitutionModel):
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Eq. 17, Mao et al. 2024, over the body's mass distribution."""
-        if isinstance(body, Block) and body.known is None:
+        if isinstance(body, Block) and body.known is None and body.stands_on_corners:
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
         return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
@@ -192,6 +192,8 @@ def projected_moment(body: Body, onto: Foot) -> float:
 def _(body: Block, onto: Foot) -> float:
     if body.known is not None:
         return _of_quarters(body, onto)
+    if not body.stands_on_corners:
+        return projected_moment(body.to_section(), onto)
     return Ked().raw_coefficient(body, onto) ** 2 * body.side(onto).moment_of_inertia
 
 

@@ -1,20 +1,27 @@
 """Restitution models by name, a new one in one line here or by one call of `register`; the coefficient of a body."""
 
 import inspect
-from collections.abc import Sequence
+import numbers
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rocking import checks
+import numpy as np
+
+from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import Foot
+from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.lazy import presenter
+from rocking.restitution._implied import energy_bound
 from rocking.restitution._model import RestitutionModel
 
 if TYPE_CHECKING:
     from rocking.bodies import Solid
     from rocking.evidence import DataSet, Recommendation
+
+BOUND_ROUNDING = 1e-9
+"""A coefficient may exceed its energy bound by this, relative to the bound: rounding of I_O and r together."""
 
 # the class, or its name in the module of the model's name: those of this package are imported when first asked for
 _MODELS: dict[str, type[RestitutionModel] | str] = {
@@ -76,10 +83,24 @@ def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = (
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
         raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
+    check_complete(kind)
     if name in _MODELS and _kind(name) not in {kind, *over}:
         raise InvalidValueError(f"a restitution model named {name!r} exists already: {_kind(name).__name__}")
     _MODELS[name] = kind
     return kind
+
+
+def check_complete(kind: type[RestitutionModel]) -> None:
+    """Refuse a class of models that lacks a method."""
+    lacking = sorted(kind.__abstractmethods__)
+    if lacking:
+        raise InvalidValueError(
+            f"the model {kind.__name__} has no method {', '.join(lacking)}; a model has {_METHOD}, which returns the "
+            "coefficient of a body that lands on a foot"
+        )
+
+
+_METHOD = "raw_coefficient(self, body, onto)"
 
 
 def withdraw(kind: type[RestitutionModel]) -> None:
@@ -126,7 +147,7 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
             raise UnknownModelError(f"a model object takes no further parameters, got {', '.join(parameters)}")
         found = which
     else:
-        raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {which!r:.60}")
+        raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {of_no_kind(which)}")
     if eta == 1.0:
         return found
     from rocking.restitution.interface import Interface
@@ -179,6 +200,7 @@ def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, An
 
 def built(kind: type[RestitutionModel], name: str, given: dict[str, Any]) -> RestitutionModel:
     """Return a model with its parameters."""
+    check_complete(kind)
     try:
         return kind(**given)
     except TypeError as error:
@@ -195,31 +217,79 @@ def number(name: str, words: str) -> float:
         raise InvalidValueError(f"{name} must be a number, got {words!r}{checks.number_hint(words)}") from error
 
 
-_by_name = model  # what the parameter of the next function hides
+def of_no_kind(restitution: object) -> str:
+    """Return what an object is that is no restitution, and what it lacks to be one."""
+    kind = restitution if isinstance(restitution, type) else type(restitution)
+    if kind is restitution:
+        return f"the class {kind.__name__}: create an object, {kind.__name__}()"
+    if isinstance(restitution, (str, int, float, complex, list, tuple, dict, set, np.ndarray)) or restitution is None:
+        return f"{restitution!r:.60}"
+    if hasattr(kind, "factor"):
+        return f"a {kind.__name__} object, a law that changes from impact to impact: it has no single coefficient"
+    if not hasattr(kind, "raw_coefficient"):
+        return (
+            f"a {kind.__name__} object, which has no method raw_coefficient; a model of your own is a subclass of "
+            f"RestitutionModel with {_METHOD}"
+        )
+    return f"a {kind.__name__} object, which is not a subclass of RestitutionModel"
+
+
+def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
+    """Return the coefficients for landing left and right, and their label [-]."""
+    if isinstance(restitution, (str, RestitutionModel)):
+        found = model(restitution)
+        return {foot: found.coefficient(body, foot) for foot in FEET}, found.label
+    if isinstance(restitution, Mapping):
+        if set(restitution) != set(FEET):
+            raise InvalidValueError(f'restitution by side is {{"left": r, "right": r}}, got {restitution!r:.60}')
+        pair: dict[Foot, float] = {foot: _coefficient(f"restitution[{foot!r}]", restitution[foot]) for foot in FEET}
+        return pair, f"left {pair['left']:.6g}, right {pair['right']:.6g}"
+    r = _coefficient("restitution", restitution)
+    return dict.fromkeys(FEET, r), f"{r:.6g}"
+
+
+def _coefficient(name: str, value: Any) -> float:
+    if not isinstance(value, (numbers.Real, np.ndarray)) or isinstance(value, bool):
+        raise InvalidValueError(
+            f'{name} must be a model, its name, a coefficient, or {{"left": r, "right": r}}, got {of_no_kind(value)}'
+        )
+    r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
+    plausibility.warn(plausibility.of_coefficient(r))
+    return r
+
+
+def energy_refusal(onto: Foot, most: float, largest: float) -> InvalidValueError:
+    """Return the refusal of a coefficient [-] above the energy bound of a side."""
+    return InvalidValueError(
+        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {largest:.6g}: "
+        "the impact would create energy"
+    )
 
 
 def coefficient_of_restitution(
     body: Body,
-    model: str | RestitutionModel,
+    restitution: str | RestitutionModel | float | Mapping[str, float] = "ked",
     *,
     onto: Foot = "right",
     eta: float = 1.0,
     **parameters: Any,
 ) -> float:
-    """Return the coefficient of restitution of a body under a model.
+    """Return the coefficient of restitution of a body.
 
     Parameters
     ----------
     body : Body
-        Block, Section or MassPoints.
-    model : str or RestitutionModel
-        Name of a model (see `rocking.restitution.models`) or a model object, which may be your own.
+        Block, Section or MassPoints. For a Solid see `rocking.restitution.space.edge_coefficient`.
+    restitution : str, RestitutionModel, float or mapping
+        As for `simulate`: name of a model (see `rocking.restitution.models`), a model object, which may be your own, a
+        coefficient, or ``{"left": r, "right": r}`` with one coefficient for each foot. A law such as
+        `SpeedRestitution` changes from impact to impact and has no single coefficient.
     onto : {"left", "right"}
         The foot on which the body lands.
     eta : float
-        Interface factor in (0, 1] that multiplies the model's coefficient [-].
+        Interface factor in (0, 1] that multiplies the coefficient [-].
     **parameters
-        The model's parameters: ``k``, ``q`` or ``r``.
+        Parameters of the model that is named: ``k``, ``q`` or ``r``.
 
     Returns
     -------
@@ -231,7 +301,7 @@ def coefficient_of_restitution(
     UnknownModelError
         If the model or a parameter is unknown.
     InvalidValueError
-        If a value is outside its range.
+        If a value is outside its range, or a given coefficient would create energy.
 
     Examples
     --------
@@ -241,8 +311,28 @@ def coefficient_of_restitution(
     0.94736684
     >>> round(rk.coefficient_of_restitution(block, "shifted-impulse", k=0.6), 8)
     0.94610778
+    >>> rk.coefficient_of_restitution(block, 0.9)
+    0.9
+    >>> rk.coefficient_of_restitution(block, {"left": 0.85, "right": 0.9}, onto="left")
+    0.85
+
+    The coefficient of an asymmetric body depends on the foot:
+
+    >>> cabinet = rk.Block(width=0.8, height=2.0, centre=(0.3, 0.8))
+    >>> [round(rk.coefficient_of_restitution(cabinet, "housner", onto=foot), 4) for foot in ("left", "right")]
+    [0.7818, 0.6825]
     """
-    return _by_name(model, eta=eta, **parameters).coefficient(body, onto)
+    if isinstance(restitution, (str, RestitutionModel)):
+        return model(restitution, eta=eta, **parameters).coefficient(body, onto)
+    if parameters:
+        raise UnknownModelError(f"a coefficient takes no parameters, got {', '.join(parameters)}")
+    onto = checks.foot("onto", onto)
+    checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
+    coefficients, _ = coefficients_of(restitution, body)
+    r, most = coefficients[onto], energy_bound(body, onto)
+    if r > most * (1.0 + BOUND_ROUNDING):
+        raise energy_refusal(onto, most, r)
+    return _factor(eta) * r
 
 
 def recommend(

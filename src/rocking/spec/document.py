@@ -527,7 +527,6 @@ def check_start(moved: bool, free: float | None) -> None:
 class ResponseDocument(ResponseTables):
     """A file that describes one response."""
 
-    response: ResponseTable
     body: dict[str, Any]
     motion: ComponentsTable | None = None
 

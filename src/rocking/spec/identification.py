@@ -5,11 +5,12 @@ import hashlib
 import json
 import math
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from multiprocessing import get_context
 from pathlib import Path
@@ -25,7 +26,7 @@ from rocking.conventions import FEET, NORMAL_95
 from rocking.errors import InvalidValueError, RockingError
 from rocking.exported import Exported
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
-from rocking.identification.readers.reader import ENDINGS, SOUNDS
+from rocking.identification.readers.reader import ENDINGS, SOUNDS, TEXTS
 from rocking.identification.results import compared
 from rocking.spec.construction import body_of, motion_of
 from rocking.spec.reading import InputFiles, located
@@ -82,15 +83,35 @@ class IdentificationProblem:
 
     @property
     def trials(self) -> list[Path]:
-        """The files of a folder that hold a measurement, or seem to, without tables of what was identified."""
+        """The recordings of the folder."""
+        return self._sorted_out[0]
+
+    @property
+    def passed_over(self) -> dict[str, str]:
+        """The other files of the folder, and the reason why each is no recording; hidden and body files apart."""
+        return self._sorted_out[1]
+
+    @cached_property
+    def _sorted_out(self) -> tuple[list[Path], dict[str, str]]:
         try:
-            there = sorted(path for path in self.path.iterdir() if path.suffix.lower() in ENDINGS)
+            there = sorted(self.path.iterdir())
         except OSError as error:
             raise InvalidValueError(f"{self.path}: {error.strerror or error}") from error
-        found = [path for path in there if path.is_file() and path.name[:1] != "." and not is_table(path)]
-        if not found:
-            raise InvalidValueError(f"{self.path}: no trials; their names end in {', '.join(ENDINGS)}")
-        return found
+        trials, others = [], {}
+        for path in there:
+            if path.name[:1] == "." or (path.suffix.lower() in FORMATS and path.is_file()):
+                continue
+            reason = _no_recording(path)
+            if reason:
+                others[path.name] = reason
+            else:
+                trials.append(path)
+        if not trials:
+            found = f"; passed over: {passed_over_words(others)}" if others else ""
+            raise InvalidValueError(
+                f"{self.path}: no trials; their names end in {', '.join(ENDINGS)}, and tables hold numbers{found}"
+            )
+        return trials, others
 
     def answer(self, path: Path | None = None) -> Identification:
         """Return what one measurement says."""
@@ -118,7 +139,8 @@ class IdentificationProblem:
                     written = time.monotonic()
                 if progress is not None:
                     progress(1)
-        return IdentifiedTrials(self.path.name, self.body, tuple(rows[path] for path in trials), len(missing))
+        every = tuple(rows[path] for path in trials)
+        return IdentifiedTrials(self.path.name, self.body, every, len(missing), self.passed_over)
 
     def _each(self, paths: list[Path], workers: int | None) -> Iterator[tuple[Path, Row]]:
         count = min(workers or os.cpu_count() or 1, len(paths))
@@ -161,6 +183,8 @@ class IdentifiedTrials(Exported):
     body: Body | None
     rows: tuple[Row, ...]  # by the names of the columns
     computed: int  # how many were, and not taken from a table
+    # other files of the folder, and the reason why each is no recording
+    passed_over: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def good(self) -> int:
@@ -204,6 +228,13 @@ class IdentifiedTrials(Exported):
         )  # fmt: skip
 
     @property
+    def passed_over_verdict(self) -> str:
+        """Number of files that are no recordings, with their names and reasons; empty without any."""
+        count = len(self.passed_over)
+        what = "1 file that is no recording" if count == 1 else f"{count} files that are no recordings"
+        return f"Passed over {what}: {passed_over_words(self.passed_over)}." if count else ""
+
+    @property
     def verdict(self) -> str:
         """What was found, in a sentence."""
         count = f"{self.good} of {len(self.rows)} trials"
@@ -223,11 +254,46 @@ class IdentifiedTrials(Exported):
             "mean": None if self.mean is None else vars(self.mean),
             "models": [vars(each) for each in self.models],
             "trials": self.rows,
+            "passed_over": dict(self.passed_over),
         }
 
     def exported(self) -> Table:
         """Return what files of it hold: one row a trial."""
         return _table(self.rows, {"verdict": self.verdict, "software": SOFTWARE})
+
+
+def passed_over_words(others: Mapping[str, str]) -> str:
+    """Return files and the reasons why they are no recordings, those of one reason together.
+
+    >>> passed_over_words({"a.jpg": "another kind of file", "b.md": "another kind of file", "c.csv": "no row"})
+    'a.jpg, b.md (another kind of file); c.csv (no row)'
+    """
+    names = {reason: [name for name, each in others.items() if each == reason] for reason in others.values()}
+    return "; ".join(f"{', '.join(each)} ({reason})" for reason, each in names.items())
+
+
+def _no_recording(path: Path) -> str:
+    """Return why a file is no recording, whatever its content may be worth; empty if it is one."""
+    if not path.is_file():
+        return "a folder" if path.is_dir() else "not a file"
+    if path.suffix.lower() not in ENDINGS:
+        return "another kind of file"
+    if is_table(path):
+        return "a table of results of trials"
+    if path.suffix.lower() in TEXTS and not _has_numbers(path):
+        return "no row of numbers"
+    return ""
+
+
+_CELLS = re.compile(r"[;,\t ]+")
+_CELL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|nan", re.IGNORECASE)
+
+
+def _has_numbers(path: Path) -> bool:
+    """Return whether a line of a text holds numbers alone."""
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        cells = ([cell for cell in _CELLS.split(line.strip()) if cell] for line in lines)
+        return any(row and all(map(_CELL.fullmatch, row)) for row in cells)
 
 
 def is_table(path: Path) -> bool:

@@ -54,8 +54,7 @@ class Axis:
                 f"{self.name} must be in {bracket}{self.low:g}, {self.high:g}] {self.unit}, "
                 f"got {row[bad[0]]:g} at index {bad[0]}; wrong unit?"
             )
-        if np.any(np.diff(row) <= 0.0):
-            raise InvalidValueError(f"{self.name} must increase from value to value")
+        checks.increasing(self.name, row, self.unit)
         row.setflags(write=False)
         return replace(self, values=row)
 

@@ -1,5 +1,6 @@
 """The motions of a study, by number: held in memory, or made from a seed when they are needed."""
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
@@ -68,14 +69,14 @@ class MotionList(MotionSet):
     def __init__(self, motions: Any, *, plane: bool = False) -> None:
         single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
         wanted = "motions must be ground motions or pulses"
-        if not single and not isinstance(motions, Iterable):
-            raise InvalidValueError(f"{wanted}, got {motions!r:.60}")
+        if not single and (isinstance(motions, (str, os.PathLike)) or not isinstance(motions, Iterable)):
+            raise InvalidValueError(f"{wanted}, got {checks.given('motions', motions)}")
         found = [together(each, plane=plane) for each in ([motions] if single else motions)]
         if not found:
             raise InvalidValueError(f"{wanted}, got none")
         for k, item in enumerate(found):
             if not isinstance(item, (GroundMotion, Pulse, Components)):
-                raise InvalidValueError(f"{wanted}, got {item!r:.60} at index {k}")
+                raise InvalidValueError(f"{wanted}, got at index {k} {checks.given('motions', item)}")
         if len({isinstance(leading(item), Pulse) for item in found}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
         self._motions: list[Motion] = found

@@ -220,10 +220,10 @@ def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
         return body.scaled(size=parameters["semi_diagonal"] / side.semi_diagonal)
     if not isinstance(body, Block):
         raise InvalidValueError(f"slenderness, width and height vary only for a Block, got {body!r:.60}")
-    if body.known is not None:
+    if body.known is not None or not body.stands_on_corners:
         raise InvalidValueError(
-            "slenderness, width and height vary only for a homogeneous Block: leave centre and "
-            "moment_of_inertia out, or vary the semi-diagonal"
+            "slenderness, width and height vary only for a homogeneous Block on its corners: leave centre, "
+            "moment_of_inertia and feet out, or vary the semi-diagonal"
         )
     width, height = _dimensions(body, parameters)
     return Block(width=width, height=height, depth=body.depth, density=body.density)

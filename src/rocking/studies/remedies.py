@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import plausibility
 from rocking.bodies import Block, Body
-from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
+from rocking.conventions import FEET, BoolArray, FloatArray, Foot, IntArray
 from rocking.dynamics.parameters import RockingParameters, coefficients_of, sides_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning
@@ -310,7 +310,7 @@ class Landings:
         ]
 
     @staticmethod
-    def _pair(restitution: Any, body: Body) -> Mapping[str, float]:
+    def _pair(restitution: Any, body: Body) -> Mapping[Foot, float]:
         """Return the coefficients; where the model says none, the largest that energy allows."""
         try:
             return coefficients_of(restitution, body)[0]

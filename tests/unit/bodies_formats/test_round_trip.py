@@ -70,7 +70,7 @@ def test_section(x, ground, width, height, foot, holed, depth, density):
         rk.Section.from_ellipse(0.7, 2.1, 64),
         rk.Section.from_regular_polygon(7, 1.3),
         rk.Section.from_trapezoid(1.1, 0.3, 2.7, lean=0.1, feet=(0.05, 1.0)),
-        rk.Block(width=0.3, height=0.9).with_feet(0.1, 0.25),
+        rk.Block(width=0.3, height=0.9).with_feet(0.1, 0.25).to_section(),
     ],
 )
 def test_shapes(section):

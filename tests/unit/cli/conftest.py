@@ -7,6 +7,12 @@ import pytest
 from rocking.cli import main
 
 
+@pytest.fixture(autouse=True)
+def _no_lines(monkeypatch):
+    """Write no line about the progress, however slow the machine is."""
+    monkeypatch.setattr("rocking.cli.page.SECONDS", 1e6)
+
+
 @pytest.fixture
 def run(capsys, request):
     """Return what runs `rocking WORDS` after the COMMAND of the module: exit code, standard output, standard error."""

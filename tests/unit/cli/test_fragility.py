@@ -378,7 +378,7 @@ def test_nothing_to_export(run, tmp_path):
         ((*SIZE, *FAMILY, *LEVELS, "--analysis", "cloud"), "--levels is not for --analysis cloud"),
         ((*SIZE, *FAMILY, "--factor", "2"), "--factor is for --analysis cloud"),
         ((*SIZE, *FAMILY, "--analysis", "cloud", "--factor", "-2"), "--factor"),
-        ((*SIZE, *FAMILY, "--states", "0.5,0.2"), "each above the one before"),
+        ((*SIZE, *FAMILY, "--states", "0.5,0.2"), "must increase"),
         ((*SIZE, *FAMILY, "--states", "0.5rad"), "--states must be a number without a unit"),
         ((*SIZE, *FAMILY, "--restitution", "ked", "--restitution", "ked"), "--restitution ked is given twice"),
         (

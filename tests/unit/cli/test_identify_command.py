@@ -238,6 +238,39 @@ def test_luck_narrows_no_interval(middles, common, reach):
     assert 0.5 * np.log(mean.high / mean.low) == pytest.approx(reach, rel=1e-3)
 
 
+def test_other_files_are_passed_over(printed, answered, refuses, rocked, tmp_path):
+    """Files that are no recordings are counted and named with the reason; a damaged recording stays a trial.
+
+    Decimal commas and a gap are numbers. Negative control: a folder without recordings is refused.
+    """
+    for k in range(2):
+        times_file(tmp_path / f"{k}.csv", rocked[0], seed=k)
+    (tmp_path / "damaged.wav").write_bytes(b"RIFF")
+    (tmp_path / "gap.csv").write_text("time [s];rotation [deg]\n0,1;0,5\n0,2;NaN\n", "utf-8")
+    (tmp_path / "notes.csv").write_text("trial;operator\n1;A\n2;B\n", "utf-8")
+    (tmp_path / "readme.txt").write_text("Measured on a Monday.\n", "utf-8")
+    (tmp_path / "photo.jpg").write_bytes(b"JFIF")
+    (tmp_path / "more").mkdir()
+    found = answered(tmp_path, *SIZE)
+    assert [row["trial"] for row in found["trials"]] == ["0.csv", "1.csv", "damaged.wav", "gap.csv"]
+    assert found["passed_over"] == {
+        "more": "a folder", "notes.csv": "no row of numbers", "photo.jpg": "another kind of file",
+        "readme.txt": "no row of numbers",
+    }  # fmt: skip
+    said = (
+        "Passed over 4 files that are no recordings: more (a folder); notes.csv, readme.txt (no row of numbers); "
+        "photo.jpg (another kind of file)."
+    )
+    page = " ".join(printed(tmp_path, *SIZE, "--out", tmp_path / "all.html").split())
+    assert said in page
+    assert "the mean of 2 of 4 trials" in page
+    assert said in (tmp_path / "all.html").read_text("utf-8")
+    for name in ("0.csv", "1.csv", "damaged.wav", "gap.csv"):
+        (tmp_path / name).unlink()
+    refuses((tmp_path, *SIZE), "no trials; their names end in .wav")
+    refuses((tmp_path, *SIZE), "passed over: ")
+
+
 def test_two_files_of_one_event_are_told(printed, answered, rocked, tmp_path):
     """The same times in two files; those of another trial are not."""
     for k in range(2):

@@ -158,8 +158,10 @@ def test_bodies_that_are_no_blocks():
     assert made.scale * 3.0 == pytest.approx(2.0 * 9.81 * 0.2 / 1.2, rel=1e-12, abs=0.0)
     assert made.frequency_parameter == body.side("right", 9.81).frequency_parameter
     for name in ("slenderness_ratio", "slenderness_angle", "width", "height"):
-        with pytest.raises(InvalidValueError, match="only for a Block"):
+        with pytest.raises(InvalidValueError, match="only for a homogeneous Block on its corners"):
             case((name, 1.0), ("scale", 1.0), body=body)
+        with pytest.raises(InvalidValueError, match="only for a Block"):
+            case((name, 1.0), ("scale", 1.0), body=body.to_section())
 
 
 def test_impossible_blocks_fail_alone():

@@ -122,7 +122,8 @@ def answer(inputs: ImpactRequest) -> JsonAnswer:
 def _facts(inputs: ImpactRequest) -> dict[str, Any]:
     body = body_from(inputs.body)
     # a homogeneous block is the same on both sides; what is the same is told once
-    onto = "right" if inputs.onto == "both" and isinstance(body, Block) and body.known is None else inputs.onto
+    same = isinstance(body, Block) and body.known is None and body.stands_on_corners
+    onto = "right" if inputs.onto == "both" and same else inputs.onto
     coefficients = ImpactAnswer.of(body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False)
     facts = impact_facts(coefficients)
     facts["body"] |= {"name": inputs.body.name, **outline_facts(body)}

@@ -20,7 +20,7 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
-from rocking.motions.pulses import pulse
+from rocking.motions.pulses import pulse, whole_or_number
 from rocking.outcome import Outcome, mode_words
 from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
@@ -194,7 +194,7 @@ def stretched_words(words: str, stretch: float) -> str:
         return words
     name, _, tail = words.partition(":")
     pairs = [tuple(part.strip() for part in item.partition("=")[::2]) for item in filter(None, tail.split(","))]
-    changed = [(key, repr(float(value) * stretch) if key in _TIMES else value) for key, value in pairs]
+    changed = [(key, repr(whole_or_number(key, value) * stretch) if key in _TIMES else value) for key, value in pairs]
     stretched = f"{name}:{','.join(f'{key}={value}' for key, value in changed)}"
     before, after = pulse(words), pulse(stretched)
     if abs(after.duration / (stretch * before.duration) - 1.0) + abs(after.peak / before.peak - 1.0) > _CLOSE:

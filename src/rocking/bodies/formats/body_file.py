@@ -100,9 +100,8 @@ def parsed_toml(text: Any) -> dict[str, Any]:
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:
     with blamed("block"):
-        body = Block(width=table.width * scale, height=table.height * scale, **_options(table, scale))
-        feet = _pair(table.feet, scale)
-        return body if feet is None else body.with_feet(*feet)
+        width, height = table.width * scale, table.height * scale
+        return Block(width=width, height=height, feet=_pair(table.feet, scale), **_options(table, scale))
 
 
 def _shape(document: "schema.BodyFile", scale: float) -> Section:
@@ -241,7 +240,8 @@ def body_to_toml(body: Body) -> str:
 @body_to_toml.register
 def _(body: Block) -> str:
     sizes = (f"{key} = {_number(getattr(body, key))}" for key in ("width", "height", "depth", "density"))
-    return _lines('units = "m"', "", "[block]", *sizes, *_known_of(body, 0.0, 0.0))
+    feet = [] if body.stands_on_corners else [f"feet = {_row(body.feet)}"]
+    return _lines('units = "m"', "", "[block]", *sizes, *feet, *_known_of(body, 0.0, 0.0))
 
 
 @body_to_toml.register

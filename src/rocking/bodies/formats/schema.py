@@ -24,8 +24,12 @@ class StrictTable(BaseModel):
     def _known_keys(cls, given: Any) -> Any:
         for key in given if isinstance(given, dict) else ():
             if key not in cls.model_fields:
-                raise _refused("unknown_key", f"unknown key {key!r}{suggestion(key, cls.model_fields)}")
+                raise _refused("unknown_key", f"unknown key {key!r}{cls._hint(key)}")
         return given
+
+    @classmethod
+    def _hint(cls, key: str) -> str:
+        return suggestion(key, cls.model_fields)
 
 
 class KnownTable(StrictTable):
@@ -51,7 +55,7 @@ class ShapeTable(KnownTable):
 
 
 class BlockTable(ShapeTable):
-    """A rectangle; with feet it becomes a `Section`."""
+    """A rectangle, on its corners or on feet within its base."""
 
     width: Positive = Field(description="full width [unit of the file]")
     height: Positive = Field(description="full height [unit of the file]")
@@ -142,13 +146,25 @@ class BodyFile(StrictTable):
     section: SectionTable | None = Field(None, description="what the body is, one a file")
     mass_points: MassPointsTable | None = Field(None, description="what the body is, one a file")
 
+    @classmethod
+    def _hint(cls, key: str) -> str:
+        tables = [name for name, table in _TABLES.items() if key in table.model_fields]
+        if not tables:
+            return super()._hint(key)
+        several = f"; other tables with {key} are {', '.join(f'[{name}]' for name in tables[1:])}" if tables[1:] else ""
+        return f" outside of a table: write [{tables[0]}] in a line above {key}{several}"
+
     @model_validator(mode="after")
     def _one_body(self) -> "BodyFile":
         _check_one(self, "a body file", BODIES, "[{}]")
         return self
 
 
-BODIES = ("block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points")
+_TABLES: dict[str, type[StrictTable]] = {
+    "block": BlockTable, "trapezoid": TrapezoidTable, "ellipse": EllipseTable, "regular_polygon": RegularPolygonTable,
+    "section": SectionTable, "mass_points": MassPointsTable,
+}  # fmt: skip
+BODIES = tuple(_TABLES)
 """Tables that say what the body is."""
 
 

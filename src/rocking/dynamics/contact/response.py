@@ -360,7 +360,7 @@ def _segments(motion: object, base: PlaneBase, gravity: float, duration: float |
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
         return ground_at_rest(length / max(1, math.ceil(length / (FINE * slow) - 1e-9)), length)
     if not isinstance(motion, (GroundMotion, Pulse)):
-        raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {motion!r:.60}")
+        raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {checks.given('motion', motion)}")
     length = length_of(motion, slow, duration)
     segments = motion.segments()
     return followed(segments, length, math.ceil(segments.step / (FINE * slow)), motion)

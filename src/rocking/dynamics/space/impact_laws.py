@@ -1,6 +1,7 @@
 """What an impact leaves of an angular velocity: the interface, and the models of restitution behind it."""
 
 import math
+import numbers
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -11,7 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.portable import dot
-from rocking.restitution.space import SpatialHousner, SpatialImpact, SpatialModel, spatial_model
+from rocking.restitution.space import SpatialHousner, SpatialImpact, SpatialModel, spatial_model, spatial_models
 from rocking.restitution.space.impact import NO_MATTER
 
 
@@ -96,6 +97,21 @@ def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLa
         if model.needs_solid and body is not None and body.matter is None:
             raise InvalidValueError(f"restitution {model.name!r}: {NO_MATTER}")
         return ModelLaw(model)
+    if isinstance(restitution, SpatialImpactLaw) and not isinstance(restitution, type):
+        return restitution
+    if not isinstance(restitution, numbers.Real):
+        raise InvalidValueError(
+            f"restitution of a body in space must be one of {', '.join(spatial_models())}, a coefficient, or an object "
+            f"with label and velocity_after, got {_lacking(restitution)}"
+        )
+    return FixedSpatial(float(restitution))
+
+
+def _lacking(restitution: object) -> str:
+    """Return what an object is that is no law, and what it lacks."""
     if isinstance(restitution, type):
-        raise InvalidValueError(f"restitution must be a law, not its class, got {restitution!r:.60}")
-    return restitution if isinstance(restitution, SpatialImpactLaw) else FixedSpatial(restitution)
+        return f"the class {restitution.__name__}: create an object, {restitution.__name__}()"
+    if type(restitution).__module__ == "builtins":
+        return f"{restitution!r:.60}"
+    missing = [name for name in ("label", "velocity_after") if not hasattr(restitution, name)]
+    return f"a {type(restitution).__name__} object without {' and '.join(missing)}"

@@ -14,7 +14,7 @@ from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray, g
 from rocking.errors import MeasurementError, extra
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.motions.formats.column_text import ColumnText
-from rocking.motions.formats.numbers import number
+from rocking.motions.formats.numbers import gap_words, number
 from rocking.motions.formats.record import Source
 
 _EVEN = 0.5
@@ -260,6 +260,8 @@ def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:
     for line, row in enumerate(rows[1:], 1):
         for place, cell in enumerate(row):
             if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
-                raise MeasurementError(f"{source.name}, row {line + 1}: number expected, found {cell!r:.40}")
+                raise MeasurementError(
+                    f"{source.name}, row {line + 1}: number expected, found {cell!r:.40}{gap_words(str(cell))}"
+                )
             values[line - 1, place] = cell
     return tuple(str(cell).strip() for cell in rows[0]), values

@@ -18,11 +18,18 @@ def number(source: Source, line: int, word: str, what: str = "number") -> float:
     """Return one number."""
     text = word.strip()
     if not _NUMBER.fullmatch(text):
-        raise source.error(line, f"{what} expected, found {text[:40]!r}")
+        raise source.error(line, f"{what} expected, found {text[:40]!r}{gap_words(text)}")
     value = float(text.replace("D", "e").replace("d", "e"))
     if not math.isfinite(value):
         raise source.error(line, f"{what} is beyond all range: {text[:40]!r}")
     return value
+
+
+def gap_words(text: str) -> str:
+    """Return what a word that is no number means, where that is known."""
+    if text.lower().lstrip("+-") not in {"nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "--", "-", "?"}:
+        return ""
+    return ": the record has a gap, a sample without a value; fill the gap, or cut the record before it"
 
 
 def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> int:

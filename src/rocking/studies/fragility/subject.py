@@ -171,8 +171,9 @@ class Subject:
 def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
     """Return levels of a measure [its unit] if they are above zero and increase."""
     levels = np.atleast_1d(checks.positive_array(name, values, unit)).copy()
-    if levels.ndim != 1 or not levels.size or np.any(np.diff(levels) <= 0.0):
-        raise InvalidValueError(f"{name} must be numbers [{unit}], each above the one before, got {values!r:.60}")
+    if levels.ndim != 1 or not levels.size:
+        raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got {values!r:.60}")
+    checks.increasing(name, levels, unit)
     return levels
 
 
@@ -209,8 +210,9 @@ def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ..
 def _rotations(levels: Any) -> tuple[LimitState, ...]:
     rotations = np.atleast_1d(np.asarray(levels))
     rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
-    if rotations.ndim != 1 or np.any(np.diff(rotations) <= 0.0):
-        raise InvalidValueError(f"states must be rotations over alpha, each above the one before, got {levels!r:.60}")
+    if rotations.ndim != 1:
+        raise InvalidValueError(f"states must be a row of rotations over alpha, got {levels!r:.60}")
+    checks.increasing("states", rotations)
     return tuple(LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations)
 
 

@@ -182,8 +182,9 @@ def curve_change(
     # The intervals come from motions drawn with replacement. Both curves of a repetition are fitted to the same
     # motions, so that what the motions have in common cancels.
     at = checks.positive_array("levels", levels)
-    if at.ndim != 1 or at.size < 2 or np.any(np.diff(at) <= 0.0):
-        raise InvalidValueError(f"levels must be two or more numbers, each above the one before, got {levels!r:.60}")
+    if at.ndim != 1 or at.size < 2:
+        raise InvalidValueError(f"levels must be two or more numbers, got {levels!r:.60}")
+    checks.increasing("levels", at)
     hits = [_indicators(name, values, at.size) for name, values in (("first", first), ("second", second))]
     if hits[0].shape != hits[1].shape:
         raise InvalidValueError(f"both results must be of the same motions, got {hits[0].shape} and {hits[1].shape}")
