@@ -312,6 +312,7 @@ class SpaceAnswer:
             "repairs": list(solid.repairs),
             "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
             "motions": _components(response),
+            **self._start_facts(),
             "restitution": response.law.label,
             "engine": response.trajectory.engine,
             "gravity_m_s2": response.settings.gravity,
@@ -330,6 +331,19 @@ class SpaceAnswer:
             "energy_closure": response.energy.closure,
         }
 
+    def _start_facts(self) -> dict[str, Any]:
+        """Return the initial tilt of free rocking, and its direction; nothing under a motion."""
+        start = self.problem.start if self.problem.free is not None else None
+        return {} if start is None else {"initial_tilt_rad": start.tilt, "initial_azimuth_rad": start.azimuth}
+
+    def _motion_lines(self) -> list[tuple[str, str]]:
+        problem = self.problem
+        if problem.free is None:
+            return [(f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), self.response.names, strict=True)]
+        tilt, balance = math.degrees(abs(problem.rotation)), math.degrees(problem.balance_angle)
+        way = "x" if problem.rotation >= 0.0 else "-x"
+        return [("motion", f"none; released at {tilt:.4g} deg towards {way}, where {balance:.4g} deg is the balance")]
+
     def _last_state(self) -> dict[str, Any] | None:
         response = self.response
         if not response.still_rocking:
@@ -347,7 +361,7 @@ class SpaceAnswer:
 
         response = self.response
         show_body(page, self.problem.body, self.length)
-        page.facts(((f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), response.names, strict=True)), 16)
+        page.facts(self._motion_lines(), 16)
         page.facts(_sources(*response.components), 16)
         page.facts([("restitution", response.law.label)], 16)
         page.line()
@@ -381,6 +395,7 @@ class HullAnswer(SpaceAnswer):
             "repairs": list(solid.repairs),
             "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
             "motions": _components(response),
+            **self._start_facts(),
             "restitution": response.restitution,
             "friction": response.settings.friction,
             "engine": response.engine,
@@ -406,7 +421,7 @@ class HullAnswer(SpaceAnswer):
 
         response = self.response
         show_body(page, self.problem.body, self.length)
-        page.facts(((f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), response.names, strict=True)), 16)
+        page.facts(self._motion_lines(), 16)
         page.facts(_sources(*response.components), 16)
         page.facts([("restitution", response.restitution), ("friction", f"{response.settings.friction:g}")], 16)
         page.line()

@@ -111,8 +111,8 @@ def simulate(
             deliver(_each(arguments, words, quiet=as_json), as_json=as_json)
             return
         problem = _problem(arguments, in_space)
-    if problem.free is not None and isinstance(problem.body, Body):
-        _check_share(problem.body, problem.free, "response.free" if file else "--free")
+    if problem.free is not None:
+        _check_share(problem.balance_angle, problem.free, "response.free" if file else "--free")
     if in_space and problem.mechanics != "space with friction":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     with bar("history", quiet=as_json):
@@ -224,9 +224,8 @@ def _peak(response: Any) -> float:
     return abs(float(response.peak_tilt if hasattr(response, "peak_tilt") else response.peak_rotation))
 
 
-def _check_share(body: Body, free: float, option: str) -> None:
-    """Refuse, or doubt, what looks like an angle in degrees in place of a share of the slenderness angle."""
-    alpha = body.side("right" if free > 0.0 else "left").slenderness_angle
+def _check_share(alpha: float, free: float, option: str) -> None:
+    """Refuse, or doubt, what looks like an angle in degrees in place of a share of the slenderness angle [rad]."""
     if abs(free) * alpha >= 0.5 * math.pi:
         raise InvalidValueError(
             f"{option} is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "

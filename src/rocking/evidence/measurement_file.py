@@ -307,7 +307,8 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
     """
     if found.refused:
         raise InvalidValueError(f"what was refused is no measurement: {found.refused[0]}")
-    if not isinstance(body, Block) or not body.stands_on_corners:
+    given: object = body
+    if not isinstance(given, Block) or not given.stands_on_corners:
         raise InvalidValueError(f"body must be a Block on its corners: evidence is of rectangles, got {body!r}")
     spread = (found.mean.high - found.mean.low) / (2.0 * NORMAL_95)
     keys = {

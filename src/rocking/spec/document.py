@@ -480,7 +480,9 @@ class CampaignDocument(JobTable):
 class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
-    free: float | None = _key("no motion: let go at this share of the slenderness angle; negative to the left [-]")
+    free: float | None = _key(
+        "no motion: initial rotation over the slenderness angle, of a solid towards x; negative to the left, or -x [-]"
+    )
     friction: float | None = _key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
     bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
     bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(_BOUNCE_LAW)

@@ -1,5 +1,6 @@
 """One body and what moves it: the problem of a response, made from its tables, and its answer."""
 
+import math
 import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -8,7 +9,7 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
-from rocking.dynamics import free_rocking, simulate
+from rocking.dynamics import SpatialBody, SpatialStart, free_rocking, simulate
 from rocking.dynamics._simulate import together
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
@@ -26,7 +27,7 @@ _MECHANICS = {
 }
 
 
-_PLANE_ONLY = {"free", "bounce", "bounce_law", "assumed_friction"}
+_PLANE_ONLY = {"bounce", "bounce_law", "assumed_friction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +62,27 @@ class ResponseProblem:
         return "rocking" if self.friction is None and isinstance(self.body, Body) else self.settings.mechanics
 
     @property
+    def balance_angle(self) -> float:
+        """Rotation at which the body balances on the side of `free`, its slenderness angle [rad]."""
+        right = self.free is None or self.free > 0.0
+        if isinstance(self.body, Body):
+            return self.body.side("right" if right else "left", self.settings.gravity).slenderness_angle
+        space = SpatialBody.of(self.body)
+        way, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
+        ends = [space.radius] if space.round else (way * space.vertices[:, 0]).tolist()
+        return math.atan2(max(ends) - way * x, height)
+
+    @property
     def rotation(self) -> float:
         """Rotation at the start, positive to the right [rad]."""
-        if self.free is None:
-            return 0.0
-        side = self.body.side("right" if self.free > 0.0 else "left", self.settings.gravity)
-        return float(self.free * side.slenderness_angle)
+        return 0.0 if self.free is None else float(self.free * self.balance_angle)
+
+    @property
+    def start(self) -> SpatialStart | None:
+        """Initial tilt of a body in space, towards x or, where `free` is below zero, the other way; None in a plane."""
+        if isinstance(self.body, Body):
+            return None
+        return SpatialStart(abs(self.rotation), 0.0 if self.rotation >= 0.0 else math.pi)
 
     def answer(self, restitution: Any = ...) -> Any:
         """Return the response with one restitution, the first if none is given."""
@@ -79,7 +95,8 @@ class ResponseProblem:
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.motion is None:
-                return free_rocking(self.body, self.rotation, law, **options)
+                where = {"rotation": self.rotation} if self.start is None else {"start": self.start}
+                return free_rocking(self.body, restitution=law, **where, **options)
             return simulate(self.body, self.motion, law, scale=self.scale, **options)
 
 

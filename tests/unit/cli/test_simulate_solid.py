@@ -131,10 +131,54 @@ def test_a_history_without_a_result_is_refused(run, body, monkeypatch):
     assert err.startswith("rocking: there is no response: stopped: the ground would have to pull")
 
 
+LEANING = (
+    'units = "m"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 2.0 }\n'
+    "[[solid.part]]\nbox = { width = 0.1, depth = 0.6, height = 1.0 }\ndensity = 4800\nat = [0.1, 0, 2.0]\n"
+)
+CENTRE_X, CENTRE_Z = 1440.0 * np.array([0.0, 1.0]) / 1728.0 + 288.0 * np.array([0.1, 2.5]) / 1728.0
+
+
+@pytest.mark.parametrize("friction", [None, 5.0])
+@pytest.mark.parametrize("free", [0.5, -0.5])
+def test_free_rocking_of_a_solid(answered, tmp_path, friction, free):
+    """A solid that leans towards x, or away from it, meets the ground when the plane body of its section does.
+
+    alpha = atan((b -+ x) / h) on either side of an asymmetric body. Negative control: the sides differ.
+    """
+    path = tmp_path / "body.toml"
+    path.write_text(LEANING, encoding="utf-8")
+    answer = answered(
+        path, "--free", free, "--restitution", 0.5, *([] if friction is None else ["--friction", friction])
+    )
+    lever = {0.5: 0.25 - CENTRE_X, -0.5: 0.25 + CENTRE_X}
+    assert answer["initial_tilt_rad"] == pytest.approx(0.5 * math.atan2(lever[free], CENTRE_Z), rel=1e-12)
+    assert answer["initial_azimuth_rad"] == pytest.approx(0.0 if free > 0.0 else math.pi)
+    outlines = [(-0.25, 0.25, 0.0, 2.0, 2400.0), (0.05, 0.15, 2.0, 3.0, 4800.0)]
+    regions = [rk.Region([(a, c), (b, c), (b, d), (a, d)], density) for a, b, c, d, density in outlines]
+    plane = rk.Section(regions)
+    side = plane.side("right" if free > 0.0 else "left")
+    first = rk.free_rocking(plane, free * side.slenderness_angle, 0.5).impacts["time"][0]
+    assert answer["impacts"][0]["time_s"] == pytest.approx(float(first), rel=1e-6)
+    other = rk.free_rocking(plane, -free * plane.side("left" if free > 0.0 else "right").slenderness_angle, 0.5)
+    assert answer["impacts"][0]["time_s"] != pytest.approx(float(other.impacts["time"][0]), rel=1e-3)
+
+
+def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp_path):
+    """The page has tilt, direction and balance; a file says the same; a motion has no initial tilt."""
+    page = printed(body, "--free", "-0.5", "--friction", "0.8")
+    assert "none; released at 7.018 deg towards -x, where 14.04 deg is the balance" in page
+    document = tmp_path / "question.toml"
+    document.write_text('[body]\nfile = "prism.toml"\n[response]\nfree = -0.5\nfriction = 0.8\n', encoding="utf-8")
+    assert answered(document)["impacts"] == answered(body, "--free", "-0.5", "--friction", "0.8")["impacts"]
+    assert "initial_tilt_rad" not in answered(body, SINE)
+
+
 REFUSED = {
     "no motion": ([], "what moves the ground?"),
     "two motions": (["--motion", f"x={SINE}", "--motion", f"x={SINE}"], "one motion along x, please"),
-    "free": (["--free", "0.5"], "so it takes no free"),
+    "free in degrees": (["--free", "10"], "--free is a share of the slenderness angle, here 14 degrees"),
+    "free and a motion": ([SINE, "--free", "0.5"], "give a motion or --free, not both"),
+    "free and bounce": (["--free", "0.5", "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
     "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
     "bounce": ([SINE, "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
     "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),

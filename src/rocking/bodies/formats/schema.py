@@ -148,6 +148,8 @@ class BodyFile(StrictTable):
 
     @classmethod
     def _hint(cls, key: str) -> str:
+        if key in SHAPES:
+            return f" outside of a part: write [[solid.part]] in a line above [solid.part.{key}]"
         tables = [name for name, table in _TABLES.items() if key in table.model_fields]
         if not tables:
             return super()._hint(key)
