@@ -41,13 +41,13 @@ def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str)
 _READERS = {"motion": "read_motion", "motions": "read_motion", "body": "read_body", "bodies": "read_body"}
 
 
-def given(name: str, value: object) -> str:
+def given(name: str, value: object, where: str = "") -> str:
     """Return what was given for a parameter, and the function that makes a motion or a body of it.
 
     >>> given("motion", "x.at2"), given("body", 3.0)
     ("'x.at2'; rocking.read_motion('x.at2') reads a file", '3.0')
     """
-    reader, shown = _READERS.get(name), f"{value!r:.60}"
+    reader, shown = _READERS.get(name), f"{value!r:.60}{where}"
     if reader and isinstance(value, (str, os.PathLike)):
         path = str(value)
         if reader == "read_motion" and re.match(r"[a-z-]+:\w+=", path):

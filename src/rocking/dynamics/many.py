@@ -332,7 +332,7 @@ def _pieces(
     return rows
 
 
-_KINDS = {"bodies": "Block, Section and MassPoints", "motions": "GroundMotion, Pulse and mapping"}
+_KINDS = {"bodies": "Body", "motions": "GroundMotion, Pulse, Mapping"}
 
 
 def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
@@ -346,7 +346,7 @@ def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
         raise InvalidValueError(f"{wanted}, got none")
     for k, item in enumerate(found):
         if not isinstance(item, kinds):
-            raise InvalidValueError(f"{wanted}, got at index {k} {checks.given(name, item)}")
+            raise InvalidValueError(f"{wanted}, got {checks.given(name, item, f' at index {k}')}")
     return found
 
 

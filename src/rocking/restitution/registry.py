@@ -250,9 +250,10 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], st
 
 def _coefficient(name: str, value: Any) -> float:
     if not isinstance(value, (numbers.Real, np.ndarray)) or isinstance(value, bool):
-        raise InvalidValueError(
-            f'{name} must be a model, its name, a coefficient, or {{"left": r, "right": r}}, got {of_no_kind(value)}'
+        allowed = (
+            'a model, its name, a coefficient, or {"left": r, "right": r}' if name == "restitution" else "a number"
         )
+        raise InvalidValueError(f"{name} must be {allowed}, got {of_no_kind(value)}")
     r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
     plausibility.warn(plausibility.of_coefficient(r))
     return r

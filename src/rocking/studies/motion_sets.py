@@ -76,7 +76,7 @@ class MotionList(MotionSet):
             raise InvalidValueError(f"{wanted}, got none")
         for k, item in enumerate(found):
             if not isinstance(item, (GroundMotion, Pulse, Components)):
-                raise InvalidValueError(f"{wanted}, got at index {k} {checks.given('motions', item)}")
+                raise InvalidValueError(f"{wanted}, got {checks.given('motions', item, f' at index {k}')}")
         if len({isinstance(leading(item), Pulse) for item in found}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
         self._motions: list[Motion] = found

@@ -51,12 +51,14 @@ def test_unknown_names(which):
 
 
 @pytest.mark.parametrize(
-    "which", [None, 3, 0.9, ["ked"], Ked, b"ked", object()], ids=lambda value: type(value).__name__
+    "which", [None, True, "0.9".encode, ["ked"], Ked, b"ked", object()], ids=lambda value: type(value).__name__
 )
 def test_what_is_no_model(which):
-    """What is neither a name nor a model object is refused: also the class instead of an object."""
-    with pytest.raises(UnknownModelError, match="a restitution model is a name or a RestitutionModel object"):
+    """What is neither a name, a model object nor a number is refused: also the class instead of an object."""
+    with pytest.raises(InvalidValueError, match="restitution must be a model, its name, a coefficient"):
         rk.coefficient_of_restitution(BODY, which)
+    with pytest.raises(UnknownModelError, match="a restitution model is a name or a RestitutionModel object"):
+        rk.restitution.model(which)
 
 
 PARAMETERS = {
