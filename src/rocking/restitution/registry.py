@@ -249,7 +249,7 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], st
 
 
 def _coefficient(name: str, value: Any) -> float:
-    if not isinstance(value, (numbers.Real, np.ndarray)) or isinstance(value, bool):
+    if isinstance(value, bool) or not isinstance(value, (numbers.Real, np.ndarray)):
         allowed = (
             'a model, its name, a coefficient, or {"left": r, "right": r}' if name == "restitution" else "a number"
         )
