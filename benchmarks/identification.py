@@ -4,11 +4,14 @@ Of ten, nine are times of impacts with jitter, bounces, gaps and false ones, one
 offset and a drift. Sounds, clipped ones too, are tried by tests/verification/test_impact_sounds.py.
 
 `make identification` makes 10,000 of them (half an hour), keeps every one in build/identification.jsonl, and prints the
-coverage beside that of a constant coefficient fitted by least squares.
+coverage beside that of a constant coefficient fitted by least squares. Then it makes 6,000 whose coefficient scatters
+by 0 to 5 %, of usual and asymmetric bodies and of few impacts, keeps them in build/identification_scatters.jsonl, and
+prints the coverage for each scatter.
 """
 
 import math
 import time
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -27,30 +30,54 @@ SIZE_ERROR, TILT, HALF = 0.01, math.radians(0.3), 0.03
 SHORTEST, MOST = 0.08, 31
 
 
-def rocked(random: np.random.Generator) -> dict[str, Any]:
+SCATTERS = (0.0, 0.005, 0.01, 0.02, 0.05)
+"""Standard deviations of ln r of the second kind of cases [-]."""
+
+KINDS = ("usual", "asymmetric", "few impacts")
+FEW = 8
+"""Largest number of impacts of the last kind [-]."""
+
+
+def rocked(random: np.random.Generator, scatter: float | None = None, kind: str = "usual") -> dict[str, Any]:
     """Make one up: a body, what its impacts take, and when they are; it stands on its right foot first."""
     alpha, p, r = random.uniform(0.12, 0.35), random.uniform(1.5, 6.0), random.uniform(0.8, 0.95)
-    truth: dict[str, Any] = {"alpha": alpha, "p": p, "r": r, "scatter": random.uniform(0.01, 0.03)}
-    truth["half"] = HALF * random.normal()
+    usual = random.uniform(0.01, 0.03)
+    truth: dict[str, Any] = {"r": r, "scatter": usual if scatter is None else scatter, "half": HALF * random.normal()}
+    truth["body"] = body = _body(alpha, p, random.uniform(-0.25, 0.25) if kind == "asymmetric" else 0.0)
+    sides = [body.side(foot) for foot in ("right", "left")]
+    most = FEW if kind == "few impacts" else MOST
     while True:
         tilt, peak = TILT * random.normal(), random.uniform(0.3, 0.9)
-        real = alpha * math.exp(math.sqrt(2.0) * SIZE_ERROR * random.normal())
-        p_real = p * math.exp(0.5 * SIZE_ERROR * random.normal())
-        alphas = (real - tilt, real + tilt)
-        if (made := _times(random, truth, peak, alphas, p_real)) is not None:
+        wider = math.exp(math.sqrt(2.0) * SIZE_ERROR * random.normal())
+        faster = math.exp(0.5 * SIZE_ERROR * random.normal())
+        alphas = (sides[0].slenderness_angle * wider - tilt, sides[1].slenderness_angle * wider + tilt)
+        p_real = (sides[0].frequency_parameter * faster, sides[1].frequency_parameter * faster)
+        if (made := _times(random, truth, peak, alphas, p_real, most)) is not None:
             return truth | {"tilt": tilt, "alphas": alphas, "p_real": p_real, "times": made[0], "speeds": made[1]}
 
 
+def _body(alpha: float, p: float, aside: float) -> rk.Block:
+    """Block by slenderness angle and frequency parameter; the centre of mass is aside by a fraction of half a width."""
+    radius = 3.0 * 9.80665 / (4.0 * p**2)
+    width, height = 2.0 * radius * math.sin(alpha), 2.0 * radius * math.cos(alpha)
+    return rk.Block(width=width, height=height, centre=(0.5 * width * (1.0 + aside), 0.5 * height) if aside else None)
+
+
 def _times(
-    random: np.random.Generator, truth: dict[str, Any], peak: float, alpha: tuple[float, float], p: float
+    random: np.random.Generator,
+    truth: dict[str, Any],
+    peak: float,
+    alpha: tuple[float, float],
+    p: tuple[float, float],
+    most: int = MOST,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     y = math.sqrt(1.0 - (math.sin(0.5 * alpha[0] * (1.0 - peak)) / math.sin(0.5 * alpha[0])) ** 2)
-    turning, side, times, speeds = y * 2.0 * math.sin(0.5 * alpha[0]), 0, [0.0], []
-    while len(times) < MOST:
-        y = turning / (2.0 * math.sin(0.5 * alpha[side]))
+    turning, side, times, speeds = y * p[0] * 2.0 * math.sin(0.5 * alpha[0]), 0, [0.0], []
+    while len(times) < most:
+        y = turning / (p[side] * 2.0 * math.sin(0.5 * alpha[side]))
         if y >= 1.0:
             return None  # it would overturn
-        taken = float(duration(np.array(y), np.array(alpha[side]))) / p
+        taken = float(duration(np.array(y), np.array(alpha[side]))) / p[side]
         if taken < SHORTEST:
             break
         times.append(times[-1] + taken)
@@ -76,7 +103,7 @@ def turned(random: np.random.Generator, truth: dict[str, Any]) -> RotationSeries
     time = np.arange(0.002, edges[-1] - 0.002, 0.005)
     k = np.searchsorted(edges, time, side="right") - 1
     alpha, side = np.array(truth["alphas"])[k % 2], 1.0 - 2.0 * (k % 2)
-    y, p = truth["speeds"][k], truth["p_real"]
+    y, p = truth["speeds"][k], np.array(truth["p_real"])[k % 2]
     turning = side * p * rotation(p * (time - edges[k]), y, alpha)[1]
     most = float(np.abs(turning).max())
     line = random.uniform(-0.05, 0.05, 2) * most
@@ -88,24 +115,30 @@ def identified(number: int) -> dict[str, Any]:
     """Return whether intervals of one hold the truth, what it took, and what a constant coefficient says."""
     random = np.random.default_rng([18, number])
     truth = rocked(random)
-    drifts = number % 10 == 9
-    radius = 3.0 * 9.80665 / (4.0 * truth["p"] ** 2)
-    body = rk.Block(width=2.0 * radius * math.sin(truth["alpha"]), height=2.0 * radius * math.cos(truth["alpha"]))
+    return _judged(random, truth, drifts=number % 10 == 9) | {"constant": constant_holds(number, truth)}
+
+
+def scattered(number: int) -> dict[str, Any]:
+    """Return the same of one whose scatter is one of `SCATTERS`, and whose kind is one of `KINDS`."""
+    random = np.random.default_rng([40, number])
+    scatter, kind = SCATTERS[number % len(SCATTERS)], KINDS[number // len(SCATTERS) % len(KINDS)]
+    truth = rocked(random, scatter, kind)
+    drifts = number // (len(SCATTERS) * len(KINDS)) % 10 == 9
+    return _judged(random, truth, drifts=drifts) | {"true_scatter": scatter, "kind": kind}
+
+
+def _judged(random: np.random.Generator, truth: dict[str, Any], *, drifts: bool) -> dict[str, Any]:
+    """Return whether intervals hold the truth, and the error of the mean over its standard deviation."""
     began = time.process_time()
     measured = turned(random, truth) if drifts else ImpactTimes(listened(random, truth["times"]))
-    found = identify(measured, body, size_error=SIZE_ERROR, tilt=TILT, asymmetry=2.0 * HALF)
-    taken = time.process_time() - began
-    row = {
-        "drifts": drifts,
-        "seconds": taken,
-        "refused": bool(found.refused),
-        "constant": constant_holds(number, truth),
-    }
+    found = identify(measured, truth["body"], size_error=SIZE_ERROR, tilt=TILT, asymmetry=2.0 * HALF)
+    row = {"drifts": drifts, "seconds": time.process_time() - began, "refused": bool(found.refused)}
     if found.refused:
         return row
     row["mean"] = found.mean.low <= truth["r"] <= found.mean.high
     row["scatter"] = found.scatter.low <= truth["scatter"] <= found.scatter.high
-    return row | {"width": found.mean.high - found.mean.low}
+    width = found.mean.high - found.mean.low
+    return row | {"width": width, "deviations": 3.92 * (found.mean.value - truth["r"]) / width}
 
 
 def constant_holds(number: int, truth: dict[str, Any]) -> bool:
@@ -117,9 +150,10 @@ def constant_holds(number: int, truth: dict[str, Any]) -> bool:
     """
     random, made = np.random.default_rng([19, number]), None
     while made is None:
-        made = _times(random, truth | {"half": 0.0}, random.uniform(0.3, 0.9), (truth["alpha"],) * 2, truth["p"])
-    intervals, p = np.diff(made[0]), truth["p"]
-    alpha = np.full(intervals.size, truth["alpha"])
+        alpha, p = truth["body"].slenderness_angle, truth["body"].frequency_parameter
+        made = _times(random, truth | {"half": 0.0}, random.uniform(0.3, 0.9), (alpha, alpha), (p, p))
+    intervals = np.diff(made[0])
+    alpha = np.full(intervals.size, alpha)
     ln_y = np.log(speed(p * intervals, alpha))
     by_time = p / np.sinh(p * intervals)  # of ln y
     spread = np.sqrt(2.0) * 1e-4 * by_time
@@ -144,12 +178,37 @@ def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
     }  # fmt: skip
 
 
-def main(cases: int = 10000) -> None:
+def coverage_by_scatter(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return shares of intervals that hold the truth for each scatter and kind, each with its binomial interval."""
+    from scipy.stats import binomtest
+
+    found = []
+    for kind, scatter in product(KINDS, SCATTERS):
+        own = [row for row in rows if (row["kind"], row["true_scatter"]) == (kind, scatter)]
+        kept = [row for row in own if not row["refused"]]
+        each: dict[str, Any] = {"kind": kind, "scatter": scatter, "cases": len(kept), "refused": len(own) - len(kept)}
+        for name in ("mean", "scatter"):
+            test = binomtest(sum(row[name] for row in kept), max(len(kept), 1)).proportion_ci(method="wilson")
+            each[f"{name}_held"] = float(np.mean([row[name] for row in kept])), float(test.low), float(test.high)
+        each["deviations"] = float(np.sqrt(np.mean([min(row["deviations"] ** 2, 25.0) for row in kept])))
+        each["width"] = float(np.median([row["width"] for row in kept]))
+        found.append(each)
+    return found
+
+
+def main(cases: int = 10000, of_scatters: int = 6000) -> None:
     """Print the coverage."""
     rooms = ("identification",)
     rows = list(resumed(ROOT / "build" / "identification.jsonl", cases, identified, __file__, rooms))
     for name, value in coverage(rows).items():
         print(f"| {name} | {value:.4f} |")
+    rows = list(resumed(ROOT / "build" / "identification_scatters.jsonl", of_scatters, scattered, __file__, rooms))
+    for each in coverage_by_scatter(rows):
+        held = [" to ".join(f"{value:.3f}" for value in each[f"{name}_held"][1:]) for name in ("mean", "scatter")]
+        print(
+            f"| {each['kind']} | {each['scatter']} | {each['cases']} | {each['mean_held'][0]:.3f} ({held[0]}) | "
+            f"{each['scatter_held'][0]:.3f} ({held[1]}) | {each['deviations']:.2f} | {each['width']:.2g} |"
+        )
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from rocking.identification.association import fit_times
 from rocking.identification.design import Design, designs
 from rocking.identification.forced import identify_forced
 from rocking.identification.measurement import ImpactTimes, RotationSeries
-from rocking.identification.posterior import LEVEL, Knowledge, Posterior
+from rocking.identification.posterior import LEVEL, Knowledge, Posterior, interval_of_nodes
 from rocking.identification.results import (
     Identification,
     Impact,
@@ -165,8 +165,8 @@ def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identificat
     none = IntervalEstimate(math.nan, math.nan, math.nan)
     sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, none)
     return Identification(
-        measurement.source, (why,), measurement.doubts, none, sides, none, none, none, None, None, (), np.zeros(0),
-        none, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
+        measurement.source, (why,), measurement.doubts, none, sides, none, math.nan, none, none, None, None, (),
+        np.zeros(0), none, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
     )  # fmt: skip
 
 
@@ -210,7 +210,8 @@ def _result(
         )
     return Identification(
         source=measurement.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scattered, frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), frequency),
+        scatter=scattered, no_scatter=found.no_scatter,
+        frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), frequency),
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None,
         damping=estimated(found.shared((DAMPING, 1.0))) if known.damping else None,
@@ -244,12 +245,7 @@ def _impacts(found: Posterior, first: Foot) -> tuple[Impact, ...]:
 
 def _of_grid(found: Posterior, values: FloatArray) -> IntervalEstimate:
     """IntervalEstimate of the scatter or the noise, which the grid holds."""
-    levels = np.unique(values)
-    mass = np.array([found.weights[values == level].sum() for level in levels])
-    if levels.size == 1:
-        return IntervalEstimate(*[float(levels[0])] * 3)
-    middle = np.cumsum(mass) - 0.5 * mass
-    return IntervalEstimate(*(float(np.exp(np.interp(level, middle, np.log(levels)))) for level in (0.5, 0.025, 0.975)))
+    return IntervalEstimate(*interval_of_nodes(values, found.weights))
 
 
 def _steadiness(found: Posterior) -> float:

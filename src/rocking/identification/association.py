@@ -4,7 +4,7 @@ Hypotheses are followed from time to time by an extended Kalman filter, the best
 closed form is close enough here.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.identification import state_space
 from rocking.identification.measurement import ImpactTimes
-from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
+from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior, rescaled
 from rocking.identification.state_space import MEAN, SHARED, SPEED, Clicks, Model
 
 KEPT: Final = 300
@@ -57,9 +57,9 @@ class _Beam:
 
 
 def associate(
-    times: FloatArray, sure: FloatArray, noise: float, ln_p: tuple[float, float], alternation: float
+    times: FloatArray, sure: FloatArray, noise: float, ln_p: tuple[float, float], alternation: tuple[float, float]
 ) -> Track | None:
-    """Return the likeliest track, or None; sure: probability of each to be an impact; ln_p: mean and deviation."""
+    """Return the likeliest track, or None; sure: probability of each to be an impact; means and deviations."""
     generic = np.log(_FALSE_SHARE * times.size / (times[-1] - times[0]))
     gain = np.log(sure) - np.log1p(-np.minimum(sure, 0.98)) - np.log(0.98 / 0.02)  # nothing where all are sure
     following = np.searchsorted(times, times + _BOUNCE, side="right") - np.arange(1, times.size + 1)
@@ -104,7 +104,7 @@ def associate(
     return Track(clicks, best.of_click[0][clicks], best_score, int(best.bounces[0]), int(clicks[-1] - clicks[0] + 1))
 
 
-def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alternation: float) -> _Beam:
+def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alternation: tuple[float, float]) -> _Beam:
     """Every pair of early times as the first two impacts."""
     pairs = [(i, j) for i in range(_FIRST) for j in range(i + 1, i + _SECOND) if j < times.size]
     first, second = np.array(pairs + pairs).T
@@ -113,15 +113,18 @@ def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alterna
     y = np.tanh(half)
     slope = np.where(half > 1e-6, half * (1.0 - y * y) / y, 1.0)  # of ln y over ln(p T)
     count, mean = silent.size, np.zeros((silent.size, 5))
-    mean[:, 0], mean[:, 1], mean[:, 2], mean[:, 4] = times[second], np.log(y) - 0.1, -0.1, ln_p[0]
+    sign = np.where(silent, 1.0, -1.0)
+    mean[:, 0], mean[:, 1], mean[:, 4] = times[second], np.log(y) - 0.1 + sign * alternation[0], ln_p[0]
+    mean[:, 2], mean[:, 3] = -0.1, alternation[0]
     covariance = np.zeros((count, 5, 5))
     by_time = slope / (times[second] - times[first])
     covariance[:, 0, 0] = noise**2
     covariance[:, 0, 1] = covariance[:, 1, 0] = by_time * noise**2
-    covariance[:, 2, 2], covariance[:, 3, 3], covariance[:, 4, 4] = 0.1**2, alternation**2, ln_p[1] ** 2
-    covariance[:, 1, 1] = 2.0 * (by_time * noise) ** 2 + 0.1**2 + alternation**2 + _SCATTER**2 + (slope * ln_p[1]) ** 2
+    covariance[:, 2, 2], covariance[:, 3, 3], covariance[:, 4, 4] = 0.1**2, alternation[1] ** 2, ln_p[1] ** 2
+    known = 0.1**2 + alternation[1] ** 2 + _SCATTER**2 + (slope * ln_p[1]) ** 2
+    covariance[:, 1, 1] = 2.0 * (by_time * noise) ** 2 + known
     covariance[:, 1, 2] = covariance[:, 2, 1] = 0.1**2
-    covariance[:, 1, 3] = covariance[:, 3, 1] = np.where(silent, 1.0, -1.0) * alternation**2
+    covariance[:, 1, 3] = covariance[:, 3, 1] = sign * alternation[1] ** 2
     covariance[:, 1, 4] = covariance[:, 4, 1] = slope * ln_p[1] ** 2
     of_click = np.full((count, times.size), -1)
     of_click[np.arange(count), first], of_click[np.arange(count), second] = 0, 1 + silent
@@ -163,6 +166,9 @@ UNKNOWN_NOISE = Noise(3e-4, 1.2)
 """Of times whose reader does not say how sure they are [s]."""
 
 _USUAL = 0.9
+_FEWEST, _STRANGE = 5, 2.2  # times that are left; standard deviations from what the others foretell
+_NO_IMPACT = float(np.log((1.0 - _HEARD) * _BOUNCES / _HEARD))
+"""Ln of how much likelier it is a priori, for each second, that an impact was missed and a bounce heard."""
 
 
 def fit_times(measurement: ImpactTimes, known: Knowledge) -> tuple[Track, Posterior] | None:
@@ -178,12 +184,29 @@ def fit_times(measurement: ImpactTimes, known: Knowledge) -> tuple[Track, Poster
     if not tracks:
         return None
     track, frequency = max(tracks, key=lambda pair: pair[0].score)
-    times = measurement.times[track.clicks]
-    first = int(track.impacts[0])
-    observer = Clicks(times, track.impacts - first)
+    found, observer = _fitted(track, measurement.times, known, noise, frequency)
+    while found.no_scatter < 0.5 and track.clicks.size > _FEWEST:
+        # r seems to scatter: perhaps only since a bounce was taken for an impact that was missed
+        strangeness = np.abs(found.strangeness(observer))[1:]  # the first time says on which foot the body stands
+        if strangeness.max() < _STRANGE:
+            break
+        strangest = int(np.argmax(strangeness)) + 1
+        fewer = replace(track, clicks=np.delete(track.clicks, strangest), impacts=np.delete(track.impacts, strangest))
+        other, seen = _fitted(fewer, measurement.times, known, noise, frequency)
+        if other.evidence + _NO_IMPACT <= found.evidence:  # Eq. 326
+            break
+        track, found, observer = fewer, other, seen
+    return track, found
+
+
+def _fitted(
+    track: Track, all_times: FloatArray, known: Knowledge, noise: Noise, frequency: tuple[float, float]
+) -> tuple[Posterior, Clicks]:
+    times = all_times[track.clicks]
+    observer = Clicks(times, track.impacts - track.impacts[0])
     speeds = speeds_between(times, observer.impacts, known, frequency[0])
     model = known.model(known.sides(speeds.size), float(times[0]), speeds, frequency)
-    return track, posterior(model, observer, None, noise, lambda s: start(model, speeds, s))
+    return posterior(model, observer, None, noise, lambda s: start(model, speeds, s)), observer
 
 
 def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p: float) -> FloatArray:
@@ -204,10 +227,10 @@ def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p:
 
 def start(model: Model, speeds: FloatArray, scatters: FloatArray) -> FloatArray:
     """Return unknowns that lead to such speeds, for each scatter."""
-    u = np.zeros((scatters.size, model.size))
+    u = np.zeros(model.size)
     changes = np.diff(speeds)
     mean = float(np.median(changes)) if changes.size else float(model.mean[MEAN])
-    u[:, SPEED] = (speeds[0] - model.mean[SPEED]) / model.deviation[SPEED]
-    u[:, MEAN] = (mean - model.mean[MEAN]) / model.deviation[MEAN]
-    u[:, len(SHARED) :] = (changes - mean) / np.maximum(scatters, 1e-9)[:, None]
-    return u
+    u[SPEED] = (speeds[0] - model.mean[SPEED]) / model.deviation[SPEED]
+    u[MEAN] = (mean - model.mean[MEAN]) / model.deviation[MEAN]
+    u[len(SHARED) :] = changes - mean
+    return rescaled(u, 1.0, scatters)

@@ -162,7 +162,7 @@ def answer(
     one = float(noise[0])
     return Identification(
         source=series.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scatter,
+        scatter=scatter, no_scatter=found.no_scatter,
         frequency_parameter=estimated(found.shared((WIDTH, -half), (HEIGHT, half - 0.5)), p),
         tilt=estimated(found.shared((TILT, 1.0))),
         trend=estimated(found.shared((TREND, 1.0))) if known.trend else None, damping=None,

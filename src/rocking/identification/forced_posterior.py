@@ -6,8 +6,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.identification.forced_model import SAME_TIME, SIZE, Fit, Forced
-from rocking.identification.posterior import SCATTERS, Mixture, ln_scatter_density
-from rocking.identification.results import LEVELS, IntervalEstimate
+from rocking.identification.posterior import SCATTERS, Mixture, interval_of_nodes, scatter_nodes
+from rocking.identification.results import IntervalEstimate
 
 _GRID = 61
 
@@ -18,7 +18,7 @@ class ForcedPosterior:
     def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
         self.problem, self.fit, self.noise = problem, fit, noise
         self.free = np.isfinite(problem.precision)
-        self.scatter = np.geomspace(*SCATTERS, _GRID)
+        self.scatter, prior = scatter_nodes(np.log(SCATTERS), _GRID)
         drawn, by = fit.terms.draws
         precision = np.where(self.free, problem.precision, 0.0)
         away = np.where(self.free, fit.x - np.concatenate([problem.mean, np.zeros(fit.x.size - SIZE)]), 0.0)
@@ -32,7 +32,7 @@ class ForcedPosterior:
         missed = turn @ drawn - size * (self._modes.T @ self._pull)
         total = self.scatter[:, None] ** 2 + size**2
         self._held, self._steps = size**2 / total, size * missed / total
-        ln = ln_scatter_density(self.scatter) - 0.5 * (missed**2 / total + np.log(total)).sum(axis=1)  # Eq. 284
+        ln = prior - 0.5 * (missed**2 / total + np.log(total)).sum(axis=1)  # Eq. 284
         weights = np.exp(ln - ln.max())
         self.weights = weights / weights.sum()
         rest = fit.terms.value(noise, 1.0, SAME_TIME) - float(drawn @ drawn) + float(precision @ away**2)
@@ -63,8 +63,11 @@ class ForcedPosterior:
         return float(np.linalg.norm(np.linalg.qr(others)[0].T @ one)) if others.size else 0.0
 
     @property
+    def no_scatter(self) -> float:
+        """Probability that ln r does not scatter [-]."""
+        return float(self.weights[self.scatter == 0.0].sum())
+
+    @property
     def likely_scatter(self) -> IntervalEstimate:
         """The scatter."""
-        middle = np.cumsum(self.weights) - 0.5 * self.weights
-        ln = np.log(self.scatter)
-        return IntervalEstimate(*(float(np.exp(np.interp(q, middle, ln))) for q in LEVELS))
+        return IntervalEstimate(*interval_of_nodes(self.scatter, self.weights))

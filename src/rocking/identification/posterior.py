@@ -15,13 +15,19 @@ from rocking.errors import InvalidValueError
 from rocking.identification import state_space
 from rocking.identification.state_space import SHARED, Laplace, Model, Observer, laplace
 
-SCATTERS: Final = (1e-5, 0.3)
-"""From least to largest standard deviation of ln r at an impact [-]."""
+SCATTERS: Final = (1e-4, 0.3)
+"""Smallest and largest standard deviation of ln r at an impact, where ln r scatters at all [-]."""
+
+NO_SCATTER: Final = 0.5
+"""Prior probability that ln r does not scatter [-]."""
 
 _SMALL_SCATTER = 0.02
 """Below it the prior is flat in the scatter, above in its logarithm: impacts usually scatter by 1 to 3 % [-]."""
 
 _COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
+
+Nodes = tuple[FloatArray, FloatArray]
+"""Values of a scatter or a noise, and the logarithms of their prior probabilities."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,19 @@ class Posterior:
         across, among = self.covariance[:, which, by], self.covariance[:, by][:, :, by]
         part = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
         return float(self.model.deviation[which] * np.sqrt(self.weights @ part))
+
+    def strangeness(self, observer: Observer) -> FloatArray:
+        """Return how far each measured value is from what all others foretell, over its standard deviation [-]."""
+        best = [int(np.argmax(self.weights))]
+        residual, slopes = observer.residuals(self.model.path(self.u[best], self.scatter[best]))
+        noise, slopes = float(self.noise[best[0]]), slopes[0]
+        known = np.einsum("mi,ij,mj->m", slopes, self.covariance[best[0]], slopes) / noise**2
+        return np.asarray(residual[0] / (noise * np.sqrt(np.maximum(1.0 - known, 1e-9))))  # Eq. 325
+
+    @property
+    def no_scatter(self) -> float:
+        """Probability that ln r does not scatter [-]."""
+        return float(self.weights[self.scatter == 0.0].sum())
 
     def average(self, values: FloatArray) -> FloatArray:
         """Return the mean over the grid."""
@@ -108,77 +127,99 @@ def posterior(
     model: Model, observer: Observer, scatter: float | None, noise: Noise, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
     """Return the posterior; scatter: of ln r if it is known; start: unknowns to begin with, for scatters."""
-    ranges: list[FloatArray | None] = [np.log(SCATTERS) if scatter is None else None, None]
-    if noise.dispersion > 0.0:
-        ranges[1] = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
-    known = (scatter or 0.0, noise.median)
-    coarse = _on_grid(model, observer, noise, _grid(ranges, known, _COARSE), start)
-    if all(each is None for each in ranges):
+    scatters = _first_nodes(_COARSE[0]) if scatter is None else (np.array([scatter]), np.zeros(1))
+    around = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
+    coarse = _on_grid(model, observer, scatters, _noise_nodes(noise, around, _COARSE[1]), start)
+    if scatter is not None and noise.dispersion == 0.0:
         return coarse
-    fine = [_narrowed(r, v, coarse.weights) for r, v in zip(ranges, (coarse.scatter, coarse.noise), strict=True)]
     best = int(np.argmax(coarse.weights))
-    from_best = coarse.u[best, len(SHARED) :] * coarse.scatter[best]
 
     def near(scatters: FloatArray) -> FloatArray:
-        u = np.repeat(coarse.u[best : best + 1], scatters.size, axis=0)
-        # the same impacts, in units of another scatter
-        u[:, len(SHARED) :] = from_best / np.maximum(scatters, 1e-300)[:, None]
-        return u
+        return rescaled(coarse.u[best], float(coarse.scatter[best]), scatters)
 
-    return _on_grid(model, observer, noise, _grid(fine, known, _FINE), near)
+    if scatter is None:
+        scatters = scatter_nodes(_narrowed(np.log(SCATTERS), coarse.scatter, coarse.weights), _FINE[0])
+    if noise.dispersion > 0.0:
+        around = _narrowed(around, coarse.noise, coarse.weights)
+    return _on_grid(model, observer, scatters, _noise_nodes(noise, around, _FINE[1]), near)
 
 
-def ln_scatter_density(scatters: FloatArray) -> FloatArray:
+def rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
+    """Return unknowns with the same impacts in units of other scatters; without scatter there are no draws."""
+    found = np.repeat(u[None, :], scatters.size, axis=0)
+    found[:, len(SHARED) :] *= np.divide(at, scatters, out=np.zeros_like(scatters), where=scatters > 0.0)[:, None]
+    return found
+
+
+def scatter_nodes(ends: FloatArray, count: int) -> Nodes:
+    """Return no scatter, and scatters between two of which ends are the logarithms, with their prior probabilities."""
+    values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
+    ln = np.log1p(-NO_SCATTER) + _ln_scatter_density(values) + np.log(step)  # Eq. 324
+    return np.concatenate([[0.0], values]), np.concatenate([[np.log(NO_SCATTER)], ln])
+
+
+def _first_nodes(count: int) -> Nodes:
+    """Return scatters to begin with: the smallest stands for no scatter, to which no start of a search is near."""
+    values, ln = scatter_nodes(np.log(SCATTERS), count)
+    return values[1:], np.concatenate([[np.logaddexp(ln[0], ln[1])], ln[2:]])
+
+
+def _ln_scatter_density(scatters: FloatArray) -> FloatArray:
     """Return ln of the density of ln of a scatter: flat in the scatter where that is small, in its logarithm else."""
     low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
     return np.asarray(np.log(scatters / (scatters + _SMALL_SCATTER) / (high - low)))  # Eq. 273
 
 
-def _grid(
-    ranges: list[FloatArray | None], known: tuple[float, float], sizes: tuple[int, int]
-) -> tuple[FloatArray, FloatArray, float]:
-    """Scatters, noises, and ln of the area of a cell in their logarithms."""
-    axes = [
-        np.array([v]) if r is None else np.exp(np.linspace(r[0], r[1], n))
-        for r, v, n in zip(ranges, known, sizes, strict=True)
-    ]
-    cell = sum(np.log((r[1] - r[0]) / (n - 1)) for r, n in zip(ranges, sizes, strict=True) if r is not None)
-    first, second = (each.ravel() for each in np.meshgrid(*axes, indexing="ij"))
-    return first, second, float(cell)
+def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
+    """Return noises between two of which ends are the logarithms, with their prior probabilities."""
+    if noise.dispersion == 0.0:
+        return np.array([noise.median]), np.zeros(1)
+    values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
+    z = np.log(values / noise.median) / noise.dispersion
+    return values, -0.5 * z * z + np.log(step / (noise.dispersion * np.sqrt(2.0 * np.pi)))
 
 
-def _narrowed(ends: FloatArray | None, values: FloatArray, weights: FloatArray) -> FloatArray | None:
-    if ends is None:
-        return None
-    levels = np.unique(values)
+def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
+    """Return median, 2.5 and 97.5 % of a scatter or a noise with weights on a grid.
+
+    Median and lower end are zero as far as zero has a probability. The upper end is that of the values above zero: it
+    bounds a scatter that is not found.
+    """
+    nodes = np.unique(values)
+    mass = np.array([weights[values == node].sum() for node in nodes])
+    none, above = float(mass[nodes == 0.0].sum()), nodes > 0.0
+    nodes, mass = nodes[above], mass[above]
+    if nodes.size < 2 or mass.sum() == 0.0:
+        return (float(nodes[0]),) * 3 if nodes.size else (0.0, 0.0, 0.0)
+    middle = np.cumsum(mass) - 0.5 * mass
+    levels = [0.5 - none, 0.025 - none, 0.975 * mass.sum()]
+    found = np.exp(np.interp(levels, middle, np.log(nodes))).tolist()
+    return 0.0 if none >= 0.5 else found[0], 0.0 if none >= 0.025 else found[1], found[2]
+
+
+def _narrowed(ends: FloatArray, values: FloatArray, weights: FloatArray) -> FloatArray:
+    """Return the ends, as logarithms, between which nodes above zero weigh something."""
+    levels = np.unique(values[values > 0.0])
     mass = np.array([weights[values == level].sum() for level in levels])
-    kept = np.flatnonzero(mass > _NEGLIGIBLE * mass.max())
+    kept = np.flatnonzero(mass >= _NEGLIGIBLE * mass.max())
     step = np.diff(np.log(levels)).mean()
     low, high = np.log(levels[kept[0]]) - 0.5 * step, np.log(levels[kept[-1]]) + 0.5 * step
     return np.array([max(low, ends[0]), min(high, ends[1])])
 
 
 def _on_grid(
-    model: Model,
-    observer: Observer,
-    noise: Noise,
-    grid: tuple[FloatArray, FloatArray, float],
-    start: Callable[[FloatArray], FloatArray],
+    model: Model, observer: Observer, scatter: Nodes, noise: Nodes, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
-    scatters, noises, cell = grid
+    scatters, noises = (each.ravel() for each in np.meshgrid(scatter[0], noise[0], indexing="ij"))
     found: Laplace = laplace(model, observer, scatters, noises, start(scatters))
-    ln = np.where(np.isfinite(found.evidence), found.evidence, -np.inf)
-    if noise.dispersion > 0.0:
-        z = np.log(noises / noise.median) / noise.dispersion
-        ln = ln - 0.5 * z * z - np.log(noise.dispersion * np.sqrt(2.0 * np.pi))
-    if np.ptp(scatters) > 0.0:
-        ln = ln + ln_scatter_density(scatters)
+    prior = np.add.outer(scatter[1], noise[1]).ravel()
+    ln = np.where(np.isfinite(found.evidence), found.evidence + prior, -np.inf)
     top = ln.max()
     weights = np.exp(ln - top)
     total = weights.sum()
     return Posterior(
         model, weights / total, scatters, noises, found.u, found.covariance, found.residuals,
-        float(top + np.log(total) + cell), bool(found.converged[weights > 0.05].all()),
+        float(top + np.log(total)), bool(found.converged[weights > 0.05].all()),
     )  # fmt: skip
 
 
@@ -230,8 +271,7 @@ class Knowledge:
         """Means and standard deviations of ln p from which to begin."""
         if self.body is None:
             return tuple((math.log(p), _UNKNOWN[0]) for p in UNKNOWN_FREQUENCIES)
-        p = [self.body.side(foot).frequency_parameter for foot in ("right", "left")]
-        return ((0.5 * math.log(p[0] * p[1]), 0.5 * self.size_error),)
+        return ((0.5 * math.log(self._p[0] * self._p[1]), 0.5 * self.size_error),)
 
     @property
     def slenderness_angles(self) -> tuple[float, float]:
@@ -241,11 +281,21 @@ class Knowledge:
         return self.body.side("right").slenderness_angle, self.body.side("left").slenderness_angle
 
     @property
-    def alternation(self) -> float:
-        """How much ln y may differ from impact to impact because the sides do, as a standard deviation."""
+    def alternation(self) -> tuple[float, float]:
+        """By how much ln y changes onto the first side because the sides differ, and its standard deviation."""
         right, left = self.slenderness_angles
         floor = math.hypot(self.tilt, self.tilt_error) / min(right, left)
-        return max(math.hypot(0.5 * self.asymmetry, floor, math.log(right / left)), 0.01)
+        # of bodies that are not symmetric, the change of the overturning speed from the second side to the first
+        speeds = [math.log(p * 2.0 * math.sin(0.5 * alpha)) for p, alpha in zip(self._p, (right, left), strict=True)]
+        change = speeds[1] - speeds[0]
+        return change if self.first == "right" else -change, max(math.hypot(0.5 * self.asymmetry, floor), 0.01)
+
+    @property
+    def _p(self) -> tuple[float, float]:
+        """Frequency parameters over the right and the left foot, or any of a body of which nothing is known [rad/s]."""
+        if self.body is None:
+            return 1.0, 1.0
+        return self.body.side("right").frequency_parameter, self.body.side("left").frequency_parameter
 
     def sides(self, count: int) -> IntArray:
         """Return on which side the body stands in each half cycle: 0 right, 1 left."""
@@ -260,7 +310,7 @@ class Knowledge:
             slender = _UNKNOWN[2]
             frequency = (frequency[0], 3.0 * _UNKNOWN[0])
         else:
-            p = np.array([self.body.side(foot).frequency_parameter for foot in ("right", "left")])
+            p = np.array(self._p)
         mean[state_space.START], deviation[state_space.START] = start, 1.0
         mean[state_space.SPEED], deviation[state_space.SPEED] = speeds[0], 2.0
         mean[state_space.MEAN], deviation[state_space.MEAN] = -0.1, 0.2

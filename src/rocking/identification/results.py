@@ -146,7 +146,10 @@ class Identification(Exported):
     coefficients : dict of str to IntervalEstimate
         Mean coefficient by the foot on which the body lands [-].
     scatter : IntervalEstimate
-        Standard deviation of ln r from impact to impact [-].
+        Standard deviation of ln r from impact to impact. Value and lower end are 0 where the measurement agrees with a
+        coefficient that does not scatter; the upper end is that of one that does [-].
+    no_scatter : float
+        Probability that the coefficient does not scatter; 0.5 before the measurement [-].
     frequency_parameter : IntervalEstimate
         p, the mean of both sides [rad/s].
     tilt : IntervalEstimate
@@ -193,6 +196,7 @@ class Identification(Exported):
     mean: IntervalEstimate
     coefficients: dict[Foot, IntervalEstimate]
     scatter: IntervalEstimate
+    no_scatter: float
     frequency_parameter: IntervalEstimate
     tilt: IntervalEstimate
     trend: IntervalEstimate | None
@@ -221,8 +225,15 @@ class Identification(Exported):
             return f"No coefficient of restitution: {'; '.join(self.refused)}."
         return (
             f"The coefficient of restitution is {self.mean}, from {len(self.impacts)} impacts; "
-            f"from impact to impact it scatters by {100.0 * self.scatter.value:.2g} %."
+            f"from impact to impact it {self.scatters}."
         )
+
+    @property
+    def scatters(self) -> str:
+        """By how much the coefficient scatters, in words: a bound where no scatter is likelier than some."""
+        if self.scatter.value == 0.0:
+            return f"scatters by less than {100.0 * self.scatter.high:.2g} %"
+        return f"scatters by {100.0 * self.scatter.value:.2g} %"
 
     def __str__(self) -> str:
         """Return the verdict, both sides and the doubts."""

@@ -11,8 +11,8 @@ from rocking.conventions import FloatArray, Foot, IntArray
 from rocking.identification import state_space
 from rocking.identification.association import speeds_between, start
 from rocking.identification.measurement import RotationSeries, white_noise
-from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior
-from rocking.identification.state_space import SHARED, Path
+from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior, rescaled
+from rocking.identification.state_space import Path
 
 _STEP = 1e-7  # of ln of the speed
 _MOST, _LOOKED_AT = 3000, 20_000
@@ -108,7 +108,7 @@ def fit_series(series: RotationSeries, known: Knowledge) -> tuple[Posterior, tup
     for _ in range(_ROUNDS):
         used = tuple(_away(row, impacts, float(s / spread[0])) for row, s in zip(rows, spread, strict=True))
         found = posterior(model, SampledSeries(used, model.sides), _SCATTER, Noise(float(spread[0])), begin)
-        begin = partial(_rescaled, found.u[0], _SCATTER)
+        begin = partial(rescaled, found.u[0], _SCATTER)
         impacts = model.path(found.u, found.scatter).times[0]
         parts = np.split(found.residuals[0], np.cumsum([row.values.size for row in used])[:-1])
         each = [correlation(part) for part in parts]
@@ -188,13 +188,6 @@ def _misfit(frequency: tuple[float, float], crossings: FloatArray, known: Knowle
     path = model.path(start(model, speeds, np.array([_SCATTER])), np.array([_SCATTER]))
     residual = SampledSeries(rows, model.sides).residuals(path)[0]
     return float((residual**2).sum())
-
-
-def _rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
-    """Return the same impacts, in units of other scatters."""
-    found = np.repeat(u[None, :], scatters.size, axis=0)
-    found[:, len(SHARED) :] *= (at / np.maximum(scatters, 1e-300))[:, None]
-    return found
 
 
 def correlation(residual: FloatArray) -> float:

@@ -264,33 +264,19 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
     u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
     damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
-    eye = np.eye(model.size)
-    parts = [slice(k, k + _PART) for k in range(0, best[1].shape[1], _PART)]
     for taken in range(_STEPS):
         if taken == _PATIENCE:  # what is far behind by then weighs nothing
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
-        value, residual, slopes, times, time_slopes = (each[active] for each in best)
-        turned = slopes.transpose(0, 2, 1)
-        hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
-        gradient = turned @ residual[..., None] - u[active, :, None]
-        scale = damping[active, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
-        step = np.linalg.solve(hessian + scale, gradient)
-        tries = [u[active] + step[..., 0]]
-        if scatter.any():
-            # times are known far better than speeds: what changes along the step is either linear in u or in them
-            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-                goal = times + (time_slopes @ step)[..., 0]
-                tries.append(model.reached(tries[0], scatter[active], goal))
-        tried, n = np.concatenate(tries), len(tries)
-        found = _objective(model, observer, np.tile(scatter[active], n), np.tile(noise[active], n), tried)
-        pick = np.arange(active.size) + active.size * found[0].reshape(n, -1).argmin(axis=0)
-        better = found[0][pick] <= value
-        for kept, new in zip(best, found, strict=True):
-            kept[active[better]] = new[pick[better]]
-        u[active[better]] = tried[pick[better]]
+        kept = (u[active], *(each[active] for each in best))
+        tried, found = _stepped(model, observer, scatter[active], noise[active], kept, damping[active])
+        value = best[0][active]
+        better = found[0] <= value
+        for old, new in zip(best, found, strict=True):
+            old[active[better]] = new[better]
+        u[active[better]] = tried[better]
         # a damped step hardly moves what the prior alone determines
-        done = (np.abs(value - found[0][pick]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
+        done = (np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
         eased = np.where(damping[active] > 0.1, 0.1 * damping[active], 0.0)
         damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 0.1))
         converged[active[done]] = True
@@ -299,11 +285,47 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
             break
     value, residual, slopes, *_ = best
     # of the matrix whose square the Hessian is: what the prior alone determines keeps its digits
-    root = np.linalg.qr(np.concatenate([slopes, np.broadcast_to(eye, (len(u), *eye.shape))], axis=1), mode="r")
+    eye = np.broadcast_to(np.eye(model.size), (len(u), model.size, model.size))
+    root = np.linalg.qr(np.concatenate([slopes, eye], axis=1), mode="r")
     half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
     evidence = -0.5 * value - half - observer.count * (np.log(noise) + 0.5 * np.log(2.0 * np.pi))  # Eq. 272
     inverse = np.linalg.inv(root)
     return Laplace(u, inverse @ inverse.transpose(0, 2, 1), evidence, residual * noise[:, None], converged)
+
+
+def _stepped(
+    model: Model,
+    observer: Observer,
+    scatter: FloatArray,
+    noise: FloatArray,
+    kept: tuple[FloatArray, ...],
+    damping: FloatArray,
+) -> tuple[FloatArray, tuple[FloatArray, ...]]:
+    """Return the better of a straight and a bent step for each node, and the objective there."""
+    u, value, residual, slopes, times, time_slopes = kept
+    turned, eye = slopes.transpose(0, 2, 1), np.eye(model.size)
+    parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
+    hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
+    matrix = hessian + damping[:, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
+    step = np.linalg.solve(matrix, turned @ residual[..., None] - u[..., None])
+    tried = u + step[..., 0]
+    found = _objective(model, observer, scatter, noise, tried)
+    drawn = scatter > 0.0
+    again = np.flatnonzero(drawn | (found[0] > value))
+    bent, of = tried[again], drawn[again]
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        # times are known far better than speeds: what changes along the step is either linear in u or in them
+        goal = (times + (time_slopes @ step)[..., 0])[again][of]
+        bent[of] = model.reached(bent[of], scatter[again][of], goal)
+    # where nothing is drawn: a second step with the slopes of the first, in its valley
+    fixed = again[~of]
+    bent[~of] += np.linalg.solve(matrix[fixed], (turned @ found[1][..., None])[fixed] - tried[fixed][..., None])[..., 0]
+    other = _objective(model, observer, scatter[again], noise[again], bent)
+    better = other[0] < found[0][again]
+    tried[again[better]] = bent[better]
+    for one, two in zip(found, other, strict=True):
+        one[again[better]] = two[better]
+    return tried, found
 
 
 def _objective(

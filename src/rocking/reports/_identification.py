@@ -91,6 +91,7 @@ def _found(found: Identification) -> ReportTable:
     rows += [(f"r landing {foot} [-]", found.coefficients[foot]) for foot in FEET]
     rows += [
         ("scatter of ln r from impact to impact [-]", found.scatter),
+        ("probability of no scatter, 0.5 before the measurement [-]", f"{found.no_scatter:.2g}"),
         ("frequency parameter p [rad/s]", found.frequency_parameter),
         ("tilt of the floor, clockwise [rad]", found.tilt),
     ]
