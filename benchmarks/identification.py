@@ -120,7 +120,7 @@ def identified(number: int) -> dict[str, Any]:
 
 def scattered(number: int) -> dict[str, Any]:
     """Return the same of one whose scatter is one of `SCATTERS`, and whose kind is one of `KINDS`."""
-    random = np.random.default_rng([40, number])
+    random = np.random.default_rng([42, number])
     scatter, kind = SCATTERS[number % len(SCATTERS)], KINDS[number // len(SCATTERS) % len(KINDS)]
     truth = rocked(random, scatter, kind)
     drifts = number // (len(SCATTERS) * len(KINDS)) % 10 == 9

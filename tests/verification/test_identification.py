@@ -3,6 +3,7 @@
 Here 200 bodies; `make identification` has 10,000, and goes on where it stopped.
 """
 
+import math
 import os
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ import rocking as rk
 from rocking.identification import ImpactTimes, identify
 from rocking.identification.association import start
 from rocking.identification.design import bound, one_impact_bound, peaks_bound, settling_bound
-from rocking.identification.posterior import Noise, posterior
+from rocking.identification.posterior import Knowledge, Noise, posterior
 from rocking.identification.state_space import (
     FREQUENCY,
     MEAN,
@@ -58,6 +59,97 @@ def test_intervals_hold_the_truth(rows):
 def test_a_constant_coefficient_is_noticed(rows):
     """Least squares with one r that never scatters holds the truth in 32 % (of 400), though nothing disturbs it."""
     assert identification.coverage(rows)["constant"] < 0.45
+
+
+NO_SCATTER_CASES = 12
+
+
+def _deviations(scatter, count, kind="usual"):
+    """Errors of the mean over the stated standard deviation, and half widths, of made-up rockings with one scatter."""
+    found = []
+    for number in range(count):
+        random = np.random.default_rng([43, number])
+        row = identification._judged(random, identification.rocked(random, scatter, kind), drifts=False)
+        found += [] if row["refused"] else [(row["deviations"], 0.5 * row["width"], row["mean"], row["scatter"])]
+    return np.array(found).T
+
+
+@pytest.mark.verifies(
+    "repeated sampling", "made-up rockings whose coefficient is constant, heard with bounces and gaps", room="evidence",
+    control="within",
+)  # fmt: skip
+def test_a_constant_coefficient_is_told_as_such(monkeypatch):
+    """Intervals without scatter are three times narrower than without the point mass, and hold r and a scatter of 0.
+
+    The errors over the stated deviation have a root mean square of about 0.7, where 0.3 is over-cautious.
+    """
+    errors, half, held, none = _deviations(0.0, NO_SCATTER_CASES)
+    assert held.mean() > 0.8
+    assert none.mean() > 0.8
+    assert np.sqrt(np.mean(errors**2)) > 0.4
+    monkeypatch.setattr("rocking.identification.posterior.NO_SCATTER", 1e-12)
+    cautious, wide, _, none = _deviations(0.0, NO_SCATTER_CASES)
+    assert np.median(wide / half) > 3.0
+    assert np.sqrt(np.mean(cautious**2)) < 0.4
+    assert none.mean() < 0.2
+
+
+@pytest.mark.verifies(
+    "repeated sampling", "made-up rockings of asymmetric bodies, heard with bounces and gaps", room="evidence",
+    control="within",
+)  # fmt: skip
+def test_times_of_asymmetric_bodies_belong_together(monkeypatch):
+    """Sides whose slenderness angles differ by up to 60 %: intervals hold the truth, and none of ten is refused.
+
+    Where the association does not know by how much the speeds alternate, some are refused (negative control).
+    """
+    assert _deviations(0.02, 10, "asymmetric").shape[1] == 10
+    known = Knowledge.alternation.fget
+    monkeypatch.setattr(Knowledge, "alternation", property(lambda self: (0.0, math.hypot(*known(self)))))
+    assert _deviations(0.02, 10, "asymmetric").shape[1] < 10
+
+
+@pytest.mark.verifies("closed form", "leaving one out of a linear model, by its normal equations", within="1e-3",
+                      room="evidence", control="within")  # fmt: skip
+def test_strangeness_is_what_all_other_times_foretell():
+    """A time is compared with what a fit without that time foretells, over the standard deviation of both."""
+    mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
+    mean[SPEED], mean[MEAN] = np.log(0.5 * P * overturning_speed(np.array(ALPHA))), np.log(R)
+    deviation[START], deviation[SPEED], deviation[MEAN] = 1.0, 1e-4, 1e-4  # so little is not known that it is linear
+    model = Model(np.arange(7) % 2, (ALPHA, ALPHA), (P, P), mean, deviation)
+    noise, random = 1e-3, np.random.default_rng(3)
+    path = model.path(np.zeros((1, model.size)), np.zeros(1))
+    times = path.times[0] + noise * random.normal(size=8)
+    observer = Clicks(times, np.arange(8))
+    found = posterior(model, observer, 0.0, Noise(noise), lambda s: np.zeros((s.size, model.size)))
+    slopes = path.time_slopes[0]
+    for left in range(8):
+        others = np.delete(np.arange(8), left)
+        hessian = np.eye(model.size) + slopes[others].T @ slopes[others] / noise**2
+        u = np.linalg.solve(hessian, slopes[others].T @ (times - path.times[0])[others] / noise**2)
+        spread = np.sqrt(noise**2 + slopes[left] @ np.linalg.solve(hessian, slopes[left]))
+        expected = (times[left] - path.times[0, left] - slopes[left] @ u) / spread
+        assert found.strangeness(observer)[left] == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.verifies("behaviour", room="evidence", control="within")
+def test_a_bounce_behind_a_missed_impact_is_no_impact(monkeypatch):
+    """One of 14 impacts is missed and its bounce is heard 12 ms late: it is left out, and r does not scatter."""
+    mean = np.zeros(len(SHARED))
+    mean[SPEED], mean[MEAN] = np.log(0.6 * P * overturning_speed(np.array(ALPHA))), np.log(R)
+    model = Model(np.arange(13) % 2, (ALPHA, ALPHA), (P, P), mean, 0.0 * mean)
+    times = model.path(np.zeros((1, model.size)), np.zeros(1)).times[0] + 1e-4 * np.random.default_rng(2).normal(
+        size=14
+    )
+    times[6] += 0.012
+    found = identify(ImpactTimes(times, sigma=1e-4), _block())
+    assert found.mean.low < R < found.mean.high
+    assert found.scatter.low == found.scatter.value == 0.0
+    assert found.residual_times.size == 13
+    monkeypatch.setattr("rocking.identification.association._STRANGE", np.inf)
+    believed = identify(ImpactTimes(times, sigma=1e-4), _block())
+    assert believed.scatter.low > 0.0
+    assert np.ptp([believed.mean.low, believed.mean.high]) > 3.0 * np.ptp([found.mean.low, found.mean.high])
 
 
 @pytest.mark.verifies(

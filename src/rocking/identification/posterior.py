@@ -18,7 +18,7 @@ from rocking.identification.state_space import SHARED, Laplace, Model, Observer,
 SCATTERS: Final = (1e-4, 0.3)
 """Smallest and largest standard deviation of ln r at an impact, where ln r scatters at all [-]."""
 
-NO_SCATTER: Final = 0.5
+NO_SCATTER: Final = 0.2
 """Prior probability that ln r does not scatter [-]."""
 
 _SMALL_SCATTER = 0.02

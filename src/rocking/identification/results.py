@@ -149,7 +149,7 @@ class Identification(Exported):
         Standard deviation of ln r from impact to impact. Value and lower end are 0 where the measurement agrees with a
         coefficient that does not scatter; the upper end is that of one that does [-].
     no_scatter : float
-        Probability that the coefficient does not scatter; 0.5 before the measurement [-].
+        Probability that the coefficient does not scatter; 0.2 before the measurement [-].
     frequency_parameter : IntervalEstimate
         p, the mean of both sides [rad/s].
     tilt : IntervalEstimate

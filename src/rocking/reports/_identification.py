@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
+from rocking.identification.posterior import NO_SCATTER
 from rocking.plots.identification import identification_picture, trials_picture
 from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, judged, table
 from rocking.spec.identification import IdentifiedTrials
@@ -91,7 +92,7 @@ def _found(found: Identification) -> ReportTable:
     rows += [(f"r landing {foot} [-]", found.coefficients[foot]) for foot in FEET]
     rows += [
         ("scatter of ln r from impact to impact [-]", found.scatter),
-        ("probability of no scatter, 0.5 before the measurement [-]", f"{found.no_scatter:.2g}"),
+        (f"probability of no scatter, {NO_SCATTER:g} before the measurement [-]", f"{found.no_scatter:.2g}"),
         ("frequency parameter p [rad/s]", found.frequency_parameter),
         ("tilt of the floor, clockwise [rad]", found.tilt),
     ]

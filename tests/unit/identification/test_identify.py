@@ -10,6 +10,7 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.identification import ImpactTimes, RotationSeries, identify, series
+from rocking.identification.posterior import interval_of_nodes
 from rocking.identification.state_space import MEAN, SHARED, SPEED, Model, rotation
 
 BLOCK = rk.Block(width=0.1, height=0.4)
@@ -45,6 +46,28 @@ def test_what_each_impact_took(found):
         assert each.coefficient.high - each.coefficient.low < 0.02
     assert answer.mean.low < 0.9 < answer.mean.high
     assert answer.scatter.low < 0.01 < answer.scatter.high
+
+
+def test_a_coefficient_that_does_not_scatter_is_said_to_have_none(found):
+    """The verdict bounds the scatter; with a scatter of 1 % it does not say so."""
+    answer = identify(ImpactTimes(_path(scatter=0.0)[1].times[0], sigma=1e-4), BLOCK, tilt=0.0, first="left")
+    assert answer.scatter.value == answer.scatter.low == 0.0 < answer.scatter.high < 0.005
+    assert f"it scatters by less than {100.0 * answer.scatter.high:.2g} %." in answer.verdict
+    assert answer.no_scatter > 0.9
+    assert "less than" not in found[0].verdict
+    assert found[0].no_scatter < 1e-6
+    assert found[0].scatter.low > 0.0
+
+
+def test_intervals_of_nodes_have_the_probability_of_zero():
+    """Half at zero: median and lower end are zero, and the upper end is that of the rest."""
+    values, weights = np.array([0.0, 0.01, 0.02, 0.04]), np.array([0.5, 0.1, 0.3, 0.1])
+    median, low, high = interval_of_nodes(values, weights)
+    assert (median, low) == (0.0, 0.0)
+    assert 0.02 < high <= 0.04
+    alone = interval_of_nodes(values[1:], weights[1:] / 0.5)
+    assert alone[2] == pytest.approx(high)
+    assert alone[1] > 0.0
 
 
 def test_what_is_common_to_all_trials_is_of_the_size():
