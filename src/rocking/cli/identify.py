@@ -165,7 +165,7 @@ def _facts(found: "Identification") -> list[tuple[str, str]]:
     p, tilt, noise = found.frequency_parameter, found.tilt, found.noise
     unit = next(unit for name, unit in _NOISES.items() if getattr(found.measurement, name, None) is not None)
     lines = [
-        ("scatter of ln r", f"{found.scatter}; none with a probability of {found.no_scatter:.2g}"),
+        ("scatter of ln r", f"{found.scatter}; none with a probability of {found.no_scatter:.3g}"),
         ("p", f"{p} rad/s"),
         ("tilt of the floor", f"{1e3 * tilt.value:.3g} ({1e3 * tilt.low:.3g} to {1e3 * tilt.high:.3g}) mrad"),
         ("noise", f"{1e3 * noise.value:.3g} {unit}"),

@@ -88,11 +88,11 @@ def _doubts(doubts: Sequence[str]) -> list[ReportSection]:
 
 
 def _found(found: Identification) -> ReportTable:
-    rows = [("mean coefficient of restitution r [-]", found.mean)]
+    rows: list[tuple[str, object]] = [("mean coefficient of restitution r [-]", found.mean)]
     rows += [(f"r landing {foot} [-]", found.coefficients[foot]) for foot in FEET]
     rows += [
         ("scatter of ln r from impact to impact [-]", found.scatter),
-        (f"probability of no scatter, {NO_SCATTER:g} before the measurement [-]", f"{found.no_scatter:.2g}"),
+        (f"probability of no scatter, {NO_SCATTER:g} before the measurement [-]", f"{found.no_scatter:.3g}"),
         ("frequency parameter p [rad/s]", found.frequency_parameter),
         ("tilt of the floor, clockwise [rad]", found.tilt),
     ]
