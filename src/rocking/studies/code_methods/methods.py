@@ -193,8 +193,8 @@ class AsceComponents(CodeMethod):
         "that the PGA of the motion is 0.4 S_DS is our choice; chapter 13 requires that components are anchored"
     )
     reading = (
-        "medium: equations, limits, values at grade and load combinations are those of public design aids of the 2022 "
-        "edition, which agree; the text of the standard itself was not at hand"
+        "medium: the standard itself was not read; Eq. 13.3-1 and its limits are those of public design aids of the "
+        "2022 edition, the load combinations those of aids of the editions of 2005 and 2016"
     )
     vertical_motion = "by its own rule, 0.2 S_DS D upwards, whatever the vertical motion is"
     demand: ClassVar[float] = 1.0  # factor on F_p [-]
