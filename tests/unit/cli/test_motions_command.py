@@ -146,7 +146,9 @@ def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
         peaks.append(max(record[key] for key in ("pga_x", "pga_y") if record[key] is not None))
     assert peaks[1:] == pytest.approx([3.0 * peaks[0]] * 2)
     (folder / "list.csv").write_text(f"file,units\n{name},g\n")
-    refuses(["motions", folder / "list.csv"], "a list has no column 'units'")
+    assert run("motions", folder / "list.csv", "--periods", "1")[0] == 0
+    (folder / "list.csv").write_text(f"file,units\n{name},cm/s2\n")
+    refuses(["motions", folder / "list.csv"], "the file states the unit g, you say cm/s2")
 
 
 @pytest.mark.filterwarnings("always:check the input")

@@ -145,3 +145,22 @@ def test_names_of_components():
     """Azimuths by number, compass and side; codes of SEED; up and down; what says nothing is None."""
     said = {"360": 0.0, "90": 90.0, "S45W": 225.0, "EW": 90.0, "HNN": 0.0, "BHZ": "up", "Dwn": "down", "L (A)": None}
     assert {name: orientation(name) for name in said} == said
+
+
+def test_a_list_with_a_unit_for_each_file(tmp_path):
+    """Files of mixed units and steps are one set: their rows say how each is read; a row without a unit asks for it."""
+    for name, factor in (("a.txt", 1.0), ("b.txt", 980.665), ("c.txt", 1.0)):
+        rows = [f"{factor * np.sin(0.2 * k):.8f}" for k in range(60)]
+        (tmp_path / name).write_text("\n".join(rows), "utf-8")
+    path = tmp_path / "list.csv"
+    path.write_text("motion,units,time_step,name\na.txt,g,0.01,A\nb.txt,cm/s2,0.02,B\nc.txt,,0.01,C\n", "utf-8")
+    found = read_records(path)
+    assert [(one.x.name, one.x.time_step) for one in found] == [("A", 0.01), ("B", 0.02)]
+    assert found[0].x.acceleration == pytest.approx(found[1].x.acceleration, abs=1e-6)
+    assert "does not state its unit" in found.left_out[0][1]
+    assert len(read_records(path, units="m/s2")) == 3
+    path.write_text("motion;units;time_step\na.txt;g;0,01\n", "utf-8")
+    assert read_records(path)[0].x.time_step == 0.01
+    path.write_text("motion,units,time_step\na.txt,g,quick\n", "utf-8")
+    with pytest.raises(InvalidValueError, match="time_step of a row must be a number"):
+        read_records(path)

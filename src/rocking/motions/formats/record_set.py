@@ -4,7 +4,7 @@ import csv
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -43,7 +43,10 @@ _PEER = "horizontal-1 acc. filename"
 _TITLES = {"motion", "file", "x"}
 _ALSO = {"record": "motion", "factor": "scale", "aufzeichnung": "motion", "datei": "motion", "faktor": "scale",
          "skalierung": "scale", "registrazione": "motion", "fattore": "scale"}  # fmt: skip
-_MEANT = {"units": "units", "unit": "units", "time_step": "time_step", "dt": "time_step", "format": "format"}
+_MEANT = {"units": "units", "unit": "units", "einheit": "units", "unità": "units", "time_step": "time_step",
+          "dt": "time_step", "format": "format", "skip": "skip"}  # fmt: skip
+"""Columns of a list that say how the files of a row are read, and what they are called here."""
+
 LARGEST_LIST = 1 << 24  # no list of records is larger [bytes]
 _TOP = 500  # lines within which PEER's list of files begins
 _SPECIAL = "*?["
@@ -136,7 +139,8 @@ def read_records(
     y is 90 degrees to the left: East and North, where these are stated; a component that points down is turned up.
 
     A list is a CSV file of PEER's search results, or one with the columns motion (or x, y, z) and, if wanted, scale
-    and name. PEER's scale factors are kept as metadata and not applied.
+    and name, and units, time_step, format and skip of the files of a row. PEER's scale factors are kept as metadata
+    and not applied.
 
     Parameters
     ----------
@@ -182,9 +186,9 @@ def read_records(
     options: dict[str, Any] = {"format": format, "units": units, "time_step": time_step, "skip": skip}
     read = partial(_read, **options, stations=stations or beside or None)
     if rows is not None:
-        names = list(dict.fromkeys(file for row in rows for file in row.files.values()))
-        files = dict(zip(names, mapped(read, [path.parent / name for name in names], workers, progress), strict=True))
-        found = _listed(rows, files)
+        items = list(dict.fromkeys(item for row in rows for item in row.items(path.parent).values()))
+        files = dict(zip(items, mapped(partial(_read_item, **read.keywords), items, workers, progress), strict=True))
+        found = _listed(rows, files, path.parent)
     else:
         paths = [one for one in paths if one not in beside]
         found = paired(zip(paths, mapped(read, paths, workers, progress), strict=True))
@@ -248,6 +252,12 @@ def _read(path: Path, **options: Any) -> Read:
         except RockingError as error:
             found = str(error).removeprefix(f"{path.name}: ")
     return found, [str(each.message) for each in doubts]
+
+
+def _read_item(item: "Item", **options: Any) -> Read:
+    """Read one file of a list, as its row says."""
+    path, how = item
+    return _read(path, **{**options, **dict(how)})
 
 
 def _motions(path: Path, read: Read, left_out: list[tuple[str, str]], doubted: list[str]) -> list[GroundMotion]:
@@ -446,6 +456,14 @@ class ListedRecord:
     scale: float  # factor on the acceleration [-]
     name: str
     metadata: Mapping[str, str]
+    how: Mapping[str, Any] = field(default_factory=dict)  # how its files are read: units, time_step, format, skip
+
+    def items(self, folder: Path) -> dict[str, "Item"]:
+        """Return its files with how they are read, by axis."""
+        return {axis: (folder / name, tuple(sorted(self.how.items()))) for axis, name in self.files.items()}
+
+
+Item = tuple[Path, tuple[tuple[str, Any], ...]]
 
 
 def rows_of_list(path: Path) -> list[ListedRecord] | None:
@@ -493,11 +511,17 @@ def _row(row: Mapping[str, str], mark: str, source: str) -> ListedRecord:
         raise InvalidValueError(
             f"{source}: a row has a motion, or x with y and z, and its scale is a number; got {dict(row)!r:.120}"
         )
-    known = {"x", "y", "z", "motion", "file", "scale", "name", ""}
-    if odd := next((title for title, cell in row.items() if title in _MEANT and cell), ""):
-        raise InvalidValueError(f"{source}: a list has no column {odd!r}; it is said for all records, as {_MEANT[odd]}")
+    known = {"x", "y", "z", "motion", "file", "scale", "name", "", *_MEANT}
+    how: dict[str, Any] = {_MEANT[title]: cell for title, cell in row.items() if title in _MEANT and cell}
+    for key, kind in (("time_step", float), ("skip", int)):
+        if key in how:
+            text = how[key].replace(",", ".") if mark == ";" else how[key]
+            if not _is_number(text):
+                raise InvalidValueError(f"{source}: {key} of a row must be a number, got {how[key]!r:.40}")
+            how[key] = kind(float(text))
     told = {title: cell for title, cell in row.items() if title not in known and cell}
-    return ListedRecord({"": alone} if alone else axes, float(factor), row.get("name", ""), told)
+    files = {"": alone} if alone else axes
+    return ListedRecord(files, float(factor), row.get("name", ""), told, how)
 
 
 def _is_number(text: str) -> bool:
@@ -507,12 +531,13 @@ def _is_number(text: str) -> bool:
         return False
 
 
-def _listed(rows: Sequence[ListedRecord], files: Mapping[str, Read]) -> RecordSet:
+def _listed(rows: Sequence[ListedRecord], files: Mapping[Item, Read], folder: Path) -> RecordSet:
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
     doubted: list[str] = []
     for row in rows:
-        parts = {axis: _motions(Path(name), files[name], left_out, doubted) for axis, name in row.files.items()}
+        items = row.items(folder)
+        parts = {axis: _motions(Path(name), files[items[axis]], left_out, doubted) for axis, name in row.files.items()}
         motions = [each for found in parts.values() for each in found]
         if not all(parts.values()):
             continue

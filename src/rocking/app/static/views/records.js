@@ -58,7 +58,7 @@ const Records = ({ app, questions }) => {
         options=${[...records.slice(0, 50).map(({ name }) => [name, `${name}, before and after`]),
           ["all", "all of them, in a table of measures"], ["target", "those that come close to a spectrum, scaled"]]} />`}
       ${!single && lists.length > 0 && records.length > 1 && html`<${Choice} label="List of records" value=${form.at("list")}
-        help="A CSV with the columns motion, or x, y and z; the files that it names are sent with it."
+        help="A CSV with the columns motion, or x, y and z, and if needed units and time_step of each row; the files that it names are sent with it."
         options=${[["", "none: every file is a record"], ...lists.map(({ name }) => [name, name])]} />`}
       <details open=${Object.values(form.value.motion).some(Boolean)}><summary>What the file does not say</summary>
         <div class="fields">${["units", "time_step", "format", ...(single ? ["component"] : [])].map(key)}</div>
