@@ -42,6 +42,7 @@ _IN_GROUP = {
 }  # fmt: skip
 
 
+@lru_cache(maxsize=1 << 16)
 def plain(text: str) -> str:
     """Return words alone: small letters without accents, parted by blanks.
 

@@ -78,6 +78,8 @@ class RowKinds:
 
     def _is_title_row(self, cells: Sequence[Cell]) -> bool:
         texts = _texts(cells)
+        if any(text[:1].isdigit() for text in texts.values()) and self._is_measured(cells):
+            return False  # most rows
         again = sum(self._is_title(k, text) for k, text in texts.items())
         return again >= 0.7 * len(texts) or plain(_whole(cells)) in self.above
 
