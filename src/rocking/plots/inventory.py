@@ -123,7 +123,7 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
         groups = [[one for one, each in zip(values, verdicts, strict=True) if each.light is light] for light in _LIGHTS]
         colors = [color for color, _ in _LIGHTS.values()]
         panel.hist(groups, bins=_BINS, range=(0.0, most), stacked=True, color=colors, edgecolor="white", linewidth=0.4)
-        panel.yaxis.get_major_locator().set_params(integer=True)
+        panel.locator_params(axis="y", integer=True)
         panel.set_ylabel(say("picture.objects"))
     left.set_xlabel(say("picture.share"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)

@@ -127,11 +127,12 @@ def _drawn(assessment: Assessment, folder: Path) -> list[str]:
     from rocking.plots.style import write
 
     count = len(assessment.verdicts)
-    wanted = {GLANCE: lambda: inventory_picture(assessment, MOST_DRAWN)} if count else {}
-    if count > MOST_DRAWN:
-        wanted[SHARES] = lambda: inventory_distribution(assessment)
     try:
-        return [write(draw(), folder / f"{stem}.svg").stem for stem, draw in wanted.items()]
+        if count:
+            write(inventory_picture(assessment, MOST_DRAWN), folder / f"{GLANCE}.svg")
+        if count > MOST_DRAWN:
+            write(inventory_distribution(assessment), folder / f"{SHARES}.svg")
+        return [stem for stem in (GLANCE, SHARES) if (folder / f"{stem}.svg").exists()]
     except MissingExtraError:  # a report without a picture says the same
         return []
 

@@ -287,8 +287,8 @@ def parts(
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
     text = _tidied(without_thousands(cell if isinstance(cell, str) else f"{cell:.10g}"))
-    if (own := _ORDER.search(text)) and (of_cell := order_of(own[1], language)):  # 40 x 30 x 120 cm (B x T x H)
-        text, order = text[: own.start()].strip(), of_cell
+    if (stated := _ORDER.search(text)) and (of_cell := order_of(stated[1], language)):  # 40 x 30 x 120 cm (B x T x H)
+        text, order = text[: stated.start()].strip(), of_cell
     text, about = _without_about(text)
     if match := _TWICE.fullmatch(text):
         found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())

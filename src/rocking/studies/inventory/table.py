@@ -76,18 +76,19 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
         why = say("sheet.not_assessed_why", reason=words_of(assessment).translated(refused.reason))
         lines.append(_bare(refused, say("sheet.not_assessed"), why))
     own = words_of(assessment)
-    others = (_bare(each, say("sheet.not_object"), own.translated(each.reason)) for each in assessment.not_objects)
-    return [*lines, *others]
+    passed = (_bare(each, say("sheet.not_object"), own.translated(each.reason)) for each in assessment.not_objects)
+    return [*lines, *passed]
 
 
 def _bare(refused: NotAssessed, light: str, why: str) -> list[str | float | int]:
     """Return the row of what has no verdict."""
-    told = {
+    told: dict[str, str | int] = {
         "light": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": why,
         "note": refused.note,
     }  # fmt: skip
-    line = [told.get(name, "") for name in COLUMNS]
-    return [*(escaped(each) if isinstance(each, str) else each for each in line), *[""] * len(PLAN_COLUMNS)]
+    cells = [told.get(name, "") for name in COLUMNS]
+    line: list[str | float | int] = [escaped(each) if isinstance(each, str) else each for each in cells]
+    return line + [""] * len(PLAN_COLUMNS)
 
 
 def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
