@@ -370,7 +370,7 @@ def test_nothing_to_export(run, tmp_path):
         ((*SIZE, *FAMILY, "--measure", "pgv/pga"), "no factor on a motion changes pgv/pga"),
         ((*SIZE, *FAMILY, "--measure", "pgv"), "which levels of pgv"),
         ((*SIZE, *FAMILY, "--levels", "0.1:1g:9"), "a unit at every number or at none"),
-        ((*SIZE, *FAMILY, "--levels", "1g:0.1g:9"), "--levels must be numbers"),
+        ((*SIZE, *FAMILY, "--levels", "1g:0.1g:9"), "--levels must increase"),
         ((*SIZE, *FAMILY, "--levels", "0g:1g:9"), "--levels"),
         ((*SIZE, *FAMILY, "--levels", "nan"), "--levels must be a number"),
         ((*SIZE, *FAMILY, "--levels", "1s:2s:3"), "--levels must be a number, alone or with one of"),
