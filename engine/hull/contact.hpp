@@ -652,18 +652,25 @@ inline Points outline(const Problem& p, const Points& touching) {
     return made;
 }
 
-// What may stay of the touching vertices: all, the edges of their border, single ones.
-inline std::vector<Points> faces(const Problem& p, const Points& touching) {
+// What may stay of the touching vertices: all, the edges of their border, single ones. staying: those that do not leave; a chord between
+// two of them, with others beyond it, is no edge.
+inline std::vector<Points> faces(const Problem& p, const Points& touching, const Points& staying) {
     const Points border = outline(p, touching);
     std::vector<Points> made;
     const std::size_t n = border.size();
     made.reserve(2 * n + 1);
-    if (n > 2) made.push_back(border);
+    const bool all = staying.size() == touching.size();
+    std::vector<char> stays(n, 1);
+    for (std::size_t k = 0; k < n && !all; ++k) stays[k] = has(staying, border[k]);
+    if (n > 2 && std::find(stays.begin(), stays.end(), 0) == stays.end()) made.push_back(border);
     if (n > 1)
-        for (std::size_t k = 0; k < (n > 2 ? n : 1); ++k) made.push_back({border[k], border[(k + 1) % n]});
-    for (int i : border) made.push_back({i});
+        for (std::size_t k = 0; k < (n > 2 ? n : 1); ++k)
+            if (stays[k] && stays[(k + 1) % n]) made.push_back({border[k], border[(k + 1) % n]});
+    for (std::size_t k = 0; k < n; ++k)
+        if (stays[k]) made.push_back({border[k]});
     return made;
 }
+inline std::vector<Points> faces(const Problem& p, const Points& touching) { return faces(p, touching, touching); }
 
 // Whether no gap closes.
 inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {

@@ -11,13 +11,14 @@ struct Law {
     int code = kHousner, base = 0;
     double coefficient = 0.0;
 
-    // k between 0 and 1 of a step within the base; 1 of every other one.
+    // k of a step within the base, up to 1 where no coefficient states a larger loss; 1 of every other one.
     double at(const Body& b, Vec old, Vec now) const {
         const double height = 1.0 / norm(b.facets[base]);
         const Vec down = height * b.facets[base], step = now - old;
         if (code == kHousner || height - dot(down, old) > kFlat * b.size || height - dot(down, now) > kFlat * b.size) return 1.0;
         if (code == kPosition) return coefficient;
-        return lesser(greater(code == kKed ? by_azimuth(b, step) : by_coefficient(b, step, down, height), 0.0), 1.0);
+        if (code == kCoefficient) return greater(by_coefficient(b, step, down, height), 0.0);  // a stated loss may be larger than Housner's
+        return lesser(greater(by_azimuth(b, step), 0.0), 1.0);
     }
 
     Vec place(const Body& b, Vec old, Vec now) const {

@@ -13,6 +13,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
+constexpr double kFlatWithin = 1e-6;  // gaps over the size, below all of which a facet lands with all its corners
 constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2, kNudge = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
@@ -612,8 +613,8 @@ class Run {
     class Candidates {
       public:
         // limit: violation of a law from which a candidate is of no use
-        Candidates(const Problem& p, const Points& near, const Moving& moving, double still, double limit)
-            : p_(p), near_(near), moving_(moving), still_(still), limit_(limit), faces_(faces(p, near)), holding_(faces_.size()) {
+        Candidates(const Problem& p, const Points& touching, const Points& near, const Moving& moving, double still, double limit)
+            : p_(p), near_(near), moving_(moving), still_(still), limit_(limit), faces_(faces(p, touching, near)), holding_(faces_.size()) {
             Few<Way> ways;
             for (std::size_t f = 0; f < faces_.size(); ++f) {
                 const Points& members = faces_[f];
@@ -756,7 +757,7 @@ class Run {
                     const Vec v = velocity(i);
                     moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
                 }
-        Candidates candidates(p, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
+        Candidates candidates(p, touching, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
         // what has ended may have to go on if nothing else is possible
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
@@ -883,6 +884,7 @@ class Run {
         const Points old = mode_.contact.members;
         Points touching;
         touch(touching);
+        flatten(touching);
         const double before = kinetic();
         Problem p = velocities(mu_);
         const Moving none;
@@ -903,7 +905,7 @@ class Run {
                     const Vec at = law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i]), off = at - b_.points[i];
                     if (dot(off, off) > 0.0) now.places.push_back({i, at});
                 }
-            tried.emplace_back(now, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
+            tried.emplace_back(now, touching, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
             Candidates& all = tried.back();
             for (int l = 0; l < 3 && !found; ++l)
                 for (std::size_t k = 0; const Solution* c = all[k]; ++k)
@@ -939,6 +941,37 @@ class Run {
             list(mode_.contact.members, trace_->struck);
         }
         keep();
+    }
+
+    // Adds all of a facet that lands nearly flat to what touches, and lays it flat for that: the corners that carry pass the motion on from
+    // one to the next in the last moment of such a landing, at first without loss, in an order that rounding decides.
+    void flatten(Points& touching) {
+        Points near;
+        touch(near, kFlatWithin);
+        if (near.size() < 3 || near.size() == touching.size()) return;
+        const Mat axes = frame(s_.q);
+        int flat = 0;
+        double least = kInfinite;
+        for (std::size_t k = 0; k < b_.facets.size(); ++k) {
+            const double down = dot(unit(b_.facets[k]), axes.c);
+            if (down < least) least = down, flat = static_cast<int>(k);
+        }
+        Points corners;
+        for (int k = b_.first_corner[flat]; k < b_.first_corner[flat + 1]; ++k) corners.push_back(b_.corners[k]);
+        const Points& carry = mode_.contact.members;
+        for (int i : corners)
+            if (!has(near, i) || (!has(carry, i) && velocity(i).z > 0.0)) return;  // Eq. 329
+        const double before = energy() - kinetic();
+        const int kept = carry.empty() ? corners[0] : carry[0];
+        const Vec fixed = s_.place + axes * b_.points[kept];
+        for (int k = 0; k < 2; ++k) level(corners);
+        const Mat now = frame(s_.q);
+        const Vec at = fixed - now * b_.points[kept];
+        s_.place = {at.x, at.y, -(now * b_.points[corners[0]]).z};
+        r_.lost += before - (energy() - kinetic());
+        for (int i : corners)
+            if (!has(touching, i)) touching.push_back(i);
+        std::sort(touching.begin(), touching.end());
     }
 
     // Changes that accumulate at one moment are over: what they close in on touches, and is at rest there.

@@ -7,6 +7,8 @@ namespace ROCKING_ISA {
 
 constexpr double kRounding = 1e-9, kClosed = 1e-12, kFar = 1e300;
 constexpr double kStartRolling = 1e-11, kStopRolling = 1e-13;
+// sines of the tilt at which a rim that falls shows how near to flat it will pass, and below which that is a landing
+constexpr double kLanding = 1e-3, kFlat = 1e-6;
 
 struct Choice {
     const Pivot* stance = nullptr;

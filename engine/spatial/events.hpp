@@ -71,14 +71,20 @@ template <int D>
 void Run<D>::impact(int vertex) {
     std::uint64_t closed = bit(vertex) | stance_->points;
     int count = 0;
+    double gap = 0.0, rate = -kFar;
     for (int i = 0; i < body_.count; ++i) {
-        if (dot(body_.vertices[i] - stance_->at, z_) <= kClosed * body_.size) closed |= bit(i);
+        const Vec arm = body_.vertices[i] - stance_->at;
+        const double height = dot(arm, z_);
+        gap = greater(gap, height), rate = greater(rate, dot(cross(velocity_, arm), z_));
+        if (height <= kClosed * body_.size) closed |= bit(i);
         count += (closed & bit(i)) != 0;
     }
-    if (stance_->contact == kEdge || count > 2) closed = body_.every();
-    if (closed == body_.every()) flatten();
+    const bool flat = gap <= kFlat * body_.size && rate <= kClosed * body_.size * norm(velocity_);  // Eq. 329
+    if (stance_->contact == kEdge || count > 2 || flat) closed = body_.every();
+    double height = 0.0;  // potential energy that is given up to lie flat
+    if (closed == body_.every()) height = potential(), flatten();
     if (at_once_ > kPiled) return stick(closed);
-    land(landed(body_, state(), closed, static_cast<int>(row_.law), row_.coefficient), closed);
+    land(landed(body_, state(), closed, static_cast<int>(row_.law), row_.coefficient), closed, height);
 }
 
 // Impacts that pile up at one moment leave the largest set of touching points at rest, pulled or not.
@@ -98,8 +104,8 @@ void Run<D>::stick(std::uint64_t closed) {
 }
 
 template <int D>
-void Run<D>::land(const Choice& landing, std::uint64_t touching) {
-    const double before = kinetic() + (stance_->contact == kRolling ? potential() : 0.0);  // a height given up is lost
+void Run<D>::land(const Choice& landing, std::uint64_t touching, double height) {
+    const double before = kinetic() + (stance_->contact == kRolling ? potential() : height);  // a height given up is lost
     if (!landing.stance) return stop(kFailed, kNotFinite);
     stand(*landing.stance);
     velocity_ = landing.velocity;

@@ -118,8 +118,8 @@ inline bool nearly_flat(const Body& body, Vec up) {
     return std::sqrt(up.x * up.x + up.y * up.y) * body.centre.z < 0.01 * body.radius;
 }
 
-// When a round base begins to roll, or lies flat.
-inline double rim_event(const Body& body, const Pivot& stance, const Step& step) {
+// When a round base begins to roll, passes kLanding, or lies flat; landing: whether it falls flat.
+inline double rim_event(const Body& body, const Pivot& stance, const Step& step, bool landing) {
     double lean[kMostOrder + 1], steep[kMostOrder + 1];
     const int order = step.s.order;
     const Vec first = step.up(0);
@@ -128,10 +128,10 @@ inline double rim_event(const Body& body, const Pivot& stance, const Step& step)
     const double x = rolls ? first.x / sine : -stance.at.x / body.radius, y = rolls ? first.y / sine : -stance.at.y / body.radius;
     for (int k = 0; k <= order; ++k) lean[k] = step.s.z[k][0] * x + step.s.z[k][1] * y, steep[k] = -lean[k];
     if (rolls) {
-        lean[0] -= kStopRolling;
+        lean[0] -= sine > kLanding * (1.0 + 1e-6) ? kLanding : kStopRolling;
         return first_zero(lean, order, false, 0.0);
     }
-    steep[0] += kStartRolling;
+    steep[0] += landing ? 2.0 * kLanding : kStartRolling;
     // lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
     const double pull = norm({step.field[0][0], step.field[0][1], step.field[0][2]});
     const double floor = 0.25 * kSlowOpening * pull * step.length * step.length / body.radius;

@@ -38,7 +38,7 @@ void Run<D>::step_on_rim(int order, double angle) {
     double normal[kMostOrder + 1];
     normal_force(step_, normal);
     double letting = first_zero(normal, step_.s.order - 2, false, 0.0);
-    const double turn = rim_event(body_, *stance_, step_);
+    const double turn = rim_event(body_, *stance_, step_, landing_);
     const bool held = letting <= 1.0 && nearly_flat(body_, vec(value_at(step_.s.z, step_.s.order, letting)));
     if (held) letting = kNone;
     const double at = lesser(1.0, lesser(letting, turn));
@@ -61,10 +61,20 @@ bool Run<D>::lies_down() const {
 template <int D>
 void Run<D>::change_on_rim() {
     const bool rolls = stance_->contact == kRolling;
-    if (!rolls && std::sqrt(z_.x * z_.x + z_.y * z_.y) > 0.5 * kStartRolling) {
-        stance_ = &rim(stance_->at.x, stance_->at.y, kRolling);
+    const double sine = std::sqrt(z_.x * z_.x + z_.y * z_.y);
+    if (!rolls && sine > (landing_ ? kLanding : 0.5 * kStartRolling)) {
+        stance_ = &rim(stance_->at.x, stance_->at.y, kRolling), landing_ = false;
         return guard();
     }
+    if (rolls && sine > 0.5 * kLanding) {
+        // a rigid rim that passes as near to flat as one likes rolls on, and one that passes exactly strikes
+        const Vec falls = cross(z_, velocity_);
+        const double past = std::fabs(z_.x * falls.y - z_.y * falls.x);  // Eq. 328
+        if (past < kFlat * std::sqrt(falls.x * falls.x + falls.y * falls.y) && z_.x * falls.x + z_.y * falls.y < 0.0)
+            stance_ = &rim(falls.x, falls.y, kVertex), landing_ = true;
+        return guard();
+    }
+    landing_ = false;
     if (rolls) {
         stance_ = &rim(stance_->at.x, stance_->at.y, kVertex);  // so flat that the point of contact is fixed
         return guard();

@@ -80,7 +80,7 @@ private:
     void impact(int vertex);
     void stick(std::uint64_t closed);
     void released(int which);
-    void land(const Choice& choice, std::uint64_t touching);
+    void land(const Choice& choice, std::uint64_t touching, double height = 0.0);
     void note(int kind, double before, double after);
     void guard() {
         at_once_ = time_ <= moment_ ? at_once_ + 1 : 0;
@@ -160,6 +160,7 @@ private:
     Turn turn_;
     bool spelled_ = true;  // whether the series of the axes are there, which a step about an edge rarely needs
     bool whole_ = false, to_horizon_ = false;
+    bool landing_ = false;  // whether a round base falls flat
     bool sticks_ = false;  // whether impacts piled up on this edge, so that no end of it is released
     double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;  // the peak as the square of its sine
     int over_contact_ = -1, over_number_ = -1;

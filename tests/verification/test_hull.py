@@ -664,7 +664,7 @@ def test_a_base_of_many_corners_slides_alike_in_both_engines(monkeypatch):
     slow = hull_histories(body, ground, friction=[0.3], settings=settings, engine="reference")
     for name in ("outcome", "impacts"):
         assert fast[name].ravel()[0] == slow[name].item()
-    assert slow["impacts"].item() > 20
+    assert slow["impacts"].item() > 10
     assert len(started) > 20
     assert max(started) < 1e-6
     for name in ("sliding_distance", "residual_displacement", "peak_tilt"):

@@ -247,16 +247,24 @@ def _pulls(
     return {i: added(across[i], room[i] / whole * dot(total, along), along) for i in stuck}
 
 
-def faces(problem: Problem, touching: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
-    """Yield what may stay of the touching vertices: all, the edges of their border, single ones."""
-    border = outline(problem, touching)
-    if len(border) > 2:
+def faces(
+    problem: Problem, touching: tuple[int, ...], staying: tuple[int, ...] | None = None
+) -> Iterator[tuple[int, ...]]:
+    """Yield what may stay of the touching vertices: all, the edges of their border, single ones.
+
+    staying: those that do not leave, if not all; a chord between two of them, with others beyond it, is no edge.
+    """
+    border, stays = outline(problem, touching), set(touching if staying is None else staying)
+    if len(border) > 2 and stays.issuperset(border):
         yield border
     if len(border) > 1:
         for k, i in enumerate(border if len(border) > 2 else border[:1]):
-            yield i, border[(k + 1) % len(border)]
+            after = border[(k + 1) % len(border)]
+            if i in stays and after in stays:
+                yield i, after
     for i in border:
-        yield (i,)
+        if i in stays:
+            yield (i,)
 
 
 def outline(problem: Problem, touching: tuple[int, ...]) -> tuple[int, ...]:

@@ -47,6 +47,7 @@ _STRIKES = 5e-10  # speed over sqrt(g size) from which a history begins with an 
 _LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 _AHEAD = 1e-6  # how much later, over sqrt(size / g), the ground decides which mode starts
 _PILED, _STUCK = 30, 200
+_FLAT = 1e-6  # gaps over the size, below all of which a facet lands with all its corners
 _CROWD, _CROWDED = 12, 1e-2  # changes of contact, and the time over sqrt(size / g) within which they are too many
 # what they close in on: gaps over the size, and speeds over sqrt(g size) away from the ground
 _GATHERED, _GATHERING = 1e-7, 1e-4
@@ -375,7 +376,7 @@ class HullEngine:
             if self._slip(i) > 3.0 * self.stop:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
-        candidates = list(self._candidates(problem, near, moving))
+        candidates = list(self._candidates(problem, touching, near, moving))
         found = None if crowded else self._lawful(problem, candidates, near)
         if found is not None:
             self._take(problem, found, moving)
@@ -432,10 +433,12 @@ class HullEngine:
         self.history.lost += before - sum(energies(self.body, self.state, self.ground.weight))
         self._choose(near, closed=near)
 
-    def _candidates(self, problem: Problem, near: tuple[int, ...], moving: dict[int, Vector]) -> Iterator[Solution]:
+    def _candidates(
+        self, problem: Problem, touching: tuple[int, ...], near: tuple[int, ...], moving: dict[int, Vector]
+    ) -> Iterator[Solution]:
         """Yield what may stay: first what sticks wherever it does not slide yet, larger faces first; flight last."""
         states = []
-        for members in contacts.faces(problem, near):
+        for members in contacts.faces(problem, touching, near):
             still = tuple(i for i in members if i not in moving)
             ways = contacts.friction_states(members, still)
             ways = (way for way in ways if self.friction < math.inf or way.stuck == members)
@@ -504,7 +507,7 @@ class HullEngine:
     def _impact(self) -> None:
         """Resolve the impact of all vertices that touch."""
         body, old = self.body, self.mode.contact.members
-        touching = self._touching()
+        touching = self._flattened(self._touching())
         before = energies(body, self.state, ZERO)[0]
         axes = frame(self.state.attitude)
         problem = Problem(body, axes, back(axes, self.state.velocity), self.state.spin, self.friction)
@@ -533,6 +536,32 @@ class HullEngine:
         self.history.events.append(HullEvent(self.time, HullEventKind.IMPACT, self.mode.contact, before, after))
         self._keep()
 
+    def _flattened(self, touching: tuple[int, ...]) -> tuple[int, ...]:
+        """Return what touches, with all of a facet that lands nearly flat, which is laid flat for that.
+
+        The corners that carry pass the motion on from one to the next in the last moment of such a landing, at first
+        without loss, in an order that rounding decides. Real faces are not flat to `_FLAT` of the size of a body.
+        """
+        body, state, near = self.body, self.state, self._touching(_FLAT)
+        if len(near) < 3 or len(near) == len(touching):
+            return touching
+        axes, carry = frame(state.attitude), self.mode.contact.members
+        flat = min(range(len(body.facets)), key=lambda k: dot(unit(body.facets[k]), axes[2]))
+        corners = tuple(int(i) for i in body.hull.corners(flat))
+        rises = (i not in carry and point_velocity(body, state, i)[2] > 0.0 for i in corners)  # Eq. 329
+        if not set(corners) <= set(near) or any(rises):
+            return touching
+        attitude, kept = state.attitude, body.points[(carry or corners)[0]]
+        fixed = added(state.place, 1.0, applied(axes, kept))
+        for _ in range(2):
+            attitude = levelled(body, attitude, corners)
+        x, y, _height = minus(fixed, applied(frame(attitude), kept))
+        low = applied(frame(attitude), body.points[corners[0]])[2]
+        self.state = state._replace(place=(x, y, -low), attitude=attitude)
+        before, after = (energies(body, each, self.ground.weight)[1] for each in (state, self.state))
+        self.history.lost += before - after
+        return tuple(sorted({*touching, *corners}))
+
     def _places(self, touching: tuple[int, ...], old: tuple[int, ...]) -> dict[int, Vector]:
         points = self.body.points
         stood = [points[i] for i in old]
@@ -542,7 +571,9 @@ class HullEngine:
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
         """Return the first candidate whose impulses obey every law; None where there is none."""
-        self.struck = [s for s in self._candidates(problem, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)]
+        self.struck = [
+            s for s in self._candidates(problem, touching, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)
+        ]
         for slack in _LADDER[:3]:
             for found in self.struck:
                 if contacts.valid(problem, found, touching, slack * self._fastest(problem)):

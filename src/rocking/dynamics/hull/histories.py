@@ -304,12 +304,12 @@ def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:
     attitude = tuple(start.quaternion.tolist())
     axes, spin = frame(attitude), start.body_velocity.tolist()
     low = min(body.points, key=lambda p: dot(axes[2], p))
-    velocity = applied(axes, cross((spin[0], spin[1], spin[2]), scaled(-1.0, low)))
-    return np.array([*attitude, 0.0, 0.0, -dot(axes[2], low), *velocity, *spin])
+    velocity = np.add(start.velocity, applied(axes, cross((spin[0], spin[1], spin[2]), scaled(-1.0, low))))
+    return np.array([*attitude, 0.0, 0.0, start.height - dot(axes[2], low), *velocity, *spin])
 
 
 def start_of(body: HullBody, start: SpatialStart) -> State:
-    """Return the state of a body that leans at the start, its lowest vertex at rest on the ground."""
+    """Return the state of a body at the start, whose lowest vertex is on the ground at rest, or above it."""
     return _state(numbers_of(body, start))
 
 

@@ -44,7 +44,7 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     if isinstance(law, FixedPosition):
         return _on_base(body, base, lambda _step: law.k)
     if isinstance(law, float):
-        return _on_base(body, base, _of_coefficient(body, base, law))
+        return _on_base(body, base, _of_coefficient(body, base, law), math.inf)
     if law == "housner-3d":
         return lambda _old, _new: 1.0
     position = impulse_position(spread_of(body))
@@ -61,13 +61,13 @@ def spread_of(body: HullBody) -> Solid:
     return body.solid
 
 
-def _on_base(body: HullBody, base: int, position: Callable[[Vector], float]) -> ImpulseLaw:
-    """Keep a law to steps within the base, and k between 0 and 1, where no force pulls."""
+def _on_base(body: HullBody, base: int, position: Callable[[Vector], float], highest: float = 1.0) -> ImpulseLaw:
+    """Keep a law to steps within the base, and k from 0 to 1, where no force pulls; a stated loss may be larger."""
     normal, height = unit(body.facets[base]), float(body.hull.heights[base])
 
     def at(old: Vector, new: Vector) -> float:
         lies = all(height - dot(normal, p) <= FLAT * body.size for p in (old, new))
-        return min(max(position(minus(new, old)), 0.0), 1.0) if lies else 1.0
+        return min(max(position(minus(new, old)), 0.0), highest) if lies else 1.0
 
     return at
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, each, norm
 
 Rows = list[list[Any]]
@@ -99,29 +100,60 @@ class SpatialStart:
         Rotation about the vertical before that [rad].
     angular_velocity : tuple of float
         In axes of the ground [rad/s].
+    height : float
+        Of the lowest point above the ground [m].
+    velocity : tuple of float
+        Of the lowest point, in axes of the ground [m/s].
+
+    Notes
+    -----
+    A body in space without friction has `height` and `velocity` zero: it neither slides nor flies.
 
     Examples
     --------
     >>> SpatialStart(tilt=0.1).quaternion.round(4).tolist()
     [0.9988, 0.0, 0.05, 0.0]
+    >>> SpatialStart(tilt=0.1).rocks_alone, SpatialStart(height=0.02).rocks_alone
+    (True, False)
     """
 
     tilt: float = 0.0
     azimuth: float = 0.0
     yaw: float = 0.0
     angular_velocity: Any = (0.0, 0.0, 0.0)
+    height: float = 0.0
+    velocity: Any = (0.0, 0.0, 0.0)
 
     @property
     def valid(self) -> bool:
         """Whether the numbers are finite and within their ranges."""
-        spin = np.asarray(self.angular_velocity, dtype=np.float64)
-        numbers = [self.tilt, self.azimuth, self.yaw]
+        rates = [np.asarray(each, dtype=np.float64) for each in (self.angular_velocity, self.velocity)]
+        numbers = [self.tilt, self.azimuth, self.yaw, self.height]
         return bool(
-            spin.shape == (3,)
-            and np.isfinite(spin).all()
+            all(each.shape == (3,) and np.isfinite(each).all() for each in rates)
             and all(math.isfinite(value) for value in numbers)
             and 0.0 <= self.tilt < 0.5 * math.pi
+            and self.height >= 0.0
         )
+
+    @property
+    def rocks_alone(self) -> bool:
+        """Whether the lowest point is at rest on the ground, as that of a body without friction is."""
+        return not (self.height or np.any(self.velocity))
+
+    @property
+    def numbers(self) -> list[float]:
+        """Every number of the start, in the order of the parameters."""
+        spin, velocity = (np.ravel(each).tolist() for each in (self.angular_velocity, self.velocity))
+        return [self.tilt, self.azimuth, self.yaw, *spin, self.height, *velocity]
+
+    def check_grounded(self) -> None:
+        """Refuse a start in the air or in motion along the ground: without friction a body neither slides nor flies."""
+        if not self.rocks_alone:
+            raise InvalidValueError(
+                f"height and velocity of the start must be 0 without friction, got {self.height!r:.30} m and "
+                f"{self.velocity!r:.60} m/s: without friction= a body neither slides nor flies"
+            )
 
     @property
     def quaternion(self) -> FloatArray:

@@ -120,6 +120,8 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     starts = [SpatialStart()] if start is None else _listed("start", start)
     if factors.ndim != 1 or not factors.size or not all(isinstance(s, SpatialStart) for s in starts):
         raise InvalidValueError("scales must be one number or a row of them, and start one or more SpatialStart")
+    for each in starts:
+        each.check_grounded()
     for motion in motion_list:
         plausibility.warn(plausibility.of_scaled(_components(motion), factors))
     check_progress(progress)
@@ -235,7 +237,7 @@ def provenance_of(
     stated: dict[str, Any], motions: Sequence[Any], starts: Sequence[SpatialStart], duration: float | None, usual: str
 ) -> dict[str, Any]:
     """Return of what a batch was computed, beside its labels and bodies; usual: how long where nobody says."""
-    leaning = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in starts if s.valid]
+    leaning = [start.numbers for start in starts if start.valid]
     return {
         "duration_s": usual if duration is None else float(duration),
         **{f"setting_{name}": value for name, value in stated.items()},

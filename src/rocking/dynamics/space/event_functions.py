@@ -64,6 +64,8 @@ def padded(series: FloatArray, count: int) -> FloatArray:
 
 SLOW_OPENING = 1e-9  # accelerations of a gap below this share of gravity count as none, as in the choice of what stays
 START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base rolls, and at which it lies flat
+LANDING, FLAT = 1e-3, 1e-6
+"""Sines of the tilt at which a falling rim shows how near to flat it will pass, and below which that is a landing."""
 NEARLY_FLAT = 0.01
 """Share of the slenderness angle below which a round base that would lose contact is held down; see `nearly_flat`."""
 
@@ -118,16 +120,28 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
     return body.round and bool(math.hypot(up[0], up[1]) * float(body.centre[2]) < NEARLY_FLAT * body.radius)
 
 
-def rim_events(body: SpatialBody, contact: ContactSet, step: Step) -> float | None:
-    """Return when a round base begins to roll, or lies flat."""
+def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
+    """Return the direction in which a rim falls if that leads through lying flat, None if it rolls past.
+
+    A rigid rim that passes as near as one likes rolls on, without loss, and one that passes exactly strikes. Real bases
+    are not flat to 1e-6: what goes nearer strikes with all of the base.
+    """
+    falling = cross(up, velocity)[:2]
+    past = abs(float(up[0] * falling[1] - up[1] * falling[0]))  # Eq. 328
+    return falling if past < FLAT * norm(falling) and float(dot_of(up[:2], falling)) < 0.0 else None
+
+
+def rim_events(body: SpatialBody, contact: ContactSet, step: Step, *, landing: bool = False) -> float | None:
+    """Return when a round base begins to roll, passes `LANDING`, or lies flat; landing: whether it falls flat."""
     if contact.mode is ContactMode.ROLLING:
         first = step.up[0, :2]
-        sine = applied(step.up[:, :2], first) / norm(first)
-        sine[0] -= STOP_ROLLING
+        size = norm(first)
+        sine = applied(step.up[:, :2], first) / size
+        sine[0] -= LANDING if size > LANDING * (1.0 + 1e-6) else STOP_ROLLING
         return first_zero(sine, started=False)
     lean = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # sine of the tilt away from the point
     flat, steep = lean.copy(), -lean
-    steep[0] += START_ROLLING
+    steep[0] += 2.0 * LANDING if landing else START_ROLLING
     # lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
     floor = 0.25 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2 / body.radius
     found = [first_zero(flat, started=abs(lean[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]

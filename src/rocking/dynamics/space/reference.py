@@ -50,6 +50,7 @@ class SpatialReference:
         self.touching: tuple[int, ...] = ()
         self.at_once, self.moment = 0, -1.0  # events at one moment
         self.late = 0  # steps after the end
+        self.landing = False  # whether a round base falls flat
         self.sticks = False  # whether impacts piled up on this edge, so that no end of it is released
 
     # ---- the course of a history ------------------------------------------------------------------------------------
@@ -112,7 +113,9 @@ class SpatialReference:
             return Outcome.FAILED, Status.NOT_FINITE
         landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
         letting = event_functions.first_release(self.body, self.contact, step)
-        rim = event_functions.rim_events(self.body, self.contact, step) if self.body.round else None
+        rim = None
+        if self.body.round:
+            rim = event_functions.rim_events(self.body, self.contact, step, landing=self.landing)
         held = False  # whether contact stays although the ground would let go
         if letting is not None:
             nearly_flat = event_functions.nearly_flat(self.body, rolling.value(step.up, letting[0]))
@@ -206,34 +209,46 @@ class SpatialReference:
 
     def _impact(self, vertex: int) -> Ending:
         body = self.body
-        gaps = applied(body.vertices - self.contact.pivot, self._up)
+        arms = body.vertices - self.contact.pivot
+        gaps, rates = applied(arms, self._up), applied(cross(self.velocity, arms), self._up)
         closed = {vertex, *self.contact.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
-        if self.contact.mode is ContactMode.EDGE or len(closed) > 2:
+        near = gaps.max() <= event_functions.FLAT * body.size
+        flat = near and rates.max() <= CLOSED * body.size * norm(self.velocity)  # Eq. 329
+        if self.contact.mode is ContactMode.EDGE or len(closed) > 2 or flat:
             closed = set(range(len(body.vertices)))
-        touching = tuple(sorted(closed))
+        touching, height = tuple(sorted(closed)), 0.0
         if len(touching) == len(body.vertices):
+            height = self._potential()
             self.quaternion = attitude.flat(self.quaternion)
         piled = self.at_once > _PILED
         choice = stuck(body, self._state(), touching) if piled else landed(body, self._state(), touching, self.law)
-        return self._land(choice, touching, piled=piled)
+        return self._land(choice, touching, height, piled=piled)
 
     def _rim(self) -> Ending:
         up = self._up
-        if (
-            self.contact.mode is not ContactMode.ROLLING
-            and math.hypot(up[0], up[1]) > 0.5 * event_functions.START_ROLLING
-        ):
-            self.contact = complementarity.rolling(self.contact)
+        rolls, sine = self.contact.mode is ContactMode.ROLLING, math.hypot(up[0], up[1])
+        if not rolls and sine > (event_functions.LANDING if self.landing else 0.5 * event_functions.START_ROLLING):
+            self.contact, self.landing = complementarity.rolling(self.contact), False
             return self._guard()
+        if rolls and sine > 0.5 * event_functions.LANDING:
+            falls = event_functions.lands_flat(up, self.velocity)
+            if falls is not None:
+                self._stand(complementarity.rim(self.body, falls))
+                self.landing = True
+            return self._guard()
+        self.landing = False
         state = self._state()
-        if self.contact.mode is ContactMode.ROLLING:
+        if rolls:
             self.contact = complementarity.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
 
-    def _land(self, choice: Continuation, touching: tuple[int, ...], *, piled: bool = False) -> Ending:
-        before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else 0.0)
+    def _land(
+        self, choice: Continuation, touching: tuple[int, ...], height: float = 0.0, *, piled: bool = False
+    ) -> Ending:
+        """Stand on what an impact leaves; height: potential energy that was given up to lie flat [J]."""
+        before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else height)
         self._stand(choice.contact)
         self.velocity = choice.velocity
         if piled:

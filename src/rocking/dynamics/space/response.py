@@ -350,6 +350,7 @@ def response_in_space(
     # rocks until it rests or lies, at most 300 / p after the motion, but for round bases; on ground at rest the same
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
+    start.check_grounded()
     start = started(start, made.frequency(conventions.g))
     p, shaken = made.frequency(settings.gravity), [motion for motion in components if motion is not None]
     if shaken and not all(hasattr(motion, "duration") for motion in shaken):
@@ -387,7 +388,11 @@ def started(start: SpatialStart, pace: float) -> SpatialStart:
         raise InvalidValueError(
             f"angular_velocity must be three numbers in [-{most:g}, {most:g}] rad/s, got {start.angular_velocity!r:.60}"
         )
-    return replace(start, tilt=tilt, azimuth=azimuth, yaw=yaw, angular_velocity=spin)
+    height = checks.within("height", start.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
+    velocity = checks.real_array("velocity", start.velocity, "m/s")
+    if velocity.shape != (3,) or not (np.abs(velocity) <= 1e4).all():
+        raise InvalidValueError(f"velocity must be three numbers in [-1e4, 1e4] m/s, got {start.velocity!r:.60}")
+    return replace(start, tilt=tilt, azimuth=azimuth, yaw=yaw, angular_velocity=spin, height=height, velocity=velocity)
 
 
 def samples(step: float, end: float) -> FloatArray:
