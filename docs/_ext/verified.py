@@ -32,7 +32,7 @@ KINDS = {
     "order": "errors fall with the declared power of the step",
     "invariant": "what must be kept, or must not matter: energy, mirror images, size, units, place",
     "second engine": "our two engines for the same mechanics, which share nothing but the numbers that go in",
-    "other program": "rigid-body codes of others that know nothing of rocking",
+    "other program": "programs of others: rigid-body codes that know nothing of rocking, codes that read our files",
     "published": "numbers printed in the literature",
     "measured": "coefficients of restitution that were measured",
     "repeated sampling": "how often an interval holds the truth, and how draws are distributed",

@@ -166,6 +166,7 @@ def test_drift_out_of_a_plane_is_turned_back(corners):
 @pytest.mark.verifies("invariant", "the lowest vertex of a start is at rest on the ground", within="1e-12")
 @pytest.mark.parametrize("spin", [(0.3, 0.0, 0.0), (0.0, -0.4, 0.0), (0.0, 0.0, 0.5), (0.3, -0.4, 0.5)])
 def test_the_lowest_vertex_of_a_start_is_at_rest(spin):
+    """At the start the lowest vertex is on the ground and has no velocity."""
     body = tower()
     state = start_of(body, SpatialStart(tilt=0.2, azimuth=0.7, yaw=0.4, angular_velocity=spin))
     axes = frame(state.attitude)
@@ -179,6 +180,7 @@ def test_the_lowest_vertex_of_a_start_is_at_rest(spin):
 
 @pytest.mark.verifies("closed form", "hypotenuse of 3 and 4", within="1e-15")
 def test_a_body_is_displaced_by_the_straight_distance():
+    """The displacement of a history is the horizontal distance between its ends."""
     history, start = HullHistory(), standing(tower())
     history.states = [start._replace(place=(1.0, 2.0, 0.5)), start._replace(place=(4.0, 6.0, 0.7))]
     history.time = [0.0, 1.0]

@@ -51,7 +51,7 @@ def shares(path):
     return sample.mean().to_numpy(dtype=float)
 
 
-@pytest.mark.verifies("other code", "PELICUN", within="four standard errors of its sample", room="studies")
+@pytest.mark.verifies("other program", "PELICUN", within="four standard errors of its sample", room="studies")
 def test_pelicun_computes_the_probability_of_the_curve(tmp_path):
     """At .6 g the worst state has the probability of its curve; Demand-Directional 0 multiplies the demand by 1.2."""
     wanted = float(lognormal_probability(np.array(DEMAND * G), CURVES[1].median, CURVES[1].dispersion))

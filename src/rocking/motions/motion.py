@@ -138,7 +138,13 @@ class GroundMotion:
         return self.upright_segments()
 
     def upright_segments(self) -> Segments:
-        """Return the same as `segments` of a motion along z, which may be a vertical component."""
+        """Return what `segments` returns, also for a vertical component, which is a motion along z.
+
+        Returns
+        -------
+        Segments
+            Straight lines between the samples [m/s2, s].
+        """
         return Segments.between_samples(self.time_step, self.acceleration, self.vertical)
 
     def changed(self, what: str, **fields: Any) -> "GroundMotion":

@@ -265,8 +265,8 @@ class IdentifiedTrials(Exported):
 def passed_over_words(others: Mapping[str, str]) -> str:
     """Return files and the reasons why they are no recordings, those of one reason together.
 
-    >>> passed_over_words({"a.jpg": "another kind of file", "b.md": "another kind of file", "c.csv": "no row"})
-    'a.jpg, b.md (another kind of file); c.csv (no row)'
+    >>> passed_over_words({"a.jpg": "another kind of file", "b.doc": "another kind of file", "c.csv": "no row"})
+    'a.jpg, b.doc (another kind of file); c.csv (no row)'
     """
     names = {reason: [name for name, each in others.items() if each == reason] for reason in others.values()}
     return "; ".join(f"{', '.join(each)} ({reason})" for reason, each in names.items())

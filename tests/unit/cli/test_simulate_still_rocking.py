@@ -50,7 +50,7 @@ def test_page_says_it(printed, answered):
     assert "no impact loses energy, so that it never comes to rest" in end["sentence"]
 
 
-@pytest.mark.verifies("closed form", "the linear equations from impact to impact", within="1e-6")
+@pytest.mark.verifies("closed form", "the linear equations from impact to impact", within="1e-6", room="doors")
 def test_a_pulse_is_followed_until_the_body_rests(printed, answered, long_record):
     """Impacts come at the times of the closed form of free rocking, up to rest; a minute of rest after the same pulse
     gives the same impacts."""

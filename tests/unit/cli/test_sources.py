@@ -42,6 +42,7 @@ def words_of(command, record, tmp_path):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_floor_is_in_the_answer(run, record, tmp_path, command):
+    """Screen and `--json` of each command contain the floor, its building, its damping, all steps and stated units."""
     words, sha = words_of(command, record, tmp_path), hashlib.sha256(record.read_bytes()).hexdigest()
     code, page, err = run(*words)
     assert code == 0, err
@@ -53,6 +54,7 @@ def test_the_floor_is_in_the_answer(run, record, tmp_path, command):
 
 @pytest.mark.parametrize("command", ["predict", "assess", "inventory"])
 def test_the_floor_is_in_the_report(run, record, tmp_path, command):
+    """Reports contain the floor and all steps; the report of the ground motion does not contain the floor."""
     pytest.importorskip("jinja2")
     page, sha = tmp_path / "report.html", hashlib.sha256(record.read_bytes()).hexdigest()
     code, _, err = run(*words_of(command, record, tmp_path), "--out", page)
@@ -69,6 +71,7 @@ def test_the_floor_is_in_the_report(run, record, tmp_path, command):
 
 
 def test_a_level_is_an_option(run, record):
+    """`--pga` gives the same answer as `predict.pga`."""
     few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.shares=false", "--json")
     _, text, _ = run("predict", *SIZE, record, "--pga", "0.3g", *few)
     motion = json.loads(text)["motions"][0]

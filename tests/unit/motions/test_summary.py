@@ -18,7 +18,7 @@ from rocking.motions.summary import (
     summaries_of,
 )
 
-pytestmark = pytest.mark.verifies("behaviour", room="motions")
+pytestmark = pytest.mark.verifies("behaviour", room="motions and records")
 FLOOR = "floor:number=3,storeys=5,period=0.5"
 
 
@@ -27,6 +27,7 @@ def record(scale=1.0, name="a"):
 
 
 def test_every_step_and_the_floor_stand_in_the_summary():
+    """The summary contains each processing step, and the floor as the support."""
     found = MotionSummary.of(processed(record(), f"mean; bandpass:low=0.2,high=20; {FLOOR}; scale:pga=2"))
     assert found.support == "floor 3 of 5"
     assert found.name == "a, floor 3 of 5"
@@ -41,12 +42,14 @@ def test_every_step_and_the_floor_stand_in_the_summary():
 
 @pytest.mark.verifies("closed form", "the velocity of a sine from rest, 2 A / omega", within="1e-6")
 def test_intensity():
+    """PGA and PGV of a sine pulse are those of the closed form."""
     found = MotionSummary.of(rk.pulses.sine(amplitude=3.0, period=0.8))
     assert found.peak == 3.0
     assert found.peak_velocity == pytest.approx(2.0 * 3.0 * 0.8 / (2.0 * np.pi), rel=1e-6)
 
 
 def test_the_condition_has_median_and_range():
+    """The condition of a probability has median and range of PGA and PGV."""
     found = summaries_of([record(scale * rk.conventions.g) for scale in (0.1, 0.2, 0.4, 0.8)])
     words = condition(found)
     assert words.startswith("given these 4 motions (PGA 0.3 g, 0.1 to 0.8 g; PGV ")
@@ -55,6 +58,7 @@ def test_the_condition_has_median_and_range():
 
 
 def test_what_is_shared_stands_once():
+    """A step that all motions share is written once."""
     found = summaries_of([processed(record(name=name), FLOOR) for name in "abc"])
     rows = provenance_rows(found)
     assert [name for name, _ in rows] == [*(f"{name}, floor 3 of 5" for name in "abc"), "all 3 motions"]
@@ -63,6 +67,7 @@ def test_what_is_shared_stands_once():
 
 
 def test_components_say_what_differs_by_axis():
+    """Steps that differ between components are written by axis."""
     both = processed(Components(record(name="ns"), record(name="ew"), None), FLOOR)
     said = provenance_of(both)
     assert said[:2] == ("x: made of ns", "y: made of ew")
@@ -71,6 +76,7 @@ def test_components_say_what_differs_by_axis():
 
 
 def test_many_records_show_their_files():
+    """Of many records the files are listed."""
     several = [rk.GroundMotion([0.0, 1.0], 0.1, name=f"r{k}", provenance=(f"read from r{k}, SHA-256 {k}", "mean"))
                for k in range(30)]  # fmt: skip
     rows = short_provenance(summaries_of(several))
@@ -80,6 +86,7 @@ def test_many_records_show_their_files():
 
 
 def test_what_the_user_states_stands_in_the_provenance(tmp_path):
+    """Unit, step and format that the user states are a step of the provenance."""
     path = tmp_path / "plain.txt"
     path.write_text("0.0\n0.5\n-0.2\n0.1\n", "utf-8")
     found = rk.read_motion(path, units="g", time_step=0.02)

@@ -62,7 +62,7 @@ def with_response_out(path, stations):
     return processed(read_motion(path, stations=stations), [f"response:stations={stations},low=0.2,high=30"])
 
 
-@pytest.mark.verifies("closed form", "a low pass of first order", within="2e-3", control="other")
+@pytest.mark.verifies("closed form", "a low pass of first order", within="2e-3", control="within")
 @pytest.mark.parametrize(
     "channels",
     [

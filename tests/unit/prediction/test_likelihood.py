@@ -16,7 +16,7 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 WEAK = rk.pulses.sine(1.0, 0.6)
 
 
-@pytest.mark.verifies("published data", "Mastrandrea et al. (2010), Table 1")
+@pytest.mark.verifies("published", "Mastrandrea et al. (2010), Table 1")
 def test_the_terms_of_the_scale():
     """Guidance Note for Lead Authors of the IPCC Fifth Assessment Report, Table 1."""
     printed = {
@@ -28,8 +28,9 @@ def test_the_terms_of_the_scale():
     assert all(words in scale_words() for words in printed)
 
 
-@pytest.mark.verifies("invariant")
+@pytest.mark.verifies("invariant", "all intervals of a grid of 41 probabilities")
 def test_a_term_holds_the_whole_interval():
+    """Both ends of an interval lie within the range of the term, or of the first and the last term."""
     ranges = {term.words: term for term in TERMS}
     for low, high in itertools.combinations(np.linspace(0.0, 1.0, 41), 2):
         first, _, last = likelihood(low, high).partition(" to ")
@@ -39,6 +40,7 @@ def test_a_term_holds_the_whole_interval():
 
 @pytest.mark.verifies("closed form", "1 - 0.025**(1/16)", within="1e-12")
 def test_none_of_sixteen_is_not_almost_certain():
+    """0 of 16 histories: the Clopper-Pearson interval ends at 20.6 %, and the word is "unlikely"."""
     found = predict(BLOCK, WEAK, count=16, shares=False)
     chance = found.chances["overturning"]
     assert (chance.low, chance.high) == pytest.approx((0.0, 1.0 - 0.025 ** (1.0 / 16.0)), abs=1e-12)
@@ -51,7 +53,7 @@ def test_none_of_sixteen_is_not_almost_certain():
     assert likelihood(*share_interval(0, 512)) == "exceptionally unlikely"
 
 
-@pytest.mark.verifies("invariant")
+@pytest.mark.verifies("invariant", "sentences against the outcomes of all histories")
 def test_sentences_of_one_answer_agree():
     """Where a sentence says that an input changes the probability, none says that all histories end alike."""
     for seed, amplitude in itertools.product(range(4), (1.0, 2.75, 2.9, 3.4)):

@@ -185,7 +185,7 @@ def with_fall(along, up):
     return with_vertical(rk.GroundMotion(along, 1e-3), rk.GroundMotion(up, 1e-3))
 
 
-@pytest.mark.verifies("closed form", "moments about the foot at each instant", within="1e-12")
+@pytest.mark.verifies("closed form", "moments about the foot at each instant", within="1e-12", room="studies")
 def test_a_falling_ground_is_in_the_static_limit():
     """0.6 g along and 0.2 g down at once: demand over capacity (0.6 + 0.2 b/h) / (b/h) = 1.1, not 0.9."""
     along, up = np.where((F3 > 0.3) & (F3 < 0.6), 0.6 * g, 0.0), np.where(F3 > 0.2, -0.2 * g, 0.0)
@@ -206,7 +206,7 @@ def test_a_falling_ground_is_in_the_static_limit():
     assert factor * 0.6 * g * 0.9 == pytest.approx((g - factor * 0.2 * g) * 0.28, rel=1e-12)
 
 
-@pytest.mark.verifies("closed form", "the two load combinations, moment by moment", within="1e-12")
+@pytest.mark.verifies("closed form", "the two load combinations, moment by moment", within="1e-12", room="studies")
 @pytest.mark.parametrize(("name", "force", "dead"), [("asce-7-strength", 1.0, 0.9), ("asce-7-allowable", 0.7, 0.6)])
 def test_asce_7_balances_its_combination(name, force, dead):
     """At the factor that it allows the moments of F_p and of the reduced weight are equal, by the worse side."""
