@@ -45,7 +45,7 @@ def rows():
     room="evidence", control="test_a_constant_coefficient_is_noticed",
 )  # fmt: skip
 def test_intervals_hold_the_truth(rows):
-    """At nominal 95 %: over 1,875 it was 94 % of the mean and 96 % of the scatter, between the aims of 93 and 97 %.
+    """At nominal 95 % shares between 93 and 97 % are the aim; the page of theory has them for each scatter.
 
     Of 200 a share of 93 % is as low as 89 %, one of 97 % as high as 99.5 %, with a probability of 1 in 70.
     """
