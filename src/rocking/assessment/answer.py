@@ -278,9 +278,12 @@ class BodyAssessment:
         ]
         if self.standing is not None:
             found[0] = self.standing.words[0]
+        lifting = self.motions[first]
         found[0] += (
-            f"It lifts from {side.uplift_acceleration / g:.3g} g, at {self.lifts[first]:.3g} times "
-            f"{self.motions[first].name}."
+            f"It lifts from {side.uplift_acceleration / g:.3g} g, at {self.lifts[first]:.3g} times {lifting.name}."
+            if lifting.vertical is None
+            else f"Without vertical acceleration it lifts from {side.uplift_acceleration / g:.3g} g; with that of "
+            f"{lifting.name} at {self.lifts[first]:.3g} times this motion."
         )
         margins = {name: each.lowest for name, each in self.models.items() if math.isfinite(each.lowest)}
         if len(margins) > 1:
@@ -288,6 +291,8 @@ class BodyAssessment:
             found.append(
                 f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} "
                 f"({high})."
+                if f"{margins[low]:.3g}" != f"{margins[high]:.3g}"
+                else f"The margin is {margins[low]:.3g} with each of {len(margins)} restitutions."
             )
         if self.standing is not None:
             found.append(self.standing.words[1])
@@ -302,9 +307,13 @@ class BodyAssessment:
         shares = {name: each for name, each in self.prediction.shares.items() if each.total > 0.0}
         if shares:
             most = max(shares, key=lambda name: shares[name].total)
-            word = "which motion it is" if most == "case" else most
+            word, size = "which motion it is" if most == "case" else most, f"{min(shares[most].total, 1.0):.2f}"
+            others = [each.total_high for name, each in self.prediction.shares.items() if name != most]
             found.append(
-                f"Of what is not known, {word} decides most ({min(shares[most].total, 1.0):.2f} of the variance)."
+                f"Of what is not known, {word} decides most ({size} of the variance)."
+                if shares[most].total_low > max(others, default=0.0)
+                else f"No single uncertain input is distinguishable (95 %) as the main one; the largest total index of "
+                f"overturning is that of {word}, {size}."
             )
         return tuple(found)
 

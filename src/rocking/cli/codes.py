@@ -26,7 +26,7 @@ COUNT, SEED, LEVEL = 100, 1, "2"
 
 _HEAD = (
     "method", "body", "level", "histories", "called safe", "overturned of these", "demand over capacity",
-    "capacity over truth", "never overturned",
+    "capacity over truth", "never overturned", "outside its domain",
 )  # fmt: skip
 
 
@@ -35,7 +35,8 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
     for one, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
         called, bias = found.called_safe(one.name, k, j), found.bias(one.name, k)
         counts = called.total, called.safe, called.overturned
-        rows.append((one.name, body, level, *counts, called.ratio, bias.median, bias.censored))
+        outside = found.outside.get(one.name, "")
+        rows.append((one.name, body, level, *counts, called.ratio, bias.median, bias.censored, outside))
     write_columns(path, {name: (values, "") for name, values in zip(_HEAD, zip(*rows, strict=True), strict=True)})
 
 

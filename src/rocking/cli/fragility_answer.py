@@ -169,7 +169,7 @@ class FragilityAnswer:
             ("motions", _motions_line(self._motions_facts())),
             *source_lines(self.sources),
             ("restitution", ", ".join(labels)),
-            ("measure", f"{first.subject.measure.name}, {first.subject.measure.words}"),
+            ("measure", f"{first.subject.measure.name}, {first.subject.measure_words}"),
             ("rocking", self._uplift()),
         ])  # fmt: skip
         page.line(sentence(first.definition))

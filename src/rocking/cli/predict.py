@@ -14,6 +14,7 @@ from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.study import source_lines
 from rocking.conventions import g, percent
+from rocking.motions.summary import peak_names
 from rocking.prediction.likelihood import scale_words
 
 if TYPE_CHECKING:
@@ -122,7 +123,8 @@ class PredictionAnswer:
         for line in found.sentences[1:]:
             page.line(line)
         page.line()
-        head = ("motion", "PGA g", "PGV m/s", *found.chances)
+        peak, speed = peak_names([motion.support for motion in found.motions])
+        head = ("motion", f"{peak} g", f"{speed} m/s", *found.chances)
         rows = [
             (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}",
              *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))

@@ -17,7 +17,7 @@ from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
-from rocking.motions.summary import MotionSummary
+from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
 from rocking.spec.construction import any_body_of, motions_of
 from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
@@ -205,7 +205,7 @@ class SeveralAnswer:
         count = len(self.motions)
         page.line(f"It overturns under {self._fell} of {count} motion{'s' * (count != 1)}.", "bold")
         page.line()
-        head = ("motion", "PGA g", "outcome", "peak deg", "impacts")
+        head = ("motion", f"{peak_names(map(support_of, self.motions))[0]} g", "outcome", "peak deg", "impacts")
         rows = []
         for row in self.facts()["motions"]:
             peak = "-" if row["outcome"] == "overturned" else f"{math.degrees(row['peak_rotation_rad']):.4g}"

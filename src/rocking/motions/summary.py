@@ -1,6 +1,6 @@
 """What answers and reports state of a motion: its support, its intensity, its source and each processing step."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,6 +50,26 @@ def peak_name(support: str, quantity: str = "A") -> str:
     ('PGA', 'PFV')
     """
     return f"P{'G' if support == GROUND else 'F'}{quantity}"
+
+
+def peak_names(supports: Iterable[str]) -> tuple[str, str]:
+    """Return the names of peak acceleration and velocity of motions on these supports.
+
+    >>> peak_names(["floor 3 of 5", "floor 2 of 5"]), peak_names(["ground", "roof"])
+    (('PFA', 'PFV'), ('PGA/PFA', 'PGV/PFV'))
+    """
+    kinds = sorted(set(supports), key=GROUND.__ne__)
+    acceleration, velocity = ("/".join(dict.fromkeys(peak_name(each, of) for each in kinds)) for of in "AV")
+    return acceleration, velocity
+
+
+def words_on(support: str, words: str) -> str:
+    """Return the words of a measure of motions on a support.
+
+    >>> words_on("floor 3 of 5", "peak ground acceleration")
+    'peak floor acceleration, floor 3 of 5'
+    """
+    return words if support == GROUND else f"{words.replace('peak ground', 'peak floor')}, {support}"
 
 
 @dataclass(frozen=True)

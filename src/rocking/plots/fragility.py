@@ -8,6 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.summary import words_on
 from rocking.plots.labels import PEAK, axis_label, geometric, plain_log, wrapped
 from rocking.plots.style import (
     COLORS,
@@ -103,7 +104,8 @@ def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityM
     upper.set_ylabel("probability [-]")
     _stack(lower, analysis)
     measure = analysis.subject.measure
-    lower.set_xlabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
+    label = axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear)
+    lower.set_xlabel(words_on(analysis.subject.support, label))
     lower.set_xlim(fine[0], fine[-1])
     if geometric(levels):
         plain_log(lower, "x")

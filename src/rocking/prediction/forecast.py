@@ -183,7 +183,8 @@ class Prediction(Exported):
     def _sentence(self, event: str) -> str:
         chance = self.chances[event]
         what = _GERUNDS[event].format(f"{1000.0 * self.sliding_beyond:g}")
-        given = self.condition if event == "overturning" else "given the same motions"
+        same = f"given the same motion{'s' * (len(self.motions) != 1)}"
+        given = self.condition if event == "overturning" else same
         return f"{what} is {likelihood(chance.low, chance.high)} {given}: {_of(chance)}."
 
     def __str__(self) -> str:

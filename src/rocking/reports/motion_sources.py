@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from rocking.motions.summary import GROUND, MotionSummary, peak_name, provenance_rows
+from rocking.motions.summary import MotionSummary, peak_names, provenance_rows
 from rocking.reports.document import ReportTable, table
 
 _MOST = 200
@@ -17,9 +17,5 @@ def motion_sources(found: Sequence[MotionSummary]) -> ReportTable:
 
 def peak_heads(found: Sequence[MotionSummary]) -> list[str]:
     """Return the heads of the columns of peak acceleration and velocity, on the ground or on a floor."""
-    supports = {each.support for each in found}
-    on_floors = GROUND not in supports
-    support = next(iter(supports)) if on_floors else GROUND
-    mixed = not on_floors and len(supports) > 1
-    names = [peak_name(support, quantity) + ("/PF" + quantity if mixed else "") for quantity in "AV"]
-    return [f"{names[0]} [g]", f"{names[1]} [m/s]"]
+    acceleration, velocity = peak_names(each.support for each in found)
+    return [f"{acceleration} [g]", f"{velocity} [m/s]"]

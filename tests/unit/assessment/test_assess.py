@@ -191,3 +191,23 @@ def test_what_makes_no_sense_is_refused():
         rk.assess(CABINET, record(3.0), margin=1e9)
     with pytest.raises(rk.errors.UnknownModelError):
         rk.assess(CABINET, record(3.0), ["nobody"])
+
+
+def test_what_governs_agrees_with_its_figures():
+    """Equal margins are not said to move; uplift with vertical motion is not that without; overlapping indices."""
+    time = np.arange(0.0, 1.6, 0.01)
+    level, up = 6.0 * np.sin(2.0 * math.pi * time / 0.8), np.full(time.size, -2.0)
+    found = rk.assess(CABINET, rk.GroundMotion(level, 0.01, up, name="both"), ["ked", "housner"], count=16)
+    lifts = 0.28 * g / (0.9 * 6.0 + 0.28 * 2.0)  # k 6 h = (g - k 2) b, the weaker side
+    assert found.lifts[0] == pytest.approx(lifts, rel=2e-3)  # the largest sample is below 6 m/s2
+    assert f"Without vertical acceleration it lifts from {0.28 / 0.9:.3g} g; with that of both at " in found.governs[0]
+    along = rk.assess(CABINET, rk.GroundMotion(level, 0.01, name="both"), ["ked", "housner"], count=16)
+    assert f"It lifts from {0.28 / 0.9:.3g} g, at " in along.governs[0]
+    low, high = (f(each.lowest for each in along.models.values()) for f in (min, max))
+    assert (f"{low:.3g}" == f"{high:.3g}") == ("moves the margin" not in " ".join(along.governs))
+    shares = along.prediction.shares
+    if any(share.total > 0.0 for share in shares.values()):
+        most = max(shares.values(), key=lambda share: share.total)
+        apart = most.total_low > max(each.total_high for each in shares.values() if each is not most)
+        assert ("decides most" in along.governs[-1]) == apart
+        assert ("distinguishable" in along.governs[-1]) != apart

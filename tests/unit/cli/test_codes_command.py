@@ -34,6 +34,7 @@ def test_a_grid_of_bodies(printed, answered, tmp_path):
                     called["safe"], called["overturned"],
                 )  # fmt: skip
                 assert called["safe"] <= called["total"] == 6
+                assert row["outside its domain"] == said["outside"]
     assert found["methods"]["italian-linear"]["called_safe"][0][1]["safe"] == 6
 
 

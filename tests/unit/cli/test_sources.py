@@ -84,3 +84,33 @@ def test_a_level_is_an_option(run, record):
     code, _, err = run("predict", *SIZE, record, "--pga", "0.3g", "--set", FLOOR, *few)
     assert code == 2
     assert "floor 3 of 5" in err
+
+
+def test_curves_of_a_floor_are_not_of_the_ground(run, tmp_path):
+    """PELICUN reads peak floor acceleration; OpenQuake, whose PGA is that of the ground, gets no file."""
+    rng, times, names = np.random.default_rng(4), 0.02 * np.arange(200), []
+    for k in range(6):
+        wave = sum(np.sin(f * times + rng.uniform(0.0, 6.0)) for f in (4.0, 7.0, 11.0)) * np.exp(
+            -(((times - 2) / 1.2) ** 2)
+        )
+        names.append(tmp_path / f"r{k}.txt")
+        names[-1].write_text("\n".join(f"{t:.2f} {a:.6f}" for t, a in zip(times, wave, strict=True)), "utf-8")
+    words = ("fragility", "--width", 0.25, "--height", 1.25, "--centre", "0.11,0.6", *names, "--units", "m/s2",
+             "--levels", "0.15g:1.2g:9", "--states", "overturning")  # fmt: skip
+    table, nrml = tmp_path / "pelicun.csv", tmp_path / "nrml.xml"
+    for process, demand in (((), "Peak Ground Acceleration"), (("--set", FLOOR), "Peak Floor Acceleration")):
+        code, page, err = run(*words, *process, "--out", f"pelicun={table}")
+        assert code == 0, err
+        assert f",{demand},g,0,1," in table.read_text("utf-8")
+        assert ("peak floor acceleration, floor 3 of 5" in page) == bool(process)
+        code, _, err = run(*words, *process, "--out", nrml)
+        assert (code == 0) == nrml.exists() == (not process), err
+        nrml.unlink(missing_ok=True)
+    assert "these motions are of floor 3 of 5" in err
+
+
+def test_the_head_of_peaks_names_the_floor(run, record, tmp_path):
+    assert "PFA g" in run(*words_of("predict", record, tmp_path))[1]
+    ground = ("predict", *COMMANDS["predict"], record, "--units", "m/s2")
+    assert "PGA g" in run(*ground)[1]
+    assert "PFA" not in run(*ground)[1]

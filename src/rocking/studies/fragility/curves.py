@@ -308,9 +308,9 @@ def with_evidence(
 
 
 def without_crossing(model: FragilityModel, crossing: Crossing = "keep-uplift") -> FragilityModel:
-    """Return the model with curves that do not cross, by one of the treatments; by "refuse" the model as it is."""
+    """Return the model with curves that do not cross, by one of the treatments; one curve and "refuse": as it is."""
     match check_crossing(crossing):
-        case "common-dispersion":
+        case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
         case "keep-uplift" if (excess := crosses(model)) is not None:
             return _keeping_uplift(model, excess)

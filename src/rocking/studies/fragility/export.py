@@ -14,6 +14,7 @@ import numpy as np
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import MEASURES, exchange_unit, spectral_measure, spectral_period
+from rocking.motions.summary import GROUND, words_on
 from rocking.statistics.goodness import STATISTICS
 from rocking.studies.fragility.curves import (
     CLAIMS,
@@ -157,7 +158,7 @@ def fema_p58_table(
         "Data Quality and Relevance", "Source of Data", "Number of Histories",
     )  # fmt: skip
     model = nested(model, crossing)
-    demand, count = demand_parameter or model.measure, int(np.sum(model.trials))
+    demand, count = demand_parameter or words_on(_support(model), model.measure), int(np.sum(model.trials))
     unit, size = exchange_unit(model.measure, model.unit)
     unit = "dimensionless" if unit == "-" else unit
     about = (model.adjusted, "" if model.uplift_threshold is None else uplift_words(model))
@@ -184,7 +185,14 @@ def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
         raise InvalidValueError(
             f"for PELICUN curves stand against pga or sa(period) with 5 % damping, got {model.measure!r:.60}"
         )
-    demand = "Peak Ground Acceleration" if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
+    on_floor = _support(model) != GROUND
+    if on_floor and spectral is not None:
+        raise InvalidValueError(
+            f"for PELICUN curves of motions of {_support(model)} stand against pga (written as Peak Floor "
+            f"Acceleration), got {model.measure!r:.60}"
+        )
+    peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
+    demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
     unit, size = exchange_unit(model.measure, model.unit)
     # Demand-Directional is 1, since the curve is of the motion in one direction: with 0 PELICUN takes the larger of
     # two directions times NonDirectionalMultipliers, 1.2 unless a user sets another (pelicun/model/demand_model.py)
@@ -366,6 +374,11 @@ def to_nrml(
     """
     target = target_of(path)
     loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
+    if _support(model) != GROUND:
+        raise InvalidValueError(
+            f"OpenQuake takes {model.measure} as that of the ground; these motions are of {_support(model)}. "
+            "Fit curves to motions of the ground, or export to PELICUN or FEMA P-58"
+        )
     imt, unit, size = intensity_type(model.measure)
     model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
     top = model.highest if highest is None else highest
@@ -403,6 +416,10 @@ def intensity_type(measure: str) -> tuple[str, str, float]:
             "fit the curves against one of these"
         )
     return one.openquake
+
+
+def _support(model: FragilityModel) -> str:
+    return str(model.about.get("support", GROUND))
 
 
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
-from rocking.motions.summary import provenance_of
+from rocking.motions.summary import GROUND, provenance_of, support_of, words_on
 from rocking.outcome import Outcome, contact_words, lost_contact, of_results, overturned
 from rocking.quantities import attributes
 from rocking.restitution.from_file import origin_of
@@ -122,11 +122,23 @@ class Subject:
             clusters[k] = first.setdefault(digest(self.motions[k]), k)
         return clusters
 
+    @cached_property
+    def support(self) -> str:
+        """Where the motions act: "ground", a floor, or several of these."""
+        if not isinstance(self.motions, MotionList):
+            return GROUND  # families are of the ground
+        return ", ".join(dict.fromkeys(support_of(self.motions[k]) for k in range(len(self.motions))))
+
+    @property
+    def measure_words(self) -> str:
+        """Words of the measure, with the floor on which the motions act."""
+        return words_on(self.support, self.measure.words)
+
     @property
     def label(self) -> dict[str, str]:
         """Unit and words of the measure, for labelled datasets."""
         unit = self.measure.unit
-        return {"units": "1" if unit == "-" else unit, "long_name": self.measure.words}
+        return {"units": "1" if unit == "-" else unit, "long_name": self.measure_words}
 
     @property
     def _sides(self) -> dict[str, FloatArray]:
@@ -158,9 +170,10 @@ class Subject:
         return {
             "software": SOFTWARE,
             "measure": self.measure.name,
-            "measure_words": self.measure.words,
+            "measure_words": self.measure_words,
             "measure_unit": self.measure.unit,
             "restitution": self.parameters.label,
+            **({} if self.support == GROUND else {"support": self.support}),
             "motion_provenance": self._provenance,
             **origin_of(self.parameters.label),
             **{f"body_{name}": float(values[0]) for name, values in self._sides.items()},

@@ -174,3 +174,17 @@ def test_a_cloud_without_a_state_knows_its_parts():
     assert rk.fragility(block, pulses, analysis="cloud", states=["overturning"])["state"].values.tolist() == [
         "overturned"
     ]
+
+
+def test_one_state_has_no_common_dispersion(leaning):
+    """A single curve crosses none: it keeps its own fit and interval by every treatment."""
+    for crossing in ("keep-uplift", "common-dispersion", "refuse"):
+        made = model_of(leaning, "cabinet", crossing=crossing, states=["overturned"])
+        (curve,) = made.curves
+        assert made.adjusted == ""
+        assert (curve.median, curve.dispersion) == (
+            leaning.fits["overturned"].median,
+            leaning.fits["overturned"].dispersion,
+        )
+        assert curve.median_95 is not None
+    assert "One dispersion" in model_of(leaning, "cabinet", crossing="common-dispersion").adjusted
