@@ -71,7 +71,7 @@ def test_the_floor_is_in_the_report(run, record, tmp_path, command):
 
 
 def test_a_level_is_an_option(run, record):
-    """`--pga` gives the same answer as `predict.pga`."""
+    """`--pga` scales the motions to a level with its unit; other words, and motions of floors, are refused."""
     few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.shares=false", "--json")
     _, text, _ = run("predict", *SIZE, record, "--pga", "0.3g", *few)
     motion = json.loads(text)["motions"][0]
