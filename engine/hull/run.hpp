@@ -960,7 +960,7 @@ class Run {
         for (int k = b_.first_corner[flat]; k < b_.first_corner[flat + 1]; ++k) corners.push_back(b_.corners[k]);
         const Points& carry = mode_.contact.members;
         for (int i : corners)
-            if (!has(near, i) || (!has(carry, i) && velocity(i).z > 0.0)) return;  // Eq. 329
+            if (!has(near, i) || (!has(carry, i) && velocity(i).z > 0.0)) return;  // Eq. 328
         const double before = energy() - kinetic();
         const int kept = carry.empty() ? corners[0] : carry[0];
         const Vec fixed = s_.place + axes * b_.points[kept];

@@ -79,7 +79,7 @@ void Run<D>::impact(int vertex) {
         if (height <= kClosed * body_.size) closed |= bit(i);
         count += (closed & bit(i)) != 0;
     }
-    const bool flat = gap <= kFlat * body_.size && rate <= kClosed * body_.size * norm(velocity_);  // Eq. 329
+    const bool flat = gap <= kFlat * body_.size && rate <= kClosed * body_.size * norm(velocity_);  // Eq. 328
     if (stance_->contact == kEdge || count > 2 || flat) closed = body_.every();
     double height = 0.0;  // potential energy that is given up to lie flat
     if (closed == body_.every()) height = potential(), flatten();

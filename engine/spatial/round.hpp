@@ -69,7 +69,7 @@ void Run<D>::change_on_rim() {
     if (rolls && sine > 0.5 * kLanding) {
         // a rigid rim that passes as near to flat as one likes rolls on, and one that passes exactly strikes
         const Vec falls = cross(z_, velocity_);
-        const double past = std::fabs(z_.x * falls.y - z_.y * falls.x);  // Eq. 328
+        const double past = std::fabs(z_.x * falls.y - z_.y * falls.x);  // Eq. 327
         if (past < kFlat * std::sqrt(falls.x * falls.x + falls.y * falls.y) && z_.x * falls.x + z_.y * falls.y < 0.0)
             stance_ = &rim(falls.x, falls.y, kVertex), landing_ = true;
         return guard();

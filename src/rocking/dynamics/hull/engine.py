@@ -548,7 +548,7 @@ class HullEngine:
         axes, carry = frame(state.attitude), self.mode.contact.members
         flat = min(range(len(body.facets)), key=lambda k: dot(unit(body.facets[k]), axes[2]))
         corners = tuple(int(i) for i in body.hull.corners(flat))
-        rises = (i not in carry and point_velocity(body, state, i)[2] > 0.0 for i in corners)  # Eq. 329
+        rises = (i not in carry and point_velocity(body, state, i)[2] > 0.0 for i in corners)  # Eq. 328
         if not set(corners) <= set(near) or any(rises):
             return touching
         attitude, kept = state.attitude, body.points[(carry or corners)[0]]

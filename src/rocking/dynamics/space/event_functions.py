@@ -127,7 +127,7 @@ def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
     are not flat to 1e-6: what goes nearer strikes with all of the base.
     """
     falling = cross(up, velocity)[:2]
-    past = abs(float(up[0] * falling[1] - up[1] * falling[0]))  # Eq. 328
+    past = abs(float(up[0] * falling[1] - up[1] * falling[0]))  # Eq. 327
     return falling if past < FLAT * norm(falling) and float(dot_of(up[:2], falling)) < 0.0 else None
 
 

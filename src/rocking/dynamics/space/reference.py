@@ -213,7 +213,7 @@ class SpatialReference:
         gaps, rates = applied(arms, self._up), applied(cross(self.velocity, arms), self._up)
         closed = {vertex, *self.contact.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
         near = gaps.max() <= event_functions.FLAT * body.size
-        flat = near and rates.max() <= CLOSED * body.size * norm(self.velocity)  # Eq. 329
+        flat = near and rates.max() <= CLOSED * body.size * norm(self.velocity)  # Eq. 328
         if self.contact.mode is ContactMode.EDGE or len(closed) > 2 or flat:
             closed = set(range(len(body.vertices)))
         touching, height = tuple(sorted(closed)), 0.0

@@ -176,10 +176,10 @@ class StaticOverturning(CodeMethod):
     example = "closed form: the acceleration of uplift"
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 335, which is Eq. 294 without vertical motion."""
+        """Eq. 329, which is Eq. 294 without vertical motion."""
         demand = shaking.lifting(sides.slope)
         with np.errstate(divide="ignore"):
-            return np.asarray(sides.uplift / np.maximum(demand, 0.0))  # Eq. 335
+            return np.asarray(sides.uplift / np.maximum(demand, 0.0))  # Eq. 329
 
 
 class AsceComponents(CodeMethod):
@@ -201,9 +201,9 @@ class AsceComponents(CodeMethod):
     dead: ClassVar[float] = 0.9  # factor on the weight [-]
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 336."""
+        """Eq. 330."""
         relief = self.demand * 0.2 * 2.5 * sides.slope  # S_DS = 2.5 PGA / g
-        return self.dead * sides.uplift / ((self.demand + relief) * shaking.acceleration)  # Eq. 336
+        return self.dead * sides.uplift / ((self.demand + relief) * shaking.acceleration)  # Eq. 330
 
 
 class AsceComponentsAllowable(AsceComponents):
