@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rocking.errors import RecordError
+import rocking as rk
+from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import Component, Record, Source, formats, read_motion, read_record
 
 pytestmark = pytest.mark.verifies(room="motions and records")
@@ -220,3 +221,61 @@ def test_cases_of_words(case_records, name, options, expected):
         return
     for part in read_record(path, **options).components:
         assert (part.unit, part.time_step, part.acceleration.size) == expected
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Sampling Interval (ms): 20", "dt [ms] 20", "dt(ms)=20", "SAMPLING_INTERVAL_MS: 20",
+        "Sample period (µs): 20000",
+        "Sampling rate (kHz): 0.05", "Sample Rate (Hz) 50", "Time Step (sec)  0.02", "dt 0.02", "dt;0,02",
+        "sample spacing: 0.02", "Delta_X 0.02", "Sampling Freq(Hz)  50Hz", "Pas (s): 0,02",
+    ],
+)  # fmt: skip
+def test_a_unit_before_the_step_counts(words):
+    """Milliseconds and kilohertz may stand in brackets before the number; what is not milliseconds is seconds."""
+    part, _ = _read(f"{words}\nacceleration in g\n{LONE}")
+    assert part.time_step == pytest.approx(0.02, rel=1e-12)
+    with pytest.raises(RecordError, match=r"states a time step of 0\.02 s, you say 20"):
+        _read(f"{words}\nacceleration in g\n{LONE}", step=20.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "side"),
+    [
+        ("Vertical component", "up"), ("Orientation = Vertical (Up)", "up"), ("Azimuth: vertical", "up"),
+        ("UD-component", "up"), ("El Centro 1940, UD", "unclear"), ("Station A, HNZ", "unclear"),
+        ("Vertical motion of test 3", "unclear"),
+        ("NS component", 0.0), ("peak vertical acceleration elsewhere", None), ("Hudson", None),
+        ("vertical datum", None),
+    ],
+)  # fmt: skip
+def test_a_vertical_in_words_is_no_horizontal_motion(tmp_path, words, side):
+    """A line that names the vertical is read, or makes the direction unclear; other words leave it open."""
+    part, _ = _read(f"{words}\nDT = 0.02\nacc (g)\n{LONE}")
+    assert part.direction == side
+    path = tmp_path / "record.txt"
+    path.write_text(f"{words}\nDT = 0.02\nacc (g)\n{LONE}", "utf-8")
+    motion = read_motion(path)
+    block = rk.Block(width=0.6, height=2.0)
+    if isinstance(side, str):
+        with pytest.raises(InvalidValueError, match="vertical"):
+            rk.simulate(block, motion)
+    else:
+        assert rk.simulate(block, motion) is not None
+
+
+def test_a_unit_in_words_and_a_factor_that_is_not_used():
+    """A capital G and gals state a unit, which contradicts another; a scale factor is doubted, as it is not used."""
+    for words, unit in (("Acceleration data in units of G", "g"), ("Data in gals", "gal")):
+        assert _read(f"{words}\nDT = 0.02\n{LONE}")[0].unit == unit
+        with pytest.raises(RecordError, match=f"states the unit {unit}, you say m/s2"):
+            _read(f"{words}\nDT = 0.02\n{LONE}", "m/s2")
+    _, source = _read(f"Scale factor: 9.81\nDT = 0.02\nacc (g)\n{LONE}")
+    assert source.doubts == ["words.txt, line 1: 'Scale factor: 9.81' is not understood, and not used"]
+
+
+def test_a_timestamp_in_milliseconds_is_a_time():
+    """It was left out, so that any step that the user said was taken."""
+    with pytest.raises(RecordError, match="the times must be in seconds"):
+        COLUMNS.read(_source(f"timestamp_ms,acc (g)\n{PAIRS}"), None, 0.01)

@@ -159,6 +159,15 @@ def test_a_channel_is_named_by_its_code_where_no_azimuth_is_stated() -> None:
 
 
 @pytest.mark.parametrize(
+    ("azimuth", "code", "side"), [(0, "HNZ", "unclear"), (90, "HNZ", "unclear"), (90, "HNE", 90.0)]
+)
+def test_a_code_that_contradicts_the_azimuth_makes_the_direction_unclear(azimuth: int, code: str, side: object) -> None:
+    """A channel with the code of the vertical is no horizontal motion, whatever its azimuth says."""
+    text = "\n".join(_channel(azimuth=azimuth)).replace("| two", f"|<SCNL>BMR.{code}.AK.--")
+    assert COSMOS.read(_source([text])).components[0].direction == side
+
+
+@pytest.mark.parametrize(
     ("printed", "good"), [("  -12.345000", True), ("  -12.345400", False), ("  -12.346000", False)]
 )
 def test_a_peak_is_as_sharp_as_its_digits(printed: str, good: bool) -> None:

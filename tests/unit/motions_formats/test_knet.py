@@ -1,5 +1,6 @@
 """K-NET and KiK-net: counts, a scale factor, and a mean that must go."""
 
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -105,3 +106,10 @@ def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
         KNET.write(made_up("a"))
     with pytest.raises(RecordError, match="wrong unit"):
         KNET.write(Record("", (Component("a", np.array([1e9, -1e9]), "gal", 0.5),)))
+
+
+@pytest.mark.parametrize(("number", "side"), [("6", "up"), ("5", 90.0), ("7", "unclear"), ("0", "unclear")])
+def test_a_number_that_is_no_direction_is_unclear(number: str, side: object) -> None:
+    """Numbers are the directions 1 to 6 of KiK-net, and no azimuths."""
+    text = re.sub(r"(?m)^(Dir\.\s+)\S+", rf"\g<1>{number}", TYPED)
+    assert read(text).components[0].direction == side

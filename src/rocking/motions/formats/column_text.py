@@ -45,6 +45,8 @@ _TIMES = {
     "\u0432\u0440\u0435\u043c\u044f",
     "time",
     "times",
+    "timestamp",
+    "elapsed",
     "zeit",
     "temps",
     "tiempo",
@@ -111,7 +113,10 @@ def is_words(text: str) -> bool:
     """
     words = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
     begins = re.match(r"[-+.,\d]", text.strip()) is not None
-    stated = re.match(r"[^\W\d_]{2,20}\s*[=:]", text.strip()) is not None
+    stated = (
+        re.match(r"[^\W\d_]{2,20}\s*(?:[=:]|;|[\[(]\s*[^\W\d]+\s*[\])]|(?<=dt)\s)", text.strip(), re.IGNORECASE)
+        is not None
+    )
     return (len(words) > begins or stated) and len(text) <= 100 * MOST_NAMED
 
 

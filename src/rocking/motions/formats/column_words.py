@@ -18,7 +18,8 @@ from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Source, readable
 
 _NUMBER = r"(\d*[.,]?\d+(?:[eE][-+]?\d+)?)"
-_SAYS = r"(?![^\W_])[^\d=:]{0,20}[=:]\s*"
+_IN_BRACKETS = r"(?:[\[(]\s*[^\W\d]+\.?\s*[\])])"
+_SAYS = rf"(?![^\W_])(?:[^\d=:]{{0,20}}[=:;]\s*|\s*{_IN_BRACKETS}\s*[=:;,]?\s*)"
 _BOTH = re.compile(r"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+(\d*\.?\d+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
 _COUNT = re.compile(
     rf"\b(?:npts|nsamples|ndata|number of (?:points|samples|data)|num\w* de muestras|anzahl){_SAYS}(\d+)\b",
@@ -28,13 +29,15 @@ _LENGTH = re.compile(r"\W*length\s*[:=]\s*(\d+)\W*", re.IGNORECASE)
 _SAMPLED = r"(?:sampl\w*|digiti\w*|abtast\w*|scan|acquisition|recording|[öo]rnekleme)"
 _STEPS = (
     r"(?:dt|d_t|delta[ _]?t|t[ _]?step|time[ _-]?(?:step|increment|interval)"
-    rf"|{_SAMPLED}[ _-]?(?:interval|period|step|time)|step[ _]?size|zeitschritt|abtastintervall|abtastschritt"
+    rf"|{_SAMPLED}[ _-]?(?:interval|period|step|time|spacing)|step[ _]?size|(?:x[_ ])?interval|delta[ _]?x"
+    r"|zeitschritt|abtastintervall|abtastschritt"
     r"|passo temporale|intervallo di campionamento|paso de tiempo|intervalo de muestreo|pas de temps"
     r"|[öo]rnekleme aral[\u0131i][ğg][\u0131i])"
 )
 _UNIT_OF_TIME = r"\s*(m(?:illi)?s(?:ec\w*)?\b|us\b|µs\b)?"
 _STEP = re.compile(
-    rf"(?:\b{_STEPS}{_SAYS}|^\W*(?:delta|step|interval|increment)\s*(?:[\[(]\w+[\])])?\s*[:=]\s*){_NUMBER}{_UNIT_OF_TIME}",
+    rf"(?:\b{_STEPS}{_SAYS}|^\W*{_STEPS}\s+|^\W*(?:delta|step|interval|increment|pas|passo|paso)\s*{_IN_BRACKETS}?\s*[:=]\s*)"
+    rf"{_NUMBER}{_UNIT_OF_TIME}",
     re.IGNORECASE,
 )
 _STEP_IN_WORDS = re.compile(
@@ -53,7 +56,9 @@ _RATE_IN_WORDS = re.compile(
 )
 _OF_STEPS = (_BOTH, _COUNT, _STEP, _STEP_IN_WORDS, _RATE, _RATE_IN_WORDS)
 _ODD = re.compile(
-    r"\W*((?:[^\W\d_]|[ _.-]){0,40}(?:rate|step|interval|delta|dt|sps|sampling)[^=:\d]{0,20})[:=]\s*[\d.,]+",
+    r"\W*((?:[^\W\d_]|[ _.'-]){0,40}(?:rate|step|interval|delta|dt|sps"
+    r"|sampling|freq\w*|frec\w*|tast\w*|[ée]chantillon\w*"
+    r"|scal\w*|factor|faktor|multipl\w*|gain)[^=:;\d]{0,20})[:=;]\s*[\d.,]+",
     re.IGNORECASE,
 )
 _OF_OTHERS = re.compile(
@@ -69,7 +74,7 @@ _UNIT = re.compile(
     r"\b(?:units?|einheit|unidad(?:es)?|unit[àa]|birim)\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.I
 )
 _UNIT_OF = re.compile(
-    r"\b(?:accel|veloc|displ|beschleun|aceler|ivme|İvme)\w*\s+(?:in\s+|\[|\()\s*([A-Za-z][\w/^*.-]*)"
+    r"\b(?:(?:accel|veloc|displ|beschleun|aceler|ivme|İvme)\w*\s+(?:in\s+|\[|\()|data in)\s*([A-Za-z][\w/^*.-]*)"
     r"|\bacc\w*\s*[=:]\s*([A-Za-z][\w/^*.-]*)\s*$",
     re.IGNORECASE,
 )
@@ -80,10 +85,18 @@ _OTHER = re.compile(
     r"^\W*(?:ground )?(velocity|displacement)(?:\b.*(?:series|histor|record|trace)|\s*$)", re.IGNORECASE
 )
 _SIDE = re.compile(
-    r"\W*(?:comp(?:onente?)?|channel|direction|orientation|dir|richtung|bile[sş]en)\b\.?\s*[:=]?\s*"
-    r"([\w+./-]+(?: ?[EW])?)\W*",
+    r"\W*(?:comp(?:onente?)?|channel|direction|orientation|azimuth|dir|richtung|bile[sş]en)\b\.?\s*[:=]?\s*"
+    r"([\w+./-]+(?: ?[EW])?)\s*(?:\([\w -]*\))?\W*",
     re.IGNORECASE,
 )
+_SIDE_FIRST = re.compile(
+    r"\W*([\w+/-]+)[ -](?:comp(?:onente?)?|channel|direction|richtung|bile[sş]en[i\u0131]?)\b\W*", re.IGNORECASE
+)
+_UPRIGHT = re.compile(
+    r"(?<![^\W_])(?:verti[ck]al\w*|up-down|(?-i:U-?D|[BHEL][HN]Z))(?![^\W_])(?!.{0,20}(?:datum|scale|exagg))",
+    re.IGNORECASE,
+)
+_LEVEL = re.compile(r"horizontal|peak|pga|max|(?<![^\W_])(?:N-?S|E-?W|[BHEL][HN][NE12])(?![^\W_])", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -96,6 +109,7 @@ class Said:
     step: float | None = None  # [s]
     count: int | None = None
     side: str = ""  # direction of the component, as it stands
+    perhaps_upright: bool = False  # whether a line names the vertical, in words of which no direction is read
 
     @classmethod
     def of(cls, source: Source, words: Sequence[tuple[int, str]], columns: int) -> "Said":
@@ -105,8 +119,11 @@ class Said:
             bare = readable(text.strip().lstrip("#% \t")[:400])
             _refuse_others(source, line, bare)
             said = said._with_sampling(source, line, bare)._with_unit(source, line, bare)
-            if (found := _SIDE.fullmatch(bare)) and orientation(found[1]) is not None:
+            found = _SIDE.fullmatch(bare) or _SIDE_FIRST.fullmatch(bare)
+            if found and orientation(found[1]) is not None:
                 said = replace(said, side=found[1])
+            elif _UPRIGHT.search(bare) and not _LEVEL.search(bare):
+                said = replace(said, perhaps_upright=True)
             if names := _names_of(bare, columns):
                 said = replace(said, names=names)
         spoken = " ".join(text for _, text in words).lower()
@@ -123,12 +140,10 @@ class Said:
             count = int(found[1][:9])
         for form in (_STEP, _STEP_IN_WORDS):
             if not both and step is None and (found := form.search(bare)):
-                small = (found[2] or "").lower()
-                factor = 1e-3 if small.startswith("m") else 1e-6 if small[:1] in {"u", "µ"} else 1.0
-                step = _decimal(source, line, found[1]) * factor
+                step = _decimal(source, line, found[1]) * _seconds_in(found[0])
         for form in (_RATE, _RATE_IN_WORDS):
             if (found := form.search(bare)) and (rate := _decimal(source, line, found[1] or found[3])) > 0.0:
-                other = 1.0 / (rate * (1000.0 if (found[2] or "").lower() == "khz" else 1.0))
+                other = 1.0 / (rate * (1000.0 if "khz" in found[0].lower() else 1.0))
                 step = self._agreed(source, line, step, other)
         if step is None and count == self.count and (odd := _ODD.match(bare)) and not _OF_OTHERS.search(odd[1]):
             source.doubt(line, f"{bare[:60]!r} is not understood, and not used")
@@ -143,7 +158,7 @@ class Said:
     def _with_unit(self, source: Source, line: int, bare: str) -> "Said":
         unit, odd = self.unit, self.odd_unit
         for word in (*_UNIT.findall(bare), *(one or other for one, other in _UNIT_OF.findall(bare))):
-            found = unit_named(source, line, word.rstrip(".-"))
+            found = "g" if word == "G" else unit_named(source, line, word.rstrip(".-"))
             unit = headers.acceleration_unit(source, unit, found) if found else unit
         stated = _STATED_UNIT.search(bare)
         if stated and unit_named(source, line, stated[1].rstrip(".-")) is None and looks_like_unit(stated[1]):
@@ -164,6 +179,14 @@ def is_understood(text: str) -> bool:
     for form in _OF_STEPS:
         rest = form.sub(" ", rest)
     return not states_sampling(rest)
+
+
+def _seconds_in(words: str) -> float:
+    """Return the unit of time that the words around a step state, before or behind it [s]."""
+    small = re.search(
+        r"(?:[\W_]|\d)(?:(m(?:illi)?s(?:ec\w*)?)|[uµμ]s|micros(?:ec\w*)?)(?![^\W_])", words, re.IGNORECASE
+    )
+    return (1e-3 if small[1] else 1e-6) if small else 1.0
 
 
 def _decimal(source: Source, line: int, word: str) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import headers
+from rocking.motions.formats import directions, headers
 from rocking.motions.formats.column_text import (
     MARK,
     MOST_NAMED,
@@ -130,7 +130,7 @@ class Columns(RecordFormat):
         if chosen.left_out:
             metadata["left out"] = ", ".join(chosen.left_out)
         accelerations = chosen.with_unit(source, units).accelerations
-        about = {"direction": said.side} if said.side and len(accelerations) == 1 else {}
+        about = _side(said, accelerations)
         parts = tuple(
             Component(_name(one, about), values[:, one.place].copy(), one.unit or "", step, None, about)
             for one in accelerations
@@ -153,9 +153,17 @@ class Columns(RecordFormat):
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 
+def _side(said: Said, accelerations: tuple[ColumnName, ...]) -> dict[str, str]:
+    """Return the direction that words state for a lone column; unclear where only they name the vertical."""
+    if said.side:
+        return {"direction": said.side} if len(accelerations) == 1 else {}
+    silent = all(directions.orientation(one.name) is None for one in accelerations)
+    return {directions.KEY: directions.UNCLEAR} if said.perhaps_upright and silent else {}
+
+
 def _name(column: ColumnName, about: dict[str, str]) -> str:
     """Return the name of a component: that of its column, or the direction that words above it state."""
-    return about["direction"] if about and column.name in {"acceleration", "column 2"} else column.name
+    return about["direction"] if "direction" in about and column.name in {"acceleration", "column 2"} else column.name
 
 
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats import headers
+from rocking.motions.formats import directions, headers
 from rocking.motions.formats.headers import (
     LONGEST_LINE,
     Channel,
@@ -123,18 +123,36 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
         raise source.expected(after, "End of data for channel")
     header = source.lines[first : line + 1]
     label = _label(header, texts, wholes[_AZIMUTH])
-    return (header, label, Component("", values, unit, step, peak)), after + 1
+    return (header, label, Component("", values, unit, step, peak, _contradicted(header, texts, label))), after + 1
+
+
+def _contradicted(header: list[str], texts: int, label: str) -> dict[str, str]:
+    """Return that the direction is unclear, where a code or text of the channel is vertical and its azimuth is not."""
+    side = directions.orientation(label.partition(": ")[2])
+    for said in (_code(header), _said(header, texts)):
+        if directions.both(directions.orientation(said), side) == directions.UNCLEAR:
+            return {directions.KEY: directions.UNCLEAR}
+    return {}
+
+
+def _code(header: list[str]) -> str:
+    return next((code[1] for text in header if (code := _CODE.match(text[:LONGEST_LINE]))), "")
+
+
+def _said(header: list[str], texts: int) -> str:
+    label = next((text[:LONGEST_LINE] for text in header[:texts] if text.startswith("Sta Cha")), "")
+    found = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label, re.IGNORECASE)
+    return found[1] if found else ""
 
 
 def _label(header: list[str], texts: int, azimuth: float) -> str:
     """Return number and direction, as ``CHAN 1: 90``: the azimuth if it is known, else what the text or a code says."""
     label = next((text[:LONGEST_LINE] for text in header[:texts] if text.startswith("Sta Cha")), "")
     number = re.match(r"Sta Cha\w*\s*:?\s*(\d+)", label)
-    found = re.search(r":\s*([\w-]+)(?:\s+deg\b|\s+\()", label, re.IGNORECASE)
-    code = next((code[1] for text in header if (code := _CODE.match(text[:LONGEST_LINE]))), "")
+    code = _code(header)
     # an azimuth of 0 may stand for none where the text gives no degrees
     known = azimuth > 0.0 or (azimuth == 0.0 and not code) or re.search(r"\bdeg\b", label, re.IGNORECASE)
-    direction = f"{azimuth:.0f}" if azimuth != _UNKNOWN and known else code or (found[1] if found else "")
+    direction = f"{azimuth:.0f}" if azimuth != _UNKNOWN and known else code or _said(header, texts)
     return f"CHAN {number[1] if number else 1}: {_SENSES.get(int(azimuth), direction)}"
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import headers, numbers
+from rocking.motions.formats import directions, headers, numbers
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, one_line
 
 _KEYS = (
@@ -74,7 +74,9 @@ class Knet(RecordFormat):
         if number and number < "4":
             source.doubt(12, f"direction {number} is of the instrument in the borehole, below the surface")
         name = _SIDES.get(number, said[12]) or "unnamed"
-        component = Component(name, values, unit, step, abs(peak))
+        # numbers are directions 1 to 6, and no azimuths
+        odd = {directions.KEY: directions.UNCLEAR} if not number and re.fullmatch(r"\d\d?", name) else {}
+        component = Component(name, values, unit, step, abs(peak), odd)
         return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)
 
     def write(self, record: Record) -> bytes:
