@@ -50,6 +50,7 @@ def test_json_is_the_python_call(answered, motions):
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}
+    assert [each["name"] for each in answer["motions"].pop("sources")] == [motion.name for motion in motions]
     assert answer["motions"] == {"kind": "synthetic", "count": 16, "family": "point-source", "seed": 3}
     # g b / h
     assert answer["uplift_threshold"] == pytest.approx(0.2 * G, rel=1e-14, abs=0.0)
@@ -70,9 +71,13 @@ def test_keys_are_stable(answered):
     many, none = (
         answered(*SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
     )  # the second overturns nothing
-    keys = ["body", "assumed", "motions", "gravity_m_s2", "linear", "analysis", "measure", "unit", "states",
-            "uplift_threshold", "levels", "crossing", "results", "comparison"]  # fmt: skip
+    keys = ["body", "assumed", "motions", "gravity_m_s2", "linear", "analysis", "measure", "measure_words", "unit",
+            "states", "uplift_threshold", "lowest_uplift", "levels", "crossing", "results", "comparison"]  # fmt: skip
     assert list(many) == list(none) == keys
+    assert many["measure_words"] == "peak ground acceleration"
+    uneven = answered("--width", 0.25, "--height", 1.25, "--centre", "0.11,0.6", *FAMILY, "--levels", "0.1g,0.3g")
+    assert uneven["uplift_threshold"] is None  # between both sides the sign of the peak decides
+    assert uneven["lowest_uplift"] == pytest.approx(0.11 / 0.6 * G, rel=1e-12)
     first, second = many["results"][0], none["results"][0]
     wanted = ["restitution", "definition", "uplift", "failed", "contact", "trials", "reached", "curves"]
     assert list(first) == list(second) == wanted

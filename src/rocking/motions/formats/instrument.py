@@ -1,5 +1,6 @@
 """The response of an instrument, taken out of a record by what a StationXML file says of it."""
 
+import hashlib
 from dataclasses import replace
 from typing import Any
 
@@ -33,11 +34,14 @@ def without_response(motion: GroundMotion, stations: Places, low: float, high: f
     flat, file = _flat(about, stations, motion.time_step, count)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
-    fields = {"acceleration": _without(motion.acceleration, flat, edge, count)}
+    fields, files = {"acceleration": _without(motion.acceleration, flat, edge, count)}, [file]
     if motion.vertical is not None:
         about["channel"] = motion.metadata.get("vertical channel", "")
-        fields["vertical"] = _without(motion.vertical, _flat(about, stations, motion.time_step, count)[0], edge, count)
-    return motion.changed(f"response of the instrument by {file} removed from {low:g} to {high:g} Hz", **fields)
+        flat, file = _flat(about, stations, motion.time_step, count)
+        fields["vertical"] = _without(motion.vertical, flat, edge, count)
+        files.append(file)
+    by = " and ".join(dict.fromkeys(files))
+    return motion.changed(f"response of the instrument by {by} removed from {low:g} to {high:g} Hz", **fields)
 
 
 def _without(samples: FloatArray, flat: Any, edge: FloatArray, count: int) -> FloatArray:
@@ -46,7 +50,7 @@ def _without(samples: FloatArray, flat: Any, edge: FloatArray, count: int) -> Fl
 
 
 def _flat(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
-    """Return the response of a channel over its overall sensitivity at the frequencies of an FFT, and its file."""
+    """Return the response of a channel over its overall sensitivity at FFT frequencies; its file with its SHA-256."""
     sources = station_sources(stations, [about["station"]])
     name = ".".join(about[key] for key in ("network", "station", "location", "channel"))
     found, arrays = OBSPY.answer(
@@ -59,7 +63,8 @@ def _flat(about: dict[str, str], stations: Places, step: float, count: int) -> t
     sensitivity_of(replace(source, doubts=[]), channel, name)  # of acceleration, or refused
     if "array" not in channel:
         raise source.error(None, f"{name}: the StationXML states no stages of a response; ask for level=response")
-    return arrays[channel["array"]], source.name
+    digest = hashlib.sha256(source.content).hexdigest()
+    return arrays[channel["array"]], f"{source.name}, SHA-256 {digest}"
 
 
 def _edge(place: FloatArray) -> FloatArray:
