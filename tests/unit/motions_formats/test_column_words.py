@@ -245,6 +245,8 @@ def test_a_unit_before_the_step_counts(words):
     [
         ("Vertical component", "up"), ("Orientation = Vertical (Up)", "up"), ("Azimuth: vertical", "up"),
         ("UD-component", "up"), ("El Centro 1940, UD", "unclear"), ("Station A, HNZ", "unclear"),
+        ("Comp: 3 (vertical)", "unclear"), ("Record: XYZ-UP", "unclear"), ("Channel 2 Vert", "unclear"),
+        ("Richtung: senkrecht", "unclear"), ("Comp: 90 (east)", 90.0), ("TEST SET-UP", None),
         ("Vertical motion of test 3", "unclear"),
         ("NS component", 0.0), ("peak vertical acceleration elsewhere", None), ("Hudson", None),
         ("vertical datum", None),

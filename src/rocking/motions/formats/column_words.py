@@ -93,7 +93,7 @@ _SIDE_FIRST = re.compile(
     r"\W*([\w+/-]+)[ -](?:comp(?:onente?)?|channel|direction|richtung|bile[sş]en[i\u0131]?)\b\W*", re.IGNORECASE
 )
 _UPRIGHT = re.compile(
-    r"(?<![^\W_])(?:verti[ck]al\w*|up-down|(?-i:U-?D|[BHEL][HN]Z))(?![^\W_])(?!.{0,20}(?:datum|scale|exagg))",
+    r"(?<![^\W_])(?:verti[ck]al\w*|vert|senkrecht\w*|d[üu][sş]ey|up-down|(?-i:U-?D|[BHEL][HN]Z|(?<=[A-Z0-9]-)(?<!SET-)UP))(?![^\W_])(?!.{0,20}(?:datum|scale|exagg))",
     re.IGNORECASE,
 )
 _LEVEL = re.compile(r"horizontal|peak|pga|max|(?<![^\W_])(?:N-?S|E-?W|[BHEL][HN][NE12])(?![^\W_])", re.IGNORECASE)
@@ -120,7 +120,8 @@ class Said:
             _refuse_others(source, line, bare)
             said = said._with_sampling(source, line, bare)._with_unit(source, line, bare)
             found = _SIDE.fullmatch(bare) or _SIDE_FIRST.fullmatch(bare)
-            if found and orientation(found[1]) is not None:
+            side = orientation(found[1]) if found else None
+            if found and side is not None and not (isinstance(side, float) and _UPRIGHT.search(bare)):
                 said = replace(said, side=found[1])
             elif _UPRIGHT.search(bare) and not _LEVEL.search(bare):
                 said = replace(said, perhaps_upright=True)
