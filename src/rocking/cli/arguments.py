@@ -40,7 +40,9 @@ _AS_TYPED = (
     (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),
     (re.compile(r"\bblock\.(width|height|depth|density|mass|centre)\b"), r"--\1"),
 )
-_PLACE = re.compile(r"(body|motion|[xyz]|motions(\[\d+\])?|records: .*|restitution|settings|map|map\.[xy]|fragility)")
+_PLACE = re.compile(
+    r"(body|motion|[xyz]|motions(\[\d+\])?|records(: .*)?|restitution|settings|map|map\.[xy]|fragility)"
+)
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
 _OF_EVERY_FILE = {"format", "units", "time_step", "skip", "process"}

@@ -147,7 +147,7 @@ def _problem(context: typer.Context) -> "StudyProblem":
         tables: dict[str, Any] = {"inventory": table}
         if options["restitution"] is not None:
             tables["restitution"] = {"model": options["restitution"]}
-        return problem_of("inventory", arguments, [in_lists(motion) for motion in motions], **tables)
+        return problem_of("inventory", arguments, in_lists(motions), **tables)
 
 
 @dataclass(frozen=True)

@@ -164,7 +164,8 @@ def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAns
             "settings": arguments.sets.get("settings", {}),
         }  # fmt: skip
         scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})
-        named = [checked(MotionTable, {**in_lists(arguments.motion_table(word)), **scale}) for word in words]
+        tables_of = in_lists(arguments.motion_table(word) for word in words)
+        named = [checked(MotionTable, {**each, **scale}) for each in tables_of]
         made = any_body_of(arguments.body_table(body), files)
         motions = motions_of(named, files, paired=not isinstance(made, Body))
         problem = problem_of(checked(ResponseTables, tables), made, motions[0], scale=1.0, inputs=files)

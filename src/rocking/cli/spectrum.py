@@ -58,7 +58,7 @@ def spectrum(
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
             raise InvalidValueError(f"{body} is a body, and {OWN_BLOCKS}")
         with hinted(None, named[0]):
-            each = [in_lists(one) for one in arguments.each(named, arguments.one_motion)]
+            each = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
                 "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table
             )

@@ -1,6 +1,6 @@
 """What the commands of many histories have in common: their document, its problem, and the head of their pages."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +68,7 @@ def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restit
             f"this is of one motion, and {' '.join(several)[:100]} is of several: rocking fragility says in which "
             "share of them a body overturns, rocking predict how likely it is, rocking simulate under which it does"
         )
-    return of_body(arguments, kind, own, restitution, [in_lists(arguments.of_body(named))])
+    return of_body(arguments, kind, own, restitution, in_lists([arguments.of_body(named)]))
 
 
 def of_body(
@@ -83,10 +83,25 @@ def of_body(
         return problem_of(kind, arguments, motions, **tables)
 
 
-def in_lists(motion: dict[str, Any]) -> dict[str, Any]:
-    """Return the table of one motion as one of [[motions]]."""
-    names = {"record": "records", "pulse": "pulse"}
-    return {names.get(key, key): [value] if key in names else value for key, value in motion.items()}
+def in_lists(motions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the tables of single motions as [[motions]], one of files that follow one another and are read alike."""
+    tables: list[dict[str, Any]] = []
+    for motion in motions:
+        names = {"record": "records", "pulse": "pulse"}
+        table = {names.get(key, key): [value] if key in names else value for key, value in motion.items()}
+        if tables and "record" in motion and not _OF_ONE_FILE & motion.keys() and _alike(table, tables[-1]):
+            tables[-1]["records"] += table["records"]
+        else:
+            tables.append(table)
+    return tables
+
+
+_OF_ONE_FILE = {"component", "vertical", "vertical_file"}
+
+
+def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Return whether two tables differ in nothing but their record files."""
+    return "records" in other and {**one, "records": ()} == {**other, "records": ()}
 
 
 def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -108,7 +123,7 @@ def motions_of(
 ) -> list[dict[str, Any]]:
     """Return the tables of the motions that were named, each made by `table`, or that of synthetic ones."""
     if (synthetic := family(arguments, usual)) is None:
-        return [in_lists(each) for each in arguments.each(arguments.body_and_motions()[1], table)]
+        return in_lists(arguments.each(arguments.body_and_motions()[1], table))
     if "synthetic" not in synthetic:
         raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
     return [synthetic]

@@ -22,7 +22,7 @@ from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import InputFiles, located, tables_in
-from rocking.spec.record_sets import is_set, motions_of_set, stations_of, with_files
+from rocking.spec.record_sets import are_together, motions_of_set, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
@@ -254,7 +254,7 @@ def _motions(
         return _family(table, table.count)
     if table.components:
         return [components_of(table, inputs, table.scale)]
-    if table.records and (table.target or table.mirrored or any(is_set(one, inputs) for one in table.records)):
+    if table.records and (table.target or table.mirrored or are_together(table.records, inputs)):
         if not (table.component or table.vertical or table.vertical_file):
             return motions_of_set(table, inputs, paired=paired, alone=alone)
         if table.target or table.mirrored:

@@ -10,7 +10,7 @@ from rocking import plausibility
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.formats.record_set import RecordSet, paths_of, plane_motions, read_records, rows_of_list
-from rocking.motions.formats.stations import BETWEEN, station_files
+from rocking.motions.formats.stations import BETWEEN, is_station_file, station_files
 from rocking.motions.pipeline import processed, steps_of
 from rocking.motions.selection import Selection, selected
 from rocking.motions.target_spectra import target_spectrum
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 PERIODS = (0.1, 2.0)  # that count where records are compared with a target and nobody says otherwise [s]
 STILL = "zero throughout: the ground would not move"
+UPRIGHT = "vertical, and no horizontal component of its record is there"
 MOST_NAMED = 5  # files that were left out and are named one by one
 
 
@@ -28,6 +29,12 @@ def is_set(name: str, inputs: InputFiles) -> bool:
     """Return whether a name is that of a folder, a pattern or a list of records rather than of one file."""
     path = inputs.folder / name
     return path.is_dir() or (is_pattern(name) and not path.exists()) or rows_of_list(path) is not None
+
+
+def are_together(names: Sequence[str], inputs: InputFiles) -> bool:
+    """Return whether names are read as a set: one that is a set, or files of one folder, which may be one record."""
+    folders = [(inputs.folder / name).parent for name in names]
+    return len(set(folders)) < len(folders) or any(is_set(name, inputs) for name in names)
 
 
 def record_set(
@@ -39,20 +46,11 @@ def record_set(
     if odd := sorted({"component", "vertical", "vertical_file"} & table.model_fields_set):
         raise InvalidValueError(f"a set takes no {', '.join(odd)}: all components of its records are read")
     steps = with_files(table, inputs)
-    stations = stations_of(steps)
-    for name in table.records or []:
-        _note(name, inputs)
-        with located(f"records: {name}"):
-            keys = (table.format, table.units, table.time_step)
-            how: dict[str, Any] = {
-                "stations": stations,
-                "skip": table.skip or 0,
-                "workers": workers,
-                "progress": progress,
-            }
-            found = read_records(inputs.folder / name, *keys, **how)
-            if is_pattern(name) and found.left_out:  # these files were named
-                raise InvalidValueError(": ".join(found.left_out[0]))
+    how: dict[str, Any] = {"format": table.format, "units": table.units, "time_step": table.time_step}
+    how |= {"stations": stations_of(steps), "skip": table.skip or 0, "workers": workers, "progress": progress}
+    for names in _read_together(table.records or [], inputs):
+        with located("records" if len(names) > 1 else f"records: {names[0]}"):
+            found = _read(names, inputs, how)
         records += found.records
         left_out += found.left_out
     with located("process"):
@@ -72,6 +70,37 @@ def record_set(
     return kept.mirrored() if table.mirrored else kept, chosen
 
 
+def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
+    """Return names in groups: each set by itself, and the files that are named one by one."""
+    groups: list[list[str]] = []
+    files: list[str] = []
+    for name in names:
+        if name in files:
+            raise InvalidValueError(f"records: {name} is named twice")
+        alone = is_set(name, inputs)
+        if alone or not files:
+            groups.append([name] if alone else files)
+        if not alone:
+            files.append(name)
+    return groups
+
+
+def _read(names: Sequence[str], inputs: InputFiles, how: dict[str, Any]) -> RecordSet:
+    """Return the records of a set, or of files that are named one by one, of which none is left out."""
+    for name in names:
+        _note(name, inputs)
+    found = read_records([inputs.folder / name for name in names], **how)
+    if is_pattern(names[0]) and found.left_out:  # these files were named
+        raise InvalidValueError(": ".join(found.left_out[0]))
+    if len(names) > 1:
+        used = {part.metadata["file"] for record in found for part in record.parts if part is not None}
+        lost = [name for name in names if Path(name).name not in used and not is_station_file(inputs.folder / name)]
+        if lost:
+            why = next((why for files, why in found.left_out if Path(lost[0]).name in files), "holds no component")
+            raise InvalidValueError(f"{lost[0]}: {why}")
+    return found
+
+
 def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, alone: bool = True) -> list[Any]:
     """Return the motions of a study; paired: two horizontal components are one motion, which no plane body takes.
 
@@ -83,6 +112,8 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
     for record in found:
         level = plane_motions(record)
         moving = [each for each in level if each.peak > 0.0]
+        if not level and record.z is not None:
+            left_out.append((record.z.name, UPRIGHT))
         both = paired and record.y is not None and moving
         left_out += [] if both else [(each.name, STILL) for each in level if not each.peak > 0.0]
         motions += [record] if both else moving

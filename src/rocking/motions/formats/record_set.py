@@ -121,7 +121,7 @@ def turned_round(motion: Any) -> Any:
 
 
 def read_records(
-    where: str | PathLike[str],
+    where: str | PathLike[str] | Sequence[str | PathLike[str]],
     format: str | None = None,
     units: str | None = None,
     time_step: float | None = None,
@@ -131,7 +131,7 @@ def read_records(
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> RecordSet:
-    r"""Return the records of a folder, of a pattern or of a list, the components of each put into one motion.
+    r"""Return the records of files, of a folder, a pattern or a list, the components of each put into one motion.
 
     Files of one component belong together if their names differ in nothing but the component (``ELC180``,
     ``ELC270``, ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and if their steps, starts, events and azimuths agree; what does
@@ -144,8 +144,9 @@ def read_records(
 
     Parameters
     ----------
-    where : path-like
+    where : path-like, or sequence of path-like
         Folder, looked through with all that are in it; pattern such as ``records/*.at2``; list of files; or one file.
+        Of several, the files are put together as those of one folder are; one that is named twice is read once.
     format, units, time_step : optional
         As in `read_motion`, for all files.
     stations : path-like or sequence of path-like, optional
@@ -179,23 +180,40 @@ def read_records(
     >>> len(records), [part is not None for part in records[0].parts]
     (1, [True, True, True])
     """
-    path = Path(where)
-    rows = rows_of_list(path)
-    paths = [] if rows is not None else paths_of(where)
+    places = [Path(where)] if isinstance(where, str | PathLike) else [Path(each) for each in where]
+    lists = [(path, rows) for path in places if (rows := rows_of_list(path)) is not None]
+    listed = {path for path, _ in lists}
+    paths = list(dict.fromkeys(one for path in places if path not in listed for one in paths_of(path)))
     beside = [one for one in paths if is_station_file(one)]
     options: dict[str, Any] = {"format": format, "units": units, "time_step": time_step, "skip": skip}
     read = partial(_read, **options, stations=stations or beside or None)
-    if rows is not None:
-        items = list(dict.fromkeys(item for row in rows for item in row.items(path.parent).values()))
-        files = dict(zip(items, mapped(partial(_read_item, **read.keywords), items, workers, progress), strict=True))
-        found = _listed(rows, files, path.parent)
-    else:
-        paths = [one for one in paths if one not in beside]
-        found = paired(zip(paths, mapped(read, paths, workers, progress), strict=True))
-    if not found.records:
-        why = "; ".join(f"{name}: {reason}" for name, reason in found.left_out[:1]) or "it holds no file"
-        raise RecordError(f"{where}: none of {len(found.left_out)} files could be read; {why}")
-    return found
+    records: list[Components] = []
+    left_out: list[tuple[str, str]] = []
+    paths = [one for one in paths if one not in beside]
+    for found in (
+        *(_of_list(path, rows, partial(_read_item, **read.keywords), workers, progress) for path, rows in lists),
+        paired(zip(paths, mapped(read, paths, workers, progress), strict=True)),
+    ):
+        records += found.records
+        left_out += found.left_out
+    if not records:
+        why = "; ".join(f"{name}: {reason}" for name, reason in left_out[:1]) or "it holds no file"
+        named = ", ".join(map(str, places[:MOST_TOLD])) or "no file is named"
+        raise RecordError(f"{named}: none of {len(left_out)} files could be read; {why}")
+    return RecordSet(tuple(records), tuple(left_out))
+
+
+def _of_list(
+    path: Path,
+    rows: Sequence["ListedRecord"],
+    read: Callable[["Item"], "Read"],
+    workers: int,
+    progress: Callable[[int], None] | None,
+) -> RecordSet:
+    """Return the records that the rows of a list name, whose files are beside it."""
+    items = list(dict.fromkeys(item for row in rows for item in row.items(path.parent).values()))
+    files = dict(zip(items, mapped(read, items, workers, progress), strict=True))
+    return _listed(rows, files, path.parent)
 
 
 def paths_of(where: str | PathLike[str]) -> list[Path]:
