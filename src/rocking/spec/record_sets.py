@@ -49,6 +49,8 @@ def record_set(
     how: dict[str, Any] = {"format": table.format, "units": table.units, "time_step": table.time_step}
     how |= {"stations": stations_of(steps), "skip": table.skip or 0, "workers": workers, "progress": progress}
     for names in _read_together(table.records or [], inputs):
+        for name in names:
+            _note(name, inputs)
         with located("records" if len(names) > 1 else f"records: {names[0]}"):
             found = _read(names, inputs, how)
         records += found.records
@@ -87,8 +89,6 @@ def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
 
 def _read(names: Sequence[str], inputs: InputFiles, how: dict[str, Any]) -> RecordSet:
     """Return the records of a set, or of files that are named one by one, of which none is left out."""
-    for name in names:
-        _note(name, inputs)
     found = read_records([inputs.folder / name for name in names], **how)
     if is_pattern(names[0]) and found.left_out:  # these files were named
         raise InvalidValueError(": ".join(found.left_out[0]))
@@ -112,11 +112,12 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
     for record in found:
         level = plane_motions(record)
         moving = [each for each in level if each.peak > 0.0]
-        if not level and record.z is not None:
-            left_out.append((record.z.name, UPRIGHT))
         both = paired and record.y is not None and moving
         left_out += [] if both else [(each.name, STILL) for each in level if not each.peak > 0.0]
         motions += [record] if both else moving
+    left_out += [
+        (each.z.name, UPRIGHT) for each in found if motions and each.x is None and each.y is None and each.z is not None
+    ]
     none = not motions and not any(why == STILL for _, why in left_out)
     left_out += [(name, "no horizontal component") for name in table.records or () if none and not alone]
     plausibility.warn(f"left out: {name}: {why}" for name, why in left_out[:MOST_NAMED])
