@@ -33,7 +33,7 @@ FEW = 48  # so few files are read by one process: others take longer to start
 MOST_TOLD = 6  # so many doubts about files are said one by one
 
 _AT_END = re.compile(
-    r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT12])\d?$",
+    r"(?:[-_. ]?(?:\d{3}|UP|DO?WN|VERT?|VRT|[NE]-?[SW]|U-?D|[BHCEL][HNLG][ENZ12])|[-_. ][NEZUVXYLT])\d?$",
     re.IGNORECASE,
 )
 _CODE = re.compile(r"(?<![A-Z0-9])[A-Z][HLGMN][ENZ12](?![A-Z0-9])")
