@@ -221,7 +221,7 @@ def _shown(example: dict[str, Any]) -> ConfigDict:
 
 MOTION_KEYS = frozenset({
     "pulse", "synthetic", "count", "member", "format", "units", "time_step", "component", "vertical", "scale", "seed",
-    "pga", "pgv",
+    "pga", "pgv", "skip",
 })  # fmt: skip
 """Keys of a motion that a request may use; none of them can name a file of the server. Records are hashes."""
 
@@ -366,7 +366,7 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
     """Return a motion, not scaled; one that was asked for lately is not read or made again."""
     if table.record is not None:
         how = (table.format, table.units, table.time_step, table.component, table.vertical)
-        return records.motion(table.record, *how)
+        return records.motion(table.record, *how, skip=table.skip or 0)
     with blamed("motion"):
         if table.synthetic is None:
             return motion_of(table)

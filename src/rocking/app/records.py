@@ -136,14 +136,16 @@ class RecordStore:
         time_step: float | None = None,
         component: str | None = None,
         vertical: str | None = None,
+        *,
+        skip: int = 0,
     ) -> GroundMotion:
         """Return a motion of a file, as `read_motion` reads it; one that was read lately is not read again."""
-        how = (format, units, time_step, component, vertical)
+        how = (format, units, time_step, component, vertical, skip)
         with self._lock:
             path = self.path(sha)
 
         def read() -> GroundMotion:
-            motion = read_motion(path, *how)
+            motion = read_motion(path, *how[:-1], skip=skip)
             if sha not in motion.provenance[0]:  # read_motion notes the hash of what it read
                 raise RecordError(f"{path.name}: has changed since it was uploaded: upload it once more")
             return motion

@@ -199,7 +199,10 @@ class Pulse(ABC):
             )
         times = np.arange(count) * step
         return GroundMotion(
-            self.acceleration(times), step, name=self.name, provenance=(f"{self!r} sampled every {step!r} s",)
+            self.acceleration(times),
+            step,
+            name=self.name,
+            provenance=(f"analytical {self.name}, sampled every {step!r} s",),
         )
 
 

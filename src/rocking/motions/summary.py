@@ -9,6 +9,7 @@ import numpy as np
 from rocking.conventions import g
 from rocking.motions.components import Components, leading
 from rocking.motions.intensity import measure, sampled
+from rocking.motions.pulse import Pulse
 
 GROUND = "ground"
 """Support of a motion that is not that of a floor."""
@@ -21,8 +22,8 @@ def provenance_of(motion: Any) -> tuple[str, ...]:
     """Return the source of a motion and each processing step, in order; of components what differs by axis.
 
     >>> from rocking.motions import pulses
-    >>> provenance_of(pulses.sine(3.0, 0.8))[0][:9]
-    'Sinusoids'
+    >>> provenance_of(pulses.sine(3.0, 0.8))
+    ('analytical pulse',)
     """
     if isinstance(motion, Components):
         motion = dict(zip("xyz", motion.parts, strict=True))
@@ -30,6 +31,8 @@ def provenance_of(motion: Any) -> tuple[str, ...]:
         lines = {axis: provenance_of(part) for axis, part in motion.items() if part is not None}
         shared, own = _shared(lines)
         return (*(f"{axis}: {line}" for axis, each in own.items() for line in each), *shared)
+    if isinstance(motion, Pulse):
+        return ("analytical pulse",)
     return tuple(getattr(motion, "provenance", ())) or (repr(motion),)
 
 

@@ -3,7 +3,15 @@
 import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
+from pydantic_core import PydanticKnownError
 
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Text, Values, in_list, refused
@@ -315,12 +323,24 @@ class HistoriesTable(JobTable):
     scales: Numbers = Field(default_factory=lambda: Values(values=[1.0]), description="factors on the motions [-]")
 
 
+def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
+    """Return a limit state; what is none has one error, whatever the kinds of states are."""
+    try:
+        return validate(value)
+    except ValidationError as error:
+        if isinstance(value, str):
+            raise refused(
+                f"must be a rotation over the slenderness angle, rocking or overturning, got {value!r:.60}"
+            ) from error
+        raise PydanticKnownError("greater_than", {"gt": 0}) from error
+
+
 class FragilityTable(JobTable):
     """Measure, levels and limit states of a fragility analysis."""
 
     measure: Text = _key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = _key("levels of the measure [its unit]")
-    states: list[Positive | Literal["rocking", "overturning"]] = _key(
+    states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = _key(
         "limit states: rotations over the slenderness angle [-], with rocking and overturning; where one of these two "
         "names is given, the given states alone",
         [0.5],

@@ -96,14 +96,14 @@ REFUSED = [
     (curves, {"factor": 2.0}, 'factor is for analysis="cloud" only, this is "stripes"'),
     (curves, {"analysis": "cloud", "tolerance": 0.1}, 'tolerance is for analysis="incremental" only'),
     (curves, {"measure": "arias"}, "which levels of arias"),
-    (curves, {"states": (0.5, 0.2)}, "states must be rotations over alpha"),
+    (curves, {"states": (0.5, 0.2)}, "states must increase from value to value; these decrease"),
     (listed, {"motions": "firm-ground"}, "how strong is the shaking"),
     (listed, {"motions": "firm-ground", "pga": "0.3g", "pgv": 0.2}, "pga or pgv, not both"),
     (listed, {"motions": [RECORD], "count": 3}, "count is for synthetic motions"),
     (listed, {"motions": Hazard.of_records([RECORD]), "pga": 1.0}, "scaled already"),
     (listed, {"motions": [RECORD], "pga": "0.3"}, "PGA must be a number with its unit"),
     (listed, {"motions": [RECORD], "pga": True}, "PGA must be a number with its unit"),
-    *[(checked_levels, {"name": "levels", "values": bad, "unit": "m/s2"}, "levels must be") for bad in (
+    *[(checked_levels, {"name": "levels", "values": bad, "unit": "m/s2"}, "levels must (be|increase)") for bad in (
         [], [1.5, 1.5], [3.0, 1.5], [0.0, 1.0], [[1.5, 3.0], [4.5, 6.0]], [[1.5], [3.0]],
     )],
     *[(limit_states, {"levels": bad}, None) for bad in (

@@ -99,7 +99,7 @@ def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLa
         return ModelLaw(model)
     if isinstance(restitution, SpatialImpactLaw) and not isinstance(restitution, type):
         return restitution
-    if not isinstance(restitution, numbers.Real):
+    if isinstance(restitution, (bool, np.bool_)) or not isinstance(restitution, numbers.Real):
         raise InvalidValueError(
             f"restitution of a body in space must be one of {', '.join(spatial_models())}, a coefficient, or an object "
             f"with label and velocity_after, got {_lacking(restitution)}"
