@@ -745,9 +745,18 @@ class Run {
         if (exclude) over_.push_back({*exclude, leaves});
         const bool crowd = crowded();
         if (crowd && time_ > gathered_) return gather();
-        Points near;
-        for (int i : touching)
-            if ((closed && has(*closed, i)) || velocity(i).z <= slow_) near.push_back(i);
+        Points near, still;
+        for (int i : touching) {
+            const double leaves_at = velocity(i).z;
+            const bool held = closed && has(*closed, i);
+            if (held || leaves_at <= slow_) near.push_back(i);
+            if (held || leaves_at <= kStrikes * speed_) still.push_back(i);
+        }
+        // what leaves slowly stays beside what is at rest, not in its place
+        const auto fits = [&](const Solution& s) {
+            const Points& m = s.contact.members;
+            return still.empty() || m.empty() || std::any_of(m.begin(), m.end(), [&](int i) { return has(still, i); });
+        };
         Problem p = problem_of(pull(), mu_);
         p.forces = true;
         Moving moving;
@@ -765,14 +774,18 @@ class Run {
                 for (std::size_t k = 0; const Solution* found = candidates[k]; ++k) {
                     const Contact& c = found->contact;
                     const auto ended = [&](const Over& o) { return pass < 2 && same(c.members, o.contact.members) && ((o.leaves && !pass) || same(c.stuck, o.contact.stuck)); };
-                    if (std::any_of(over_.begin(), over_.end(), ended)) continue;
+                    if (!fits(*found) || std::any_of(over_.begin(), over_.end(), ended)) continue;
                     if (valid(p, *found, near, slack * g_.gravity)) return take(p, *found, moving);
                 }
         }
         if (!moving.empty() && !mode_.pulled && !crowd) return shocked(near);
-        const Solution* best = crowd ? nullptr : least_pull(p, candidates, near, 1e-9 * g_.gravity, [](const Solution&) { return true; });
-        if (!best && candidates[0] && !candidates[0]->contact.members.empty()) best = candidates[0];
-        if (!best && crowd) best = least_pull(p, candidates, near, 1e-9 * g_.gravity, [](const Solution&) { return true; });
+        const Solution* best = crowd ? nullptr : least_pull(p, candidates, near, 1e-9 * g_.gravity, fits);
+        if (!best) {
+            std::size_t first = 0;
+            while (candidates[first] && !fits(*candidates[first])) ++first;
+            if (candidates[first] && !candidates[first]->contact.members.empty()) best = candidates[first];
+        }
+        if (!best && crowd) best = least_pull(p, candidates, near, 1e-9 * g_.gravity, fits);
         if (!best) return end_with(kNoContactForce);
         r_.held += !(best->contact == mode_.contact) || !mode_.pulled;
         take(p, *best, moving);

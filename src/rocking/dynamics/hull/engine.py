@@ -376,7 +376,10 @@ class HullEngine:
             if self._slip(i) > 3.0 * self.stop:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
-        candidates = list(self._candidates(problem, touching, near, moving))
+        # what leaves slowly stays beside what is at rest, not in its place
+        still = {i for i in near if i in closed or point_velocity(body, state, i)[2] <= _STRIKES * self.speed}
+        every = self._candidates(problem, touching, near, moving)
+        candidates = [c for c in every if not (still and c.contact.members) or still.intersection(c.contact.members)]
         found = None if crowded else self._lawful(problem, candidates, near)
         if found is not None:
             self._take(problem, found, moving)
