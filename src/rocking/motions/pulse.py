@@ -202,7 +202,7 @@ class Pulse(ABC):
             self.acceleration(times),
             step,
             name=self.name,
-            provenance=(f"analytical {self.name}, sampled every {step!r} s",),
+            provenance=(f"{self!r} sampled every {step!r} s",),
         )
 
 

@@ -1,6 +1,6 @@
 """What answers and reports state of a motion: its support, its intensity, its source and each processing step."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,21 +18,23 @@ _MOST_ROWS = 12
 _SHOWN_NAMES = 4
 
 
-def provenance_of(motion: Any) -> tuple[str, ...]:
+def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[str, ...]:
     """Return the source of a motion and each processing step, in order; of components what differs by axis.
 
+    The source of a pulse is its exact definition, or the text that `pulse` returns.
+
     >>> from rocking.motions import pulses
-    >>> provenance_of(pulses.sine(3.0, 0.8))
-    ('analytical pulse',)
+    >>> provenance_of(pulses.sine(3.0, 0.8))[0][:9]
+    'Sinusoids'
     """
     if isinstance(motion, Components):
         motion = dict(zip("xyz", motion.parts, strict=True))
     if isinstance(motion, Mapping):
-        lines = {axis: provenance_of(part) for axis, part in motion.items() if part is not None}
+        lines = {axis: provenance_of(part, pulse) for axis, part in motion.items() if part is not None}
         shared, own = _shared(lines)
         return (*(f"{axis}: {line}" for axis, each in own.items() for line in each), *shared)
     if isinstance(motion, Pulse):
-        return ("analytical pulse",)
+        return (pulse(motion),)
     return tuple(getattr(motion, "provenance", ())) or (repr(motion),)
 
 
@@ -82,7 +84,7 @@ class MotionSummary:
     Parameters
     ----------
     name : str
-        Name of the motion; of components that of the one along x.
+        Name of the motion; of components the names of all.
     support : str
         "ground", or the floor on which it acts.
     peak : float
@@ -124,9 +126,9 @@ class MotionSummary:
         """
         whole = Components(*(motion.get(axis) for axis in "xyz")) if isinstance(motion, Mapping) else motion
         first = leading(whole)
-        name = whole.name if not isinstance(whole, Components) else (first if whole.x is None else whole.x).name
         velocity = float(measure("pgv").of(sampled(first)))
-        return cls(name, support_of(whole), float(whole.peak), velocity, float(whole.duration), provenance_of(whole))
+        source = provenance_of(whole, lambda _: "analytical pulse")
+        return cls(whole.name, support_of(whole), float(whole.peak), velocity, float(whole.duration), source)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the summary as plain values.

@@ -47,7 +47,7 @@ def test_capitals_do_not_matter(same):
         (lambda: pulses.pulse("sine:amplitude=0,5,period=1"), "numbers have a decimal point: 0.5"),
         (lambda: model("fixed:r=0,93"), "numbers have a decimal point: 0.93"),
         (lambda: model("mine:Mine"), "a model of your own as my_file.py:MyModel"),
-        (lambda: pulses.pulse("sine:amplitude=0.3g,period=1"), "it takes no unit behind the number, 0.3"),
+        (lambda: pulses.pulse("sine:amplitude=0.3lb,period=1"), "amplitude"),
     ],
 )
 def test_what_was_meant(ask, meant):
