@@ -32,11 +32,10 @@ class Pulse(ABC):
     """
 
     @property
-    def name(self) -> str:
-        """What to call it in titles and tables: its shape, strength and period."""
-        return self.named()
-
     @abstractmethod
+    def name(self) -> str:
+        """Shape, strength and period of the pulse, for titles and tables."""
+
     def named(self, *, strength: bool = True, period: bool = True) -> str:
         """Return the shape of the pulse, with its strength and period unless they are left out.
 
@@ -48,8 +47,9 @@ class Pulse(ABC):
         Returns
         -------
         str
-            In words, with units.
+            In words, with units; the whole name for a pulse that does not define shorter names.
         """
+        return self.name
 
     @property
     @abstractmethod
@@ -221,6 +221,11 @@ class Sinusoids(Pulse):
     def __post_init__(self) -> None:
         self._check_peak()
 
+    @property
+    def name(self) -> str:
+        """Shape, strength and period of the pulse."""
+        return self.named()
+
     def named(self, *, strength: bool = True, period: bool = True) -> str:
         """Return the shape of the pulse, with its strength and period unless they are left out."""
         return _named(self.shape, self.strength, self.unit, self.period, strength=strength, period=period)
@@ -277,6 +282,11 @@ class Ricker(Pulse):
 
     def __post_init__(self) -> None:
         self._check_peak()
+
+    @property
+    def name(self) -> str:
+        """Shape, strength and period of the pulse."""
+        return self.named()
 
     def named(self, *, strength: bool = True, period: bool = True) -> str:
         """Return the shape of the wavelet, with its amplitude and period unless they are left out."""
