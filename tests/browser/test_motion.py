@@ -143,7 +143,7 @@ def test_a_clash_of_components_is_undone_in_the_page(of_two: Any) -> None:
     held = of_two.get_by_test_id("record-held")
     expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["horizontal", "vertical"])
     expect(held.get_by_label("Vertical component").locator("option")).to_have_text(["none", "horizontal", "vertical"])
-    held.get_by_label("Horizontal component").select_option("vertical")
+    held.get_by_label("Vertical component").select_option("vertical")
     expect(of_two.get_by_test_id("motion-refusal")).to_be_empty()
 
 
