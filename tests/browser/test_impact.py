@@ -158,7 +158,7 @@ CROSSED_FEET = {"units": "m", "block": {"width": 0.5, "height": 2, "feet": [0.4,
 def test_a_refused_body_at_the_first_visit_is_said_and_nothing_waits(open_page: Callable[..., Any]) -> None:
     """No "Computing" for ever and no blank cards: only why there is no answer."""
     page = open_page(fragment(CROSSED_FEET))
-    expect(page.get_by_test_id("impact-refusal")).to_contain_text("left of the right one")
+    expect(page.get_by_test_id("impact-refusal")).to_contain_text("a left and a right foot on the base")
     expect(page.get_by_test_id("impact-results")).to_be_hidden()
     expect(page.locator("#view-impact .waiting")).to_be_hidden()
 

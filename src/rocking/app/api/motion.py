@@ -107,6 +107,7 @@ def _facts(inputs: MotionRequest, records: RecordStore) -> dict[str, Any]:
     columns = {"time": curves.time, **columns}
     return {
         **motion_facts(moved, samples, measures),
+        "name": motion.name,  # before it is scaled
         "scale": inputs.motion.scale,
         "peak_acceleration_m_s2": moved.peak,
         "series": {
