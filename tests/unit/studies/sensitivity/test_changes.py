@@ -259,7 +259,7 @@ def test_words():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"levels": LEVELS[::-1]}, "above the one before"),
+        ({"levels": LEVELS[::-1]}, "must increase from value to value"),
         ({"levels": [1.0]}, "two or more"),
         ({"levels": -LEVELS}, "> 0"),
         ({"first": np.zeros((20, 3))}, "shape"),
