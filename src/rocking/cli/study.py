@@ -21,6 +21,7 @@ from rocking.spec.study import StudyProblem
 
 TABLES = ("body", "motion", "restitution", "settings")
 """Tables of which `--set` changes a key, beside the one that a study has of its own."""
+_OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
 
 
 def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> StudyProblem:
@@ -84,24 +85,21 @@ def of_body(
 
 
 def in_lists(motions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tables of single motions as [[motions]], one of files that follow one another and are read alike."""
+    """Return the tables of single motions as [[motions]]; successive record files with equal keys have one table."""
+    names = {"record": "records", "pulse": "pulse"}
     tables: list[dict[str, Any]] = []
     for motion in motions:
-        names = {"record": "records", "pulse": "pulse"}
         table = {names.get(key, key): [value] if key in names else value for key, value in motion.items()}
-        if tables and "record" in motion and not _OF_ONE_FILE & motion.keys() and _alike(table, tables[-1]):
+        if tables and "record" in motion and not _OF_ONE_FILE & motion.keys() and _differ_in_files(table, tables[-1]):
             tables[-1]["records"] += table["records"]
         else:
             tables.append(table)
     return tables
 
 
-_OF_ONE_FILE = {"component", "vertical", "vertical_file"}
-
-
-def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Return whether two tables differ in nothing but their record files."""
-    return "records" in other and {**one, "records": ()} == {**other, "records": ()}
+def _differ_in_files(table: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Return whether two tables of records differ in their files alone."""
+    return "records" in other and {**table, "records": ()} == {**other, "records": ()}
 
 
 def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -130,9 +128,9 @@ def motions_of(
 
 
 def source_lines(motions: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return what is printed of the source and the processing of motions."""
+    """Return the printed lines of the source and the processing of motions."""
     several = len(motions) > 1
-    return [("source", f"{name}: {words}" if several else words) for name, words in short_provenance(motions)]
+    return [("source", f"{name}: {text}" if several else text) for name, text in short_provenance(motions)]
 
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""What answers and reports state of a motion: its support, its intensity, its source and each processing step."""
+"""Summaries of motions for results and reports: support, intensity, source and each processing step."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[st
     if isinstance(motion, Mapping):
         lines = {axis: provenance_of(part, pulse) for axis, part in motion.items() if part is not None}
         shared, own = _shared(lines)
-        return (*(f"{axis}: {line}" for axis, each in own.items() for line in each), *shared)
+        return (*(f"{axis}: {line}" for axis, steps in own.items() for line in steps), *shared)
     if isinstance(motion, Pulse):
         return (pulse(motion),)
     return tuple(getattr(motion, "provenance", ())) or (repr(motion),)
@@ -79,7 +79,7 @@ def words_on(support: str, words: str) -> str:
 
 @dataclass(frozen=True)
 class MotionSummary:
-    """What answers and reports state of a motion.
+    """Summary of a motion for results and reports.
 
     Parameters
     ----------
@@ -124,11 +124,10 @@ class MotionSummary:
         >>> MotionSummary.of(pulses.sine(3.0, 0.8)).peak
         3.0
         """
-        whole = Components(*(motion.get(axis) for axis in "xyz")) if isinstance(motion, Mapping) else motion
-        first = leading(whole)
-        velocity = float(measure("pgv").of(sampled(first)))
-        source = provenance_of(whole, lambda _: "analytical pulse")
-        return cls(whole.name, support_of(whole), float(whole.peak), velocity, float(whole.duration), source)
+        motion = Components(*(motion.get(axis) for axis in "xyz")) if isinstance(motion, Mapping) else motion
+        velocity = float(measure("pgv").of(sampled(leading(motion))))
+        source = provenance_of(motion, lambda _: "analytical pulse")
+        return cls(motion.name, support_of(motion), float(motion.peak), velocity, float(motion.duration), source)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the summary as plain values.
@@ -149,50 +148,50 @@ def summaries_of(motions: Any) -> tuple[MotionSummary, ...]:
     return tuple(MotionSummary.of(motions[k]) for k in range(len(motions)))
 
 
-def condition(found: Sequence[MotionSummary]) -> str:
+def condition(summaries: Sequence[MotionSummary]) -> str:
     """Return the condition under which a probability holds: the motions and their intensity, in words.
 
     >>> from rocking.motions import pulses
     >>> condition([MotionSummary.of(pulses.sine(2.94, 0.8))])[:26]
     'given this motion (PGA 0.3'
     """
-    supports = dict.fromkeys(each.support for each in found)
+    supports = {summary.support for summary in summaries}
     support = next(iter(supports)) if len(supports) == 1 else GROUND
-    peaks = _median_and_range([each.peak / g for each in found], "g")
-    speeds = _median_and_range([each.peak_velocity for each in found], "m/s")
+    peaks = _median_and_range([summary.peak / g for summary in summaries], "g")
+    velocities = _median_and_range([summary.peak_velocity for summary in summaries], "m/s")
     where = "" if support == GROUND else f" of {support}"
-    words = f"{peak_name(support)} {peaks}; {peak_name(support, 'V')} {speeds}"
-    if len(found) == 1:
-        return f"given this motion{where} ({words})"
-    return f"given these {len(found)} motions{where} ({words}: medians and ranges)"
+    intensity = f"{peak_name(support)} {peaks}; {peak_name(support, 'V')} {velocities}"
+    if len(summaries) == 1:
+        return f"given this motion{where} ({intensity})"
+    return f"given these {len(summaries)} motions{where} ({intensity}: medians and ranges)"
 
 
-def provenance_rows(found: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return sources and processing steps as rows of motion and text; what all motions share stands in one row."""
-    if len(found) == 1:
-        return [(found[0].name, "; ".join(found[0].provenance))]
-    keys = {f"{k}": each.provenance for k, each in enumerate(found)}
-    shared, own = _shared(keys)
-    rows = [(found[int(k)].name, "; ".join(each)) for k, each in own.items() if each]
-    return [*rows, *([(f"all {len(found)} motions", "; ".join(shared))] if shared else [])]
+def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
+    """Return sources and processing steps as rows of motion and text; steps that all motions share have one row."""
+    if len(summaries) == 1:
+        return [(summaries[0].name, "; ".join(summaries[0].provenance))]
+    shared, own = _shared(dict(enumerate(summary.provenance for summary in summaries)))
+    rows = [(summaries[index].name, "; ".join(lines)) for index, lines in own.items() if lines]
+    return [*rows, *([(f"all {len(summaries)} motions", "; ".join(shared))] if shared else [])]
 
 
-def short_provenance(found: Sequence[MotionSummary]) -> list[tuple[str, str]]:
+def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
     """Return the rows of `provenance_rows` that a terminal shows: of many motions the files and the shared steps."""
-    rows = provenance_rows(found)
-    if len(found) <= _SHOWN_NAMES:
+    rows = provenance_rows(summaries)
+    if len(summaries) <= _SHOWN_NAMES:
         return rows
     files = [row for row in rows if "SHA-256" in row[1] or row[0].startswith("all ")]
     shown = files[-_MOST_ROWS:]
-    left = len(rows) - len(shown)
-    return [*shown, *([(f"{left} motions", "--json lists the source and each step of every motion")] if left else [])]
+    remaining = len(rows) - len(shown)
+    hint = "--json lists the source and each step of every motion"
+    return [*shown, *([(f"{remaining} motions", hint)] if remaining else [])]
 
 
-def _shared(lines: Mapping[str, Sequence[str]]) -> tuple[list[str], dict[str, list[str]]]:
-    """Return the lines that all have, and the other lines of each."""
-    every = list(lines.values())
-    shared = [line for line in every[0] if all(line in each for each in every[1:])] if len(every) > 1 else []
-    return shared, {name: [line for line in each if line not in shared] for name, each in lines.items()}
+def _shared(lines: Mapping[Any, Sequence[str]]) -> tuple[list[str], dict[Any, list[str]]]:
+    """Return the lines that all sequences have, and the other lines of each by its key."""
+    first, *others = lines.values()
+    shared = [line for line in first if all(line in other for other in others)] if others else []
+    return shared, {key: [line for line in own if line not in shared] for key, own in lines.items()}
 
 
 def _median_and_range(values: Sequence[float], unit: str) -> str:

@@ -89,15 +89,17 @@ def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
 
 def _read(names: Sequence[str], inputs: InputFiles, how: dict[str, Any]) -> RecordSet:
     """Return the records of a set, or of files that are named one by one, of which none is left out."""
-    found = read_records([inputs.folder / name for name in names], **how)
+    paths = {name: inputs.folder / name for name in names}
+    found = read_records([*paths.values()], **how)
     if is_pattern(names[0]) and found.left_out:  # these files were named
         raise InvalidValueError(": ".join(found.left_out[0]))
     if len(names) > 1:
+        unreadable = dict(found.left_out)
         used = {part.metadata["file"] for record in found for part in record.parts if part is not None}
-        lost = [name for name in names if Path(name).name not in used and not is_station_file(inputs.folder / name)]
-        if lost:
-            why = next((why for files, why in found.left_out if Path(lost[0]).name in files), "holds no component")
-            raise InvalidValueError(f"{lost[0]}: {why}")
+        for name, path in paths.items():
+            if str(path) in unreadable or (path.name not in used and not is_station_file(path)):
+                reasons = (reason for files, reason in found.left_out if path.name in files.split(", "))
+                raise InvalidValueError(f"{name}: {unreadable.get(str(path)) or next(reasons, 'holds no component')}")
     return found
 
 

@@ -126,6 +126,12 @@ def test_what_is_named_and_cannot_be_used_is_refused(run, tmp_path):
     code, _, err = run("simulate", *BODY, *paths, damaged)
     assert code != 0
     assert "damaged.at2: " in err
+    for folder in ("a", "b"):  # of two files of one name in two folders, the second is damaged
+        (tmp_path / folder).mkdir()
+    shutil.copy(paths[0], tmp_path / "a" / "same.at2")
+    shutil.copy(damaged, tmp_path / "b" / "same.at2")
+    with pytest.raises(InvalidValueError, match=r"records: b/same\.at2: "):
+        motions_of([MotionTable(records=["a/same.at2", "b/same.at2"])], InputFiles(tmp_path))
     with pytest.raises(InvalidValueError, match="named twice"):
         motions_of([MotionTable(records=[names[0], names[0]])], InputFiles(tmp_path))
     with pytest.raises(RecordError, match="no file is named"):

@@ -52,6 +52,7 @@ def test_words_that_contradict_one_another_are_refused():
         ("dt = 0.02\nsampling rate: 100 Hz", "a time step of 0.01 s, and one of 0.02 s elsewhere"),
         ("dt = 0.02\nNPTS = 8", "states 8 samples, the file holds 7"),
         ("dt = 0.02\nunits: furlong/s2", "states the unit 'furlong/s2', you say g"),
+        ("dt = 0.02\nunità: furlong/s2", "states the unit 'furlong/s2', you say g"),
         ("dt = 0.02\nunits: cm/s2", "states the unit cm/s2, you say g"),
         ("dt = 0.02\nVelocity in cm/s", "a velocity"),
         ("dt = 0.02\nResponse spectrum, 5 % damping", "a response spectrum is no record"),

@@ -92,6 +92,7 @@ def test_the_channel_of_the_record_is_taken(tmp_path, channels):
         ((channel(location="10"), channel(location="20")), r"XX\.ABC\.\.HNE .*; they describe location 10"),
         ((channel(ends="1969-01-01"),), "do not describe this channel; they describe location blank, 1960"),
         ((channel(), channel(gain=17.0)), "2 different descriptions in a.xml"),
+        ((channel(), channel(dip=-90)), "2 different descriptions in a.xml"),  # level, and vertical
         ((channel(unit="M/S"),), "sensitivity from M/S.*2 to counts needed, found M/S to COUNTS"),
         ((channel(counts="V"),), "found M/S.*2 to V"),
         ((channel(code="HNN"),), "do not describe this channel"),
@@ -132,7 +133,7 @@ def test_a_folder_as_data_centres_deliver_it(tmp_path, capsys):
     step = f"motion.process=response:stations={tmp_path},low=0.2,high=30"
     with pytest.raises(SystemExit, match="0"):
         main(["motion", str(tmp_path / "XX.DEF..HNE.mseed"), "--set", step])
-    assert "by XX.DEF.xml removed" in capsys.readouterr().out
+    assert "by XX.DEF.xml, SHA-256 " in capsys.readouterr().out
 
 
 def test_a_sensor_that_stands_upside_down(tmp_path):

@@ -14,6 +14,7 @@ _FIRST_ROWS = 50
 MARK = "\xef\xbb\xbf"  # the three bytes with which some programs begin a file in UTF-8
 _MOST_WORDS = 60  # lines of words above the numbers
 _WORD = re.compile(r"[^\W\d_]{3,}")
+_PROPERTY = re.compile(r"[^\W\d_]{2,20}\s*(?:[=:;]|[\[(]\s*[^\W\d]+\s*[\])]|(?<=dt)\s)", re.IGNORECASE)
 _BLANKS = " \t\x1a"
 _MIXED = re.compile(r"\s*,\s*|\s+")
 _QUOTED = re.compile(r'"[^"]*"')
@@ -79,7 +80,7 @@ class ColumnText:
 
     names: tuple[str, ...] | None  # what the columns are called, with their units; None if the file begins with numbers
     heading: str  # the line of the names; empty if there is none
-    words: tuple[tuple[int, str], ...]  # lines above that are neither, without a mark of comments
+    words: tuple[tuple[int, str], ...]  # lines above that are neither names nor comments, with their places
     rows: list[tuple[int, list[str]]]  # index of each line of numbers, and its cells
     separator: str  # ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part
 
@@ -88,21 +89,20 @@ class ColumnText:
         """Part a file into cells."""
         lines = _lines(source, None if most is None else max(most, _FIRST_ROWS) + _MOST_WORDS + 1)
         if most is None:
-            lines = [each for each in lines if each[0] < source.end]
+            lines = [(line, text) for line, text in lines if line < source.end]
         top = next((k for k, (_, text) in enumerate(lines[: _MOST_WORDS + 1]) if not is_words(text)), 0)
-        names, body, above = None, lines[top:], lines[:top]
+        above, body, names, heading = lines[:top], lines[top:], None, ""
         if above and not body:
             return cls(None, "", (), [], "")
         if above and (names := _names_above(above, body)) is not None:
-            above = above[:-1]
-        elif not above and lines and (names := _names(lines[0][1], _separator(lines[0][1]))) is not None:
-            above, body = [], lines[1:]
-        first = lines[len(lines) - len(body) - 1][1] if names else ""
-        separator = _separator(first) if names else ""
+            heading = above.pop()[1]
+        elif not above and body and (names := _names(body[0][1], _separator(body[0][1]))) is not None:
+            heading = body.pop(0)[1]
+        separator = _separator(heading) if names else ""
         if names is None or separator == " ":
             separator = " " if names and len(names) == 1 else _separator_of_numbers([text for _, text in body])
         rows = [(line, _cells(text, separator, names)) for line, text in body[:most]]
-        return cls(names, readable(first), tuple(above), rows, separator)
+        return cls(names, readable(heading), tuple(above), rows, separator)
 
 
 def is_words(text: str) -> bool:
@@ -112,12 +112,9 @@ def is_words(text: str) -> bool:
     [True, True, False, False, True]
     """
     words = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
-    begins = re.match(r"[-+.,\d]", text.strip()) is not None
-    stated = (
-        re.match(r"[^\W\d_]{2,20}\s*(?:[=:]|;|[\[(]\s*[^\W\d]+\s*[\])]|(?<=dt)\s)", text.strip(), re.IGNORECASE)
-        is not None
-    )
-    return (len(words) > begins or stated) and len(text) <= 100 * MOST_NAMED
+    begins_with_number = re.match(r"[-+.,\d]", text.strip()) is not None
+    states_property = _PROPERTY.match(text.strip()) is not None
+    return (len(words) > begins_with_number or states_property) and len(text) <= 100 * MOST_NAMED
 
 
 def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> tuple[str, ...] | None:
@@ -132,8 +129,8 @@ def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> t
     if len(above) == 1 and (fits or separator in {";", "\t", ","} or len(names) == 1):
         return names
     columns = [ColumnName.of(place, name) for place, name in enumerate(names)]
-    said = any(one.is_time for one in columns) or all(one.unit for one in columns) or separator != " "
-    return names if fits and (said or all(orientation(one.name) is not None for one in columns)) else None
+    are_names = any(one.is_time for one in columns) or all(one.unit for one in columns) or separator != " "
+    return names if fits and (are_names or all(orientation(one.name) is not None for one in columns)) else None
 
 
 def states_sampling(text: str) -> bool:
@@ -190,27 +187,29 @@ class ColumnName:
     name: str  # without a unit of ours
     unit: str | None = None  # A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets
     behind: str = ""  # what else stands in the brackets, in small letters and without exponents' marks
-    odd: str = ""  # a unit in brackets that is not known
+    unknown_unit: str = ""  # a unit in brackets that is not known
 
     @classmethod
     def of(cls, place: int, text: str) -> "ColumnName":
         """Read what stands above a column."""
         # as our own tables name them: acceleration_m_s2
-        tail = _TAIL.fullmatch(text)
-        ends = (tail[1], tail[2]) if tail and tail[1] else (tail[3], tail[4]) if tail else ("", "")
-        found = _BRACKETS.fullmatch(f"{ends[0]} [{ends[1].replace('_', '/')}]" if tail else text)
+        bracketed = text
+        if tail := _TAIL.fullmatch(text):
+            stem, unit_behind = filter(None, tail.groups())
+            bracketed = f"{stem} [{unit_behind.replace('_', '/')}]"
+        found = _BRACKETS.fullmatch(bracketed)
         if found is None:
             return cls(place, text, text)
         inside = (found[2] if found[2] is not None else found[3]).strip()
         behind = _plain(inside)
         small = _SPELT.get(behind.lower(), behind.lower())
-        unit, known = kind_of(behind)
-        if not known:  # a unit and a remark, or the capital of g
+        unit, kind = kind_of(behind)
+        name = (found[1].strip() if kind else "") or text
+        if not kind:  # a unit and a remark, or the capital of g
             first = re.split(r"[\s,;]", inside)[0]
-            unit, known = ("g", "acceleration") if first in {"G", "g's", "gn"} else kind_of(first)
-        name = found[1].strip() if known and found[1].strip() and known != "" and kind_of(behind)[1] else text
-        odd = "" if known or not looks_like_unit(inside, square=found[2] is not None) else inside
-        return cls(place, text, name, unit, small, odd)
+            unit, kind = ("g", "acceleration") if first in {"G", "g's", "gn"} else kind_of(first)
+        unknown = inside if not kind and looks_like_unit(inside, square=found[2] is not None) else ""
+        return cls(place, text, name, unit, small, unknown)
 
     @property
     def is_time(self) -> bool:
@@ -278,7 +277,7 @@ class NamedColumns:
         return cls(times[0] if times else None, found, left_out, tuple(times[1:]))
 
     def with_one_time(self, source: Source, values: FloatArray) -> "NamedColumns":
-        """Return the same with one time, of which the others must be copies."""
+        """Return these columns with one time, of which the other times must be copies."""
         if not self.more_times or self.time is None:
             return self
         if any((values[:, one.place] != values[:, self.time.place]).any() for one in self.more_times):
@@ -286,11 +285,12 @@ class NamedColumns:
             raise source.error(None, f"{times} are both called a time; remove all but one")
         return replace(self, more_times=(), left_out=(*self.left_out, *(one.text for one in self.more_times)))
 
-    def with_stated_unit(self, source: Source, unit: str | None, odd: str, asked: str | None) -> "NamedColumns":
-        """Return the same with a unit that words state for all; one that is not known contradicts every other."""
-        odd = next((one.odd for one in self.accelerations if one.odd and one.unit is None), odd if unit is None else "")
-        if odd and asked is not None and all(one.unit is None for one in self.accelerations):
-            raise source.error(None, f"the file states the unit {odd[:20]!r}, you say {asked}; known are {_UNITS}")
+    def with_stated_unit(self, source: Source, unit: str | None, unknown: str, asked: str | None) -> "NamedColumns":
+        """Return these columns with a unit that words state for all; an unknown unit contradicts the requested one."""
+        own = (one.unknown_unit for one in self.accelerations if one.unknown_unit and one.unit is None)
+        unknown = next(own, unknown if unit is None else "")
+        if unknown and asked is not None and all(one.unit is None for one in self.accelerations):
+            raise source.error(None, f"the file states the unit {unknown[:20]!r}, you say {asked}; known are {_UNITS}")
         if unit is None or any(one.unit is not None for one in self.accelerations):
             return self
         return replace(self, accelerations=tuple(replace(one, unit=unit) for one in self.accelerations))

@@ -1,4 +1,4 @@
-"""The words above columns of numbers, in comments or without a mark: names, unit, step, count and direction."""
+"""Words above columns of numbers, in comments or without a mark: names, unit, step, count and direction."""
 
 import re
 from collections.abc import Sequence
@@ -19,10 +19,10 @@ from rocking.motions.formats.record import Source, readable
 
 _NUMBER = r"(\d*[.,]?\d+(?:[eE][-+]?\d+)?)"
 _IN_BRACKETS = r"(?:[\[(]\s*[^\W\d]+\.?\s*[\])])"
-_SAYS = rf"(?![^\W_])(?:[^\d=:]{{0,20}}[=:;]\s*|\s*{_IN_BRACKETS}\s*[=:;,]?\s*)"
-_BOTH = re.compile(r"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+(\d*\.?\d+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
+_SEPARATED = rf"(?![^\W_])(?:[^\d=:]{{0,20}}[=:;]\s*|\s*{_IN_BRACKETS}\s*[=:;,]?\s*)"
+_COUNT_AND_STEP = re.compile(r"\bNPTS\s*,\s*DT\s*[=:]?\s*(\d+)[\s,]+(\d*\.?\d+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
 _COUNT = re.compile(
-    rf"\b(?:npts|nsamples|ndata|number of (?:points|samples|data)|num\w* de muestras|anzahl){_SAYS}(\d+)\b",
+    rf"\b(?:npts|nsamples|ndata|number of (?:points|samples|data)|num\w* de muestras|anzahl){_SEPARATED}(\d+)\b",
     re.IGNORECASE,
 )
 _LENGTH = re.compile(r"\W*length\s*[:=]\s*(\d+)\W*", re.IGNORECASE)
@@ -36,7 +36,7 @@ _STEPS = (
 )
 _UNIT_OF_TIME = r"\s*(m(?:illi)?s(?:ec\w*)?\b|us\b|µs\b)?"
 _STEP = re.compile(
-    rf"(?:\b{_STEPS}{_SAYS}|^\W*{_STEPS}\s+|^\W*(?:delta|step|interval|increment|pas|passo|paso)\s*{_IN_BRACKETS}?\s*[:=]\s*)"
+    rf"(?:\b{_STEPS}{_SEPARATED}|^\W*{_STEPS}\s+|^\W*(?:delta|step|interval|increment|pas|passo|paso)\s*{_IN_BRACKETS}?\s*[:=]\s*)"
     rf"{_NUMBER}{_UNIT_OF_TIME}",
     re.IGNORECASE,
 )
@@ -49,19 +49,19 @@ _RATES = (
     r"|frequenza di campionamento|frecuencia de muestreo|tasa de muestreo|fr[eé]quence d.[eé]chantillonnage"
     r"|(?:samples|points) per sec\w*|samples/s(?:ec)?)"
 )
-_RATE = re.compile(rf"\b{_RATES}{_SAYS}{_NUMBER}\s*(kHz)?", re.IGNORECASE)
+_RATE = re.compile(rf"\b{_RATES}{_SEPARATED}{_NUMBER}\s*(kHz)?", re.IGNORECASE)
 _RATE_IN_WORDS = re.compile(
     rf"\b(?:{_RATES}\s+(?:of\s+|is\s+)?{_NUMBER}\s*(k?Hz|sps)\b|{_NUMBER}\s*(?:sps\b|(?:samples?|points?|pts)\s*(?:per|/)\s*s\w*))",
     re.IGNORECASE,
 )
-_OF_STEPS = (_BOTH, _COUNT, _STEP, _STEP_IN_WORDS, _RATE, _RATE_IN_WORDS)
-_ODD = re.compile(
+_OF_SAMPLING = (_COUNT_AND_STEP, _COUNT, _STEP, _STEP_IN_WORDS, _RATE, _RATE_IN_WORDS)
+_NOT_UNDERSTOOD = re.compile(
     r"\W*((?:[^\W\d_]|[ _.'-]){0,40}(?:rate|step|interval|delta|dt|sps"
     r"|sampling|freq\w*|frec\w*|tast\w*|[ée]chantillon\w*"
     r"|scal\w*|factor|faktor|multipl\w*|gain)[^=:;\d]{0,20})[:=;]\s*[\d.,]+",
     re.IGNORECASE,
 )
-_OF_OTHERS = re.compile(
+_NOT_OF_SAMPLING = re.compile(
     r"filt|corner|cut|pass|natural|band|fault|strike|dip|epic|hypo|distance|angle|azim", re.IGNORECASE
 )
 _SPECTRUM = re.compile(
@@ -69,85 +69,85 @@ _SPECTRUM = re.compile(
     r"|\b(?:response|fourier)\b.{0,30}\bspectr(?:um|a)\b(?!.{0,20}(?:compatible|match))",
     re.IGNORECASE,
 )
-_COUNTS = re.compile(r"^\W*(?:raw\s+)?counts?\b(?!\s*[:=]?\s*\d)", re.IGNORECASE)
-_UNIT = re.compile(
-    r"\b(?:units?|einheit|unidad(?:es)?|unit[àa]|birim)\b\s*(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.I
-)
+_RECORDER_COUNTS = re.compile(r"^\W*(?:raw\s+)?counts?\b(?!\s*[:=]?\s*\d)", re.IGNORECASE)
+_UNIT_WORD = r"\b(?:units?|einheit|unidad(?:es)?|unit[àa]|birim)\b\s*"
+_UNIT = re.compile(_UNIT_WORD + r"(?:[:=]|of|are|is|in)\s*[\[(]?\s*([A-Za-z][\w/^*.-]*)", re.IGNORECASE)
 _UNIT_OF = re.compile(
     r"\b(?:(?:accel|veloc|displ|beschleun|aceler|ivme|İvme)\w*\s+(?:in\s+|\[|\()|data in)\s*([A-Za-z][\w/^*.-]*)"
     r"|\bacc\w*\s*[=:]\s*([A-Za-z][\w/^*.-]*)\s*$",
     re.IGNORECASE,
 )
-_STATED_UNIT = re.compile(
-    r"\b(?:units?|einheit|unidad(?:es)?|birim)\b\s*[:=]\s*[\[(]?\s*(\S+?)[\])]?\s*$", re.IGNORECASE
-)
-_OTHER = re.compile(
+_STATED_UNIT = re.compile(_UNIT_WORD + r"[:=]\s*[\[(]?\s*(\S+?)[\])]?\s*$", re.IGNORECASE)
+_OTHER_QUANTITY = re.compile(
     r"^\W*(?:ground )?(velocity|displacement)(?:\b.*(?:series|histor|record|trace)|\s*$)", re.IGNORECASE
 )
-_SIDE = re.compile(
-    r"\W*(?:comp(?:onente?)?|channel|direction|orientation|azimuth|dir|richtung|bile[sş]en)\b\.?\s*[:=]?\s*"
+_COMPONENT_WORDS = r"comp(?:onente?)?|channel|direction|richtung|bile[sş]en"
+_COMPONENT = re.compile(
+    rf"\W*(?:{_COMPONENT_WORDS}|orientation|azimuth|dir)\b\.?\s*[:=]?\s*"
     r"([\w+./-]+(?: ?[EW])?)\s*(?:\([\w -]*\))?\W*",
     re.IGNORECASE,
 )
-_SIDE_FIRST = re.compile(
-    r"\W*([\w+/-]+)[ -](?:comp(?:onente?)?|channel|direction|richtung|bile[sş]en[i\u0131]?)\b\W*", re.IGNORECASE
-)
-_UPRIGHT = re.compile(
+_BEFORE_COMPONENT = re.compile(rf"\W*([\w+/-]+)[ -](?:{_COMPONENT_WORDS}|bile[sş]en[i\u0131])\b\W*", re.IGNORECASE)
+_VERTICAL = re.compile(
     r"(?<![^\W_])(?:verti[ck]al\w*|vert|senkrecht\w*|d[üu][sş]ey|up-down|(?-i:U-?D|[BHEL][HN]Z|(?<=[A-Z0-9]-)(?<!SET-)UP))(?![^\W_])(?!.{0,20}(?:datum|scale|exagg))",
     re.IGNORECASE,
 )
-_LEVEL = re.compile(r"horizontal|peak|pga|max|(?<![^\W_])(?:N-?S|E-?W|[BHEL][HN][NE12])(?![^\W_])", re.IGNORECASE)
+_HORIZONTAL = re.compile(r"horizontal|peak|pga|max|(?<![^\W_])(?:N-?S|E-?W|[BHEL][HN][NE12])(?![^\W_])", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
-class Said:
-    """What the words of a file say; None and nothing where they are silent."""
+class HeaderWords:
+    """Statements of the words above columns; None and nothing where the words do not state a property."""
 
     names: tuple[str, ...] | None = None
     unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
-    odd_unit: str = ""  # a unit that is stated and not known
+    unknown_unit: str = ""  # a unit that is stated and not known
     step: float | None = None  # [s]
     count: int | None = None
-    side: str = ""  # direction of the component, as it stands
+    direction: str = ""  # direction of the component, as it is written
     perhaps_upright: bool = False  # whether a line names the vertical, in words of which no direction is read
 
     @classmethod
-    def of(cls, source: Source, words: Sequence[tuple[int, str]], columns: int) -> "Said":
-        """Read words by their lines; what speaks of velocities, displacements or spectra alone is refused."""
-        said = cls()
-        for line, text in words:
-            bare = readable(text.strip().lstrip("#% \t")[:400])
-            _refuse_others(source, line, bare)
-            said = said._with_sampling(source, line, bare)._with_unit(source, line, bare)
-            found = _SIDE.fullmatch(bare) or _SIDE_FIRST.fullmatch(bare)
-            side = orientation(found[1]) if found else None
-            if found and side is not None and not (isinstance(side, float) and _UPRIGHT.search(bare)):
-                said = replace(said, side=found[1])
-            elif _UPRIGHT.search(bare) and not _LEVEL.search(bare):
-                said = replace(said, perhaps_upright=True)
-            if names := _names_of(bare, columns):
-                said = replace(said, names=names)
-        spoken = " ".join(text for _, text in words).lower()
-        other = next((one for _, text in words if (one := _OTHER.match(text[:200]))), None)
-        if other and not said.unit and not said.names and "accel" not in spoken:
+    def of(cls, source: Source, lines: Sequence[tuple[int, str]], columns: int) -> "HeaderWords":
+        """Read lines of words by their places; words of velocities, displacements or spectra alone are refused."""
+        stated = cls()
+        bare = [(line, readable(text.strip().lstrip("#% \t")[:400])) for line, text in lines]
+        for line, text in bare:
+            _refuse_others(source, line, text)
+            stated = stated._with_sampling(source, line, text)._with_unit(source, line, text)._with_direction(text)
+            if names := _names_of(text, columns):
+                stated = replace(stated, names=names)
+        texts = [text for _, text in bare]
+        other = next((match for text in texts if (match := _OTHER_QUANTITY.match(text))), None)
+        if other and not stated.unit and not stated.names and "accel" not in " ".join(texts).lower():
             headers.refuse_other(source, other[1])
-        return said._with_length(words)
+        return stated._with_length(texts)
 
-    def _with_sampling(self, source: Source, line: int, bare: str) -> "Said":
+    def _with_direction(self, text: str) -> "HeaderWords":
+        match = _COMPONENT.fullmatch(text) or _BEFORE_COMPONENT.fullmatch(text)
+        direction = orientation(match[1]) if match else None
+        if match and direction is not None and not (isinstance(direction, float) and _VERTICAL.search(text)):
+            return replace(self, direction=match[1])
+        if _VERTICAL.search(text) and not _HORIZONTAL.search(text):
+            return replace(self, perhaps_upright=True)
+        return self
+
+    def _with_sampling(self, source: Source, line: int, text: str) -> "HeaderWords":
         step, count = None, self.count
-        if both := _BOTH.search(bare):
+        if both := _COUNT_AND_STEP.search(text):
             count, step = int(both[1][:9]), number(source, line, both[2])
-        elif found := _COUNT.search(bare):
-            count = int(found[1][:9])
+        elif match := _COUNT.search(text):
+            count = int(match[1][:9])
         for form in (_STEP, _STEP_IN_WORDS):
-            if not both and step is None and (found := form.search(bare)):
-                step = _decimal(source, line, found[1]) * _seconds_in(found[0])
+            if not both and step is None and (match := form.search(text)):
+                step = _decimal(source, line, match[1]) * _seconds_in(match[0])
         for form in (_RATE, _RATE_IN_WORDS):
-            if (found := form.search(bare)) and (rate := _decimal(source, line, found[1] or found[3])) > 0.0:
-                other = 1.0 / (rate * (1000.0 if "khz" in found[0].lower() else 1.0))
-                step = self._agreed(source, line, step, other)
-        if step is None and count == self.count and (odd := _ODD.match(bare)) and not _OF_OTHERS.search(odd[1]):
-            source.doubt(line, f"{bare[:60]!r} is not understood, and not used")
+            if (match := form.search(text)) and (rate := _decimal(source, line, match[1] or match[3])) > 0.0:
+                by_rate = 1.0 / (rate * (1000.0 if "khz" in match[0].lower() else 1.0))
+                step = self._agreed(source, line, step, by_rate)
+        unread = _NOT_UNDERSTOOD.match(text) if step is None and count == self.count else None
+        if unread and not _NOT_OF_SAMPLING.search(unread[1]):
+            source.doubt(line, f"{text[:60]!r} is not understood, and not used")
         return replace(self, step=self._agreed(source, line, self.step, step), count=count)
 
     @staticmethod
@@ -156,37 +156,34 @@ class Said:
             raise source.error(line, f"a time step of {step:g} s, and one of {stated:g} s elsewhere in the header")
         return step if stated is None else stated
 
-    def _with_unit(self, source: Source, line: int, bare: str) -> "Said":
-        unit, odd = self.unit, self.odd_unit
-        for word in (*_UNIT.findall(bare), *(one or other for one, other in _UNIT_OF.findall(bare))):
-            found = "g" if word == "G" else unit_named(source, line, word.rstrip(".-"))
-            unit = headers.acceleration_unit(source, unit, found) if found else unit
-        stated = _STATED_UNIT.search(bare)
+    def _with_unit(self, source: Source, line: int, text: str) -> "HeaderWords":
+        unit, unknown = self.unit, self.unknown_unit
+        for word in (*_UNIT.findall(text), *(first or second for first, second in _UNIT_OF.findall(text))):
+            known = "g" if word == "G" else unit_named(source, line, word.rstrip(".-"))
+            unit = headers.acceleration_unit(source, unit, known) if known else unit
+        stated = _STATED_UNIT.search(text)
         if stated and unit_named(source, line, stated[1].rstrip(".-")) is None and looks_like_unit(stated[1]):
-            odd = stated[1] if kind_of(stated[1])[1] != "other" else odd
-        return replace(self, unit=unit, odd_unit=odd)
+            unknown = stated[1] if kind_of(stated[1])[1] != "other" else unknown
+        return replace(self, unit=unit, unknown_unit=unknown)
 
-    def _with_length(self, words: Sequence[tuple[int, str]]) -> "Said":
+    def _with_length(self, texts: Sequence[str]) -> "HeaderWords":
         """SeismicHandler's files state the number of samples as LENGTH, beside DELTA."""
-        bare = [text.strip().lstrip("#% \t")[:200] for _, text in words]
-        length = next((int(found[1][:9]) for text in bare if (found := _LENGTH.fullmatch(text))), None)
-        has_delta = any(re.match(r"delta\s*[:=]", text, re.IGNORECASE) for text in bare)
+        length = next((int(match[1][:9]) for text in texts if (match := _LENGTH.fullmatch(text))), None)
+        has_delta = any(re.match(r"delta\s*[:=]", text, re.IGNORECASE) for text in texts)
         return replace(self, count=length) if length and has_delta and self.count is None else self
 
 
 def is_understood(text: str) -> bool:
-    """Return whether what words say of a sampling is read here, all of it."""
+    """Return whether all that a line states of a sampling is read here."""
     rest = text[:400]
-    for form in _OF_STEPS:
+    for form in _OF_SAMPLING:
         rest = form.sub(" ", rest)
     return not states_sampling(rest)
 
 
-def _seconds_in(words: str) -> float:
-    """Return the unit of time that the words around a step state, before or behind it [s]."""
-    small = re.search(
-        r"(?:[\W_]|\d)(?:(m(?:illi)?s(?:ec\w*)?)|[uµμ]s|micros(?:ec\w*)?)(?![^\W_])", words, re.IGNORECASE
-    )
+def _seconds_in(text: str) -> float:
+    """Return the unit of time that a text states before or behind a step [s]."""
+    small = re.search(r"(?:[\W_]|\d)(?:(m(?:illi)?s(?:ec\w*)?)|[uµμ]s|micros(?:ec\w*)?)(?![^\W_])", text, re.IGNORECASE)
     return (1e-3 if small[1] else 1e-6) if small else 1.0
 
 
@@ -194,16 +191,17 @@ def _decimal(source: Source, line: int, word: str) -> float:
     return number(source, line, word.replace(",", "."))
 
 
-def _names_of(bare: str, columns: int) -> tuple[str, ...] | None:
-    called = names_on(bare)
-    found = [ColumnName.of(place, one) for place, one in enumerate(called or ())]
+def _names_of(text: str, columns: int) -> tuple[str, ...] | None:
+    names = names_on(text)
+    read = [ColumnName.of(place, name) for place, name in enumerate(names or ())]
     # words with a unit somewhere are names if they name a time, or are accelerations all
-    named = any(one.is_time for one in found) or all(one.unit for one in found)
-    return called if len(found) == columns and named and any(kind_of(one.behind)[1] for one in found) else None
+    are_names = any(column.is_time for column in read) or all(column.unit for column in read)
+    has_unit = any(kind_of(column.behind)[1] for column in read)
+    return names if len(read) == columns and are_names and has_unit else None
 
 
-def _refuse_others(source: Source, line: int, bare: str) -> None:
-    if _SPECTRUM.search(bare):
-        raise source.error(line, f"{bare[:40]!r}: a response spectrum is no record; motion.target= takes one")
-    if _COUNTS.search(bare):
-        raise source.error(line, f"{bare[:40]!r}: counts of a recorder are no accelerations; divide them first")
+def _refuse_others(source: Source, line: int, text: str) -> None:
+    if _SPECTRUM.search(text):
+        raise source.error(line, f"{text[:40]!r}: a response spectrum is no record; motion.target= takes one")
+    if _RECORDER_COUNTS.search(text):
+        raise source.error(line, f"{text[:40]!r}: counts of a recorder are no accelerations; divide them first")

@@ -17,9 +17,8 @@ from rocking.motions.formats.column_text import (
     ColumnText,
     NamedColumns,
     names_on,
-    states_sampling,
 )
-from rocking.motions.formats.column_words import Said, is_understood
+from rocking.motions.formats.column_words import HeaderWords, is_understood
 from rocking.motions.formats.header_values import columns_of
 from rocking.motions.formats.headers import step_between_samples, step_of_times
 from rocking.motions.formats.numbers import number
@@ -104,10 +103,9 @@ class Columns(RecordFormat):
         for line, cells in text.rows[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
         comments = _comments(source)
-        said = Said.of(source, [*comments, *text.words], len(text.rows[0][1]))
-        if odd := next((one for one in text.words if states_sampling(one[1]) and not is_understood(one[1])), None):
-            raise source.error(odd[0], f"{odd[1].strip()[:60]!r} is not understood; {SKIP}")
-        names = text.names or said.names
+        stated = HeaderWords.of(source, [*comments, *text.words], len(text.rows[0][1]))
+        _check_words(source, text)
+        names = text.names or stated.names
         wide = names is None and len(text.rows[0][1]) > _MOST_COLUMNS
         if wide:
             chosen, values = _row_by_row(source, _table(source, text, ragged=True))
@@ -117,20 +115,20 @@ class Columns(RecordFormat):
         if text.words and names is None:
             _check_first(source, text, values)
         chosen = chosen.with_one_time(source, values)
-        told = time_step if said.step is None else step_between_samples(source, said.step, time_step)
-        step, metadata = told, {}
+        known = time_step if stated.step is None else step_between_samples(source, stated.step, time_step)
+        step, metadata = known, {}
         if chosen.time is not None:
             times, place = values[:, chosen.time.place], chosen.time.place
-            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], told)
+            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], known)
             metadata = {"first time": f"{times[0]:g} s"}
         step = step_between_samples(source, None, step)
-        if said.count is not None:
-            headers.check_count(source, said.count, len(values))
-        chosen = chosen.with_stated_unit(source, said.unit, said.odd_unit, units)
+        if stated.count is not None:
+            headers.check_count(source, stated.count, len(values))
+        chosen = chosen.with_stated_unit(source, stated.unit, stated.unknown_unit, units)
         if chosen.left_out:
             metadata["left out"] = ", ".join(chosen.left_out)
         accelerations = chosen.with_unit(source, units).accelerations
-        about = _side(said, accelerations)
+        about = _direction(stated, accelerations)
         parts = tuple(
             Component(_name(one, about), values[:, one.place].copy(), one.unit or "", step, None, about)
             for one in accelerations
@@ -153,12 +151,12 @@ class Columns(RecordFormat):
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 
-def _side(said: Said, accelerations: tuple[ColumnName, ...]) -> dict[str, str]:
-    """Return the direction that words state for a lone column; unclear where only they name the vertical."""
-    if said.side:
-        return {"direction": said.side} if len(accelerations) == 1 else {}
-    silent = all(directions.orientation(one.name) is None for one in accelerations)
-    return {directions.KEY: directions.UNCLEAR} if said.perhaps_upright and silent else {}
+def _direction(stated: HeaderWords, accelerations: tuple[ColumnName, ...]) -> dict[str, str]:
+    """Return the direction that words state for a lone column; unclear where only the words name the vertical."""
+    if stated.direction:
+        return {"direction": stated.direction} if len(accelerations) == 1 else {}
+    is_unstated = all(directions.orientation(column.name) is None for column in accelerations)
+    return {directions.KEY: directions.UNCLEAR} if stated.perhaps_upright and is_unstated else {}
 
 
 def _name(column: ColumnName, about: dict[str, str]) -> str:
@@ -166,8 +164,15 @@ def _name(column: ColumnName, about: dict[str, str]) -> str:
     return about["direction"] if "direction" in about and column.name in {"acceleration", "column 2"} else column.name
 
 
+def _check_words(source: Source, text: ColumnText) -> None:
+    """Refuse words that state a sampling in a way that is not read."""
+    for line, words in text.words:
+        if not is_understood(words):
+            raise source.error(line, f"{words.strip()[:60]!r} is not understood; {SKIP}")
+
+
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
-    """Refuse a first number under words that is the number of those behind it."""
+    """Refuse a first number below words that is the number of the samples behind it."""
     first, line = values[0], text.rows[0][0]
     if first.size == 1 and first[0] >= 10.0 and first[0] in {len(values) - 1, len(values) - 2}:
         raise source.error(line, f"{first[0]:g} may be the number of samples, no sample; {SKIP}")
@@ -176,12 +181,10 @@ def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
 def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     """Return the first lines of cells, not yet numbers, that decide whether these are columns; None if they are not."""
     comments = [text for _, text in _comments(source, _LONGEST_HEADER)]
-    if not source.is_text or any(states_sampling(text) and not is_understood(text) for text in comments):
+    if not source.is_text or not all(map(is_understood, comments)):
         return None
     text = ColumnText.of(source, _LOOK)
-    if text.words and (
-        len(text.rows) < _LOOK or any(states_sampling(w) and not is_understood(w) for _, w in text.words)
-    ):
+    if text.words and (len(text.rows) < _LOOK or not all(is_understood(words) for _, words in text.words)):
         return None
     # damage further down is told by the reader, with its line, where names say that these are columns
     looked = text.rows if text.names is None else text.rows[:1]

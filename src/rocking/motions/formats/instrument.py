@@ -1,6 +1,5 @@
 """The response of an instrument, taken out of a record by what a StationXML file says of it."""
 
-import hashlib
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +10,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.filters import cosine_sine
 from rocking.motions.formats.sac import OBSPY, check_stations
-from rocking.motions.formats.stations import Places, sensitivity_of, station_sources, the_channel
+from rocking.motions.formats.stations import Places, channel_at, sensitivity_of, station_sources
 from rocking.motions.motion import GroundMotion, checked_motion
 
 ABOVE = 1.25  # the edge of the band goes to zero at so many times its upper end, and at half its lower end [-]
@@ -31,25 +30,25 @@ def without_response(motion: GroundMotion, stations: Places, low: float, high: f
     high = checks.within("high", high, low, nyquist / ABOVE, unit="Hz", open_low=True, hint="1.25 of it below Nyquist")
     count = 1 << (2 * len(motion) - 1).bit_length()  # as many zeros behind it at least: nothing wraps round
     about = {key: motion.metadata.get(key, "") for key in ("network", "station", "location", "channel", "starttime")}
-    flat, file = _flat(about, stations, motion.time_step, count)
+    response, file = _relative_response(about, stations, motion.time_step, count)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
     edge = _edge((frequencies - 0.5 * low) / (0.5 * low)) * _edge((ABOVE * high - frequencies) / ((ABOVE - 1.0) * high))
-    fields, files = {"acceleration": _without(motion.acceleration, flat, edge, count)}, [file]
+    fields, files = {"acceleration": _without(motion.acceleration, response, edge, count)}, [file]
     if motion.vertical is not None:
         about["channel"] = motion.metadata.get("vertical channel", "")
-        flat, file = _flat(about, stations, motion.time_step, count)
-        fields["vertical"] = _without(motion.vertical, flat, edge, count)
+        response, file = _relative_response(about, stations, motion.time_step, count)
+        fields["vertical"] = _without(motion.vertical, response, edge, count)
         files.append(file)
     by = " and ".join(dict.fromkeys(files))
     return motion.changed(f"response of the instrument by {by} removed from {low:g} to {high:g} Hz", **fields)
 
 
-def _without(samples: FloatArray, flat: Any, edge: FloatArray, count: int) -> FloatArray:
-    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, flat, 1.0), 0.0)  # Eq. 311
+def _without(samples: FloatArray, response: Any, edge: FloatArray, count: int) -> FloatArray:
+    gain = np.where(edge > 0.0, edge / np.where(edge > 0.0, response, 1.0), 0.0)  # Eq. 311
     return np.asarray(np.fft.irfft(np.fft.rfft(samples, count) * gain, count)[: samples.size], dtype=np.float64)
 
 
-def _flat(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
+def _relative_response(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
     """Return the response of a channel over its overall sensitivity at FFT frequencies; its file with its SHA-256."""
     sources = station_sources(stations, [about["station"]])
     name = ".".join(about[key] for key in ("network", "station", "location", "channel"))
@@ -57,14 +56,11 @@ def _flat(about: dict[str, str], stations: Places, step: float, count: int) -> t
         sources[0], {"channel": about, "step": step, "count": count}, *(one.content for one in sources)
     )
     check_stations(found, sources)
-    described = [{**one, "file": sources[one["place"]].name} for one in found["channels"]]
-    channel = the_channel(sources[0], described, name, about["starttime"])
-    source = sources[channel["place"]]
+    channel, source = channel_at(sources[0], found["channels"], sources, name, about["starttime"])
     sensitivity_of(replace(source, doubts=[]), channel, name)  # of acceleration, or refused
     if "array" not in channel:
         raise source.error(None, f"{name}: the StationXML states no stages of a response; ask for level=response")
-    digest = hashlib.sha256(source.content).hexdigest()
-    return arrays[channel["array"]], f"{source.name}, SHA-256 {digest}"
+    return arrays[channel["array"]], f"{source.name}, SHA-256 {source.sha256}"
 
 
 def _edge(place: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ the sensor the sensitivity is no longer true. Checked on one channel of the 2019
 
 import re
 import struct
+from collections.abc import Sequence
 from io import BytesIO
 from typing import ClassVar
 
@@ -18,7 +19,7 @@ from rocking.errors import RecordError
 from rocking.motions.formats import directions, headers
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.formats.sac import Trace, need_obspy, read_traces, trace_of
-from rocking.motions.formats.stations import Places, sensitivity_of, station_sources, the_channel
+from rocking.motions.formats.stations import Places, channel_at, sensitivity_of, station_sources
 
 _HEAD = re.compile(rb"\d{6}[DRQM][ \0](.{5})")  # of a record; behind it the code of the station
 _ENCODING = 1000
@@ -81,7 +82,7 @@ class MiniSeed(RecordFormat):
         codes = [trace.about["channel"] for trace in traces]
         names = codes if len(set(codes)) == len(codes) else ids
         components = tuple(
-            _component(source, trace, name or "unnamed", units, time_step)
+            _component(source, trace, stations, name or "unnamed", units, time_step)
             for trace, name in zip(traces, names, strict=True)
         )
         metadata = {key: traces[0].about[key] for key in ("network", "station", "starttime")}
@@ -123,7 +124,9 @@ def _check_room(source: Source) -> None:
         at += 1 << length
 
 
-def _component(source: Source, trace: Trace, name: str, units: str | None, asked: float | None) -> Component:
+def _component(
+    source: Source, trace: Trace, stations: Sequence[Source], name: str, units: str | None, asked: float | None
+) -> Component:
     values: FloatArray = trace.samples.astype(np.float64)
     if values.size < 2 or not np.isfinite(values).all():
         raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
@@ -138,7 +141,7 @@ def _component(source: Source, trace: Trace, name: str, units: str | None, asked
         about[directions.KEY] = directions.as_text(side)
         return Component(name, values, headers.acceleration_unit(source, stated, units), step, None, about)
     unit = headers.acceleration_unit(source, "m/s2", units)
-    channel = the_channel(source, trace.channels, trace.id, trace.about["starttime"])
+    channel, described_in = channel_at(source, trace.channels, stations, trace.id, trace.about["starttime"])
     sensitivity = sensitivity_of(source, channel, trace.id)
     if abs(channel["rate"] * trace.step - 1.0) > 1e-4:
         raise source.error(None, f"{trace.id}: {1 / trace.step:g} samples/s, the StationXML states {channel['rate']:g}")
@@ -148,7 +151,7 @@ def _component(source: Source, trace: Trace, name: str, units: str | None, asked
     about |= {
         directions.KEY: directions.as_text(side),
         "sensitivity": f"{sensitivity:.9g} counts/(m/s2)",
-        "stations": f"{channel['file']}, SHA-256 {channel['sha256']}",
+        "stations": f"{described_in.name}, SHA-256 {described_in.sha256}",
         "processing": "mean of the whole record removed, divided by the overall sensitivity",
         "mean removed": f"{offset:.9g} counts",
     }

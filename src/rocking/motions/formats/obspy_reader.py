@@ -31,17 +31,19 @@ def answer(request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list
         return _response(request, files)
     content, *stations = files
     obspy = import_module("obspy")
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         for damage in _damage():
             warnings.simplefilter("error", damage)
         traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
-    inventories, wrong = _inventories(stations)
-    if wrong:
-        return wrong, []
+    inventories, refusal = _inventories(stations)
+    if refusal:
+        return refusal, []
     described = [_described(trace, inventories) for trace in traces]
-    told = dict.fromkeys(" ".join(str(each.message).split())[:200] for each in said if not _is_of_programs(each))
-    return {"traces": described, "warnings": list(told)}, [np.asarray(trace.data) for trace in traces]
+    doubts = dict.fromkeys(
+        " ".join(str(warning.message).split())[:200] for warning in caught if not _is_of_programs(warning)
+    )
+    return {"traces": described, "warnings": list(doubts)}, [np.asarray(trace.data) for trace in traces]
 
 
 def _damage() -> list[type[Warning]]:
@@ -61,11 +63,11 @@ def _inventories(files: Sequence[bytes]) -> tuple[list[Any], dict[str, Any]]:
     obspy, read = import_module("obspy"), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for place, content in enumerate(files):
+        for index, content in enumerate(files):
             try:
                 read.append(obspy.read_inventory(io.BytesIO(content), format="STATIONXML"))
             except Exception as error:  # noqa: BLE001 - its layers raise nearly any class
-                return [], {"stations": str(error)[:120], "file": place}
+                return [], {"stations": str(error)[:120], "file_index": index}
     return read, {}
 
 
@@ -95,8 +97,8 @@ def _location(code: Any) -> str:
 def _channels(about: dict[str, str], inventories: Sequence[Any]) -> list[tuple[int, Any]]:
     """Return the channels of one network, station and code at whatever location and time, each with its file."""
     return [
-        (place, channel)
-        for place, inventory in enumerate(inventories)
+        (index, channel)
+        for index, inventory in enumerate(inventories)
         for network in inventory
         for station in network
         for channel in station
@@ -104,14 +106,14 @@ def _channels(about: dict[str, str], inventories: Sequence[Any]) -> list[tuple[i
     ]
 
 
-def _described_channel(about: dict[str, str], place: int, channel: Any) -> dict[str, Any]:
+def _described_channel(about: dict[str, str], file_index: int, channel: Any) -> dict[str, Any]:
     when = import_module("obspy").UTCDateTime(about["starttime"])
     begins, ends = channel.start_date, channel.end_date
     at_time = (begins is None or begins <= when) and (ends is None or when <= ends)
     total = channel.response and channel.response.instrument_sensitivity
     return {
         "matches": at_time and _location(channel.location_code) == _location(about["location"]),
-        "place": place,
+        "file_index": file_index,
         "location": _location(channel.location_code),
         "from": str(begins or "")[:19],
         "to": str(ends or "today")[:19],
@@ -125,19 +127,19 @@ def _described_channel(about: dict[str, str], place: int, channel: Any) -> dict[
 def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str, Any], list[Any]]:
     """Return descriptions of a channel, and the response of each over its sensitivity at the frequencies of an FFT."""
     warnings.simplefilter("ignore")
-    inventories, wrong = _inventories(files)
-    if wrong:
-        return wrong, []
+    inventories, refusal = _inventories(files)
+    if refusal:
+        return refusal, []
     described: list[dict[str, Any]] = []
     arrays: list[Any] = []
-    for place, channel in _channels(request["channel"], inventories):
-        one = _described_channel(request["channel"], place, channel)
-        described.append(one)
-        if one["matches"] and one["sensitivity"] and channel.response.response_stages:
+    for index, channel in _channels(request["channel"], inventories):
+        description = _described_channel(request["channel"], index, channel)
+        described.append(description)
+        if description["matches"] and description["sensitivity"] and channel.response.response_stages:
             _in_one_unit(channel.response)
             values, _ = channel.response.get_evalresp_response(request["step"], request["count"], output="ACC")
-            one["array"] = len(arrays)
-            arrays.append(np.asarray(values / one["sensitivity"][0], dtype=np.complex128))
+            description["array"] = len(arrays)
+            arrays.append(np.asarray(values / description["sensitivity"][0], dtype=np.complex128))
     return {"channels": described}, arrays
 
 

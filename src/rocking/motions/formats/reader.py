@@ -1,6 +1,5 @@
 """Reading a record file of whatever format, and writing one."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -198,10 +197,9 @@ def read_motion(  # noqa: PLR0913 - every one of them is a property of some file
         raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
     told = f"component {upright.name}, unit {upright.unit}"
     acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
-    about = {
-        "component": upright.name,
-        **{key: upright.metadata[key] for key in ["channel"] if key in upright.metadata},
-    }
+    about = {"component": upright.name}
+    if "channel" in upright.metadata:
+        about["channel"] = upright.metadata["channel"]
     part = GroundMotion(acceleration, upright.time_step, None, "", about, (told,))
     return with_vertical(_motion(source, record, level), part)
 
@@ -310,8 +308,8 @@ def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
     own = {"format": record.format, "unit": part.unit, "component": part.name, "header": record.header}
     own[directions.KEY] = directions.as_text(_direction(source, record, part))
     metadata = {**record.metadata, **part.metadata, **own}
-    digest = hashlib.sha256(source.content).hexdigest()
-    told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
+    told = f"read from {source.name}, SHA-256 {source.sha256}, format {record.format}"
+    told += f", component {part.name}, unit {part.unit}"
     told += f", counts by {metadata['stations']}" if "stations" in metadata else ""
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     name += " borehole" if metadata.get("position") == "borehole" else ""

@@ -1,5 +1,6 @@
 """A record file: its bytes and lines, what it holds, and what every format of such files is."""
 
+import hashlib
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
@@ -50,6 +51,11 @@ class Source:
         if not content.strip():
             raise RecordError(f"{path}: the file is empty")
         return cls(path.name, content, skip=checks.whole("skip", skip, 0, 100_000))
+
+    @cached_property
+    def sha256(self) -> str:
+        """SHA-256 of the content, in hexadecimal digits."""
+        return hashlib.sha256(self.content).hexdigest()
 
     @cached_property
     def is_text(self) -> bool:

@@ -3,7 +3,6 @@
 SAC says nothing of its unit, so the user must. Checked on one file of the 2019 Ridgecrest earthquake.
 """
 
-import hashlib
 import math
 import struct
 import warnings
@@ -134,7 +133,7 @@ class Trace:
     about: dict[str, str]  # network, station, location, channel and time of the first sample
     sac: dict[str, Any]  # header of a SAC file
     header: str  # the same as text
-    # channels of StationXML files of its codes: location, dates, rate, sensitivity, angles; None without such files
+    # channels of its codes in StationXML files: file, location, dates, rate, sensitivity, angles; None without files
     channels: list[dict[str, Any]] | None
     samples: Any  # as they stand in the file
 
@@ -149,10 +148,6 @@ def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **op
     files = [source.content, *(one.content for one in stations)]
     found, arrays = OBSPY.answer(source, {"format": form, "options": options}, *files)
     check_stations(found, stations)
-    for each in found["traces"]:
-        for channel in each["channels"] or ():
-            own = stations[channel["place"]]
-            channel |= {"file": own.name, "sha256": hashlib.sha256(own.content).hexdigest()}
     for warning in found.get("warnings", ()):
         source.doubt(None, f"ObsPy warns: {warning}")
     if not found["traces"]:
@@ -166,7 +161,7 @@ def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **op
 def check_stations(found: dict[str, Any], stations: Sequence[Source]) -> None:
     """Refuse a StationXML file that ObsPy cannot read."""
     if "stations" in found:
-        raise stations[found["file"]].error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
+        raise stations[found["file_index"]].error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
 
 
 def need_obspy(form: str) -> Any:

@@ -21,6 +21,7 @@ Places = str | PathLike[str] | Sequence[str | PathLike[str]]
 _SPELT = re.compile(r"([NUMC]?)M/(?:S\*\*2|\(S\*\*2\)|S\^2|S\^\{2\}|S2|S/S|SEC\*\*2|SEC\^2|SEC2|SEC/SEC)")
 _FACTORS = {"": 1.0, "C": 1e-2, "M": 1e-3, "U": 1e-6, "N": 1e-9}
 _COUNTS = {"COUNTS", "COUNT", "DIGITALCOUNTS", "CT", "CTS"}
+_DESCRIBED = ("rate", "sensitivity", "azimuth", "dip", "from")  # what two descriptions of a channel must agree in
 _UNNAMED = {"NONE", "", "UNKNOWN", "UNDEFINED"}
 
 
@@ -81,15 +82,18 @@ def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
     return value
 
 
-def the_channel(source: Source, found: Sequence[dict[str, Any]], name: str, when: str) -> dict[str, Any]:
-    """Return the one description of a channel that StationXML files hold at a time; the same in two files is one."""
+def channel_at(
+    source: Source, found: Sequence[dict[str, Any]], stations: Sequence[Source], name: str, when: str
+) -> tuple[dict[str, Any], Source]:
+    """Return the description of a channel at a time, and its StationXML file; equal ones in two files are one."""
     exact = [one for one in found if one["matches"]]
-    distinct = {repr({key: one[key] for key in ("rate", "sensitivity", "from")}): one for one in exact}
+    distinct = {repr([one[key] for key in _DESCRIBED]): one for one in exact}
     if len(distinct) == 1:
-        return next(iter(distinct.values()))
+        (channel,) = distinct.values()
+        return channel, stations[channel["file_index"]]
     if not exact:
         others = sorted({f"location {one['location'] or 'blank'}, {one['from']} to {one['to']}" for one in found})
         beside = f"; they describe {'; '.join(others[:4])}" if others else ""
         raise source.error(None, f"{name} at {when}: the StationXML files do not describe this channel{beside}")
-    files = ", ".join(sorted({one["file"] for one in exact}))
+    files = ", ".join(sorted({stations[one["file_index"]].name for one in exact}))
     raise source.error(None, f"{name} at {when}: {len(distinct)} different descriptions in {files}; name one file")

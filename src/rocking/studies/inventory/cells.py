@@ -31,13 +31,8 @@ _GROUPED = re.compile(
 def without_thousands(text: str) -> str:
     """Return text whose numbers have no separators of thousands, where these can be nothing else.
 
-    >>> (
-    ...     without_thousands("1.234,5"),
-    ...     without_thousands("2 350 mm"),
-    ...     without_thousands("1.234"),
-    ...     without_thousands("4' 6"),
-    ... )
-    ('1234,5', '2350 mm', '1.234', "4' 6")
+    >>> [without_thousands(text) for text in ("1.234,5", "2 350 mm", "1.234", "4' 6")]
+    ['1234,5', '2350 mm', '1.234', "4' 6"]
     """
     return _GROUPED.sub(lambda match: _ungrouped(match[0]), text)
 
@@ -49,12 +44,12 @@ def _ungrouped(number: str) -> str:
 
 
 class DecimalMark:
-    """What separates the decimals in a table, found in all of its numbers together.
+    """The mark that separates the decimals in a table, by all of its numbers together.
 
-    ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand, and so could ``1.234``. Either is taken only
-    where the same mark stands for decimals elsewhere in the table and the other does not; or parts thousands in a
-    number such as ``1.234,5``. Where commas part the fields,
-    decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
+    ``12,5`` can only have a decimal comma. ``1,234`` could have thousands, and so could ``1.234``. Its mark separates
+    decimals if the same mark does elsewhere in the table and the other does not. It separates thousands if it does in
+    a number such as ``1.234,5``, or if the other numbers of the column are near. Where commas separate the fields,
+    decimals have points, and ``1.234`` is one unless a decimal comma contradicts it.
 
     >>> mark = DecimalMark(["12,5", "1,234", "7 cm"])
     >>> mark.number("width_cm", "1,234")
@@ -83,12 +78,7 @@ class DecimalMark:
                 f"{name} must be one number such as 12.5, without unit and without separators of thousands, "
                 f"got {text[:40]!r}"
             )
-        settled = (
-            self.commas and not self.points
-            if match[1] == ","
-            else not self.commas and (self.points or self.comma_delimited)
-        )
-        if _THOUSANDS.fullmatch(text) and not settled:
+        if _THOUSANDS.fullmatch(text) and not self._separates_decimals(match[1]):
             if match[1] in self.groups or self._settles(name, text):
                 return checks.number(name, float(text.replace(match[1], "")))
             digits = text.replace(match[1], "")
@@ -102,9 +92,14 @@ class DecimalMark:
         """Return whether only the other numbers of its column say that a mark in a number parts thousands."""
         text = cell.strip()
         mark = re.sub(r"[0-9+-]", "", text)
-        proven = mark in self.groups or (self.commas and not self.points if mark == "," else not self.commas and (
-            self.points or self.comma_delimited))  # fmt: skip
-        return bool(_THOUSANDS.fullmatch(text)) and not proven and self._settles(name, text)
+        by_table = mark in self.groups or self._separates_decimals(mark)
+        return bool(_THOUSANDS.fullmatch(text)) and not by_table and self._settles(name, text)
+
+    def _separates_decimals(self, mark: str) -> bool:
+        """Return whether the other numbers of the table say that a mark separates decimals."""
+        if mark == ",":
+            return self.commas and not self.points
+        return not self.commas and (self.points or self.comma_delimited)
 
     def _settles(self, name: str, text: str) -> bool:
         """Return whether the other numbers of a column are near a number with thousands, and far from its decimals."""

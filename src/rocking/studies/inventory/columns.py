@@ -104,7 +104,7 @@ class InventoryColumn:
 
 @dataclass(frozen=True)
 class Header:
-    """A row of titles, understood."""
+    """What the titles of a list mean."""
 
     columns: tuple[InventoryColumn | None, ...]  # None for one that is not read
     language: str
@@ -299,14 +299,23 @@ def _sided(columns: list[InventoryColumn | None]) -> list[InventoryColumn | None
     return columns
 
 
-def _targets(titles: Titles, mapped: Mapping[str, str]) -> list[str | None]:
-    """Return what the user says of each column: by its whole title, or by its own one below that of a group."""
-    own = {plain(title): target for title, target in mapped.items()}
+def names_of(titles: Titles) -> list[tuple[str, ...]]:
+    """Return the names by which a user may state each column: its whole title, and its lowest if no other has that.
+
+    >>> names_of([("Base (cm)", "Width"), ("Size (cm)", "Width"), ("Size (cm)", "Height")])
+    [('base cm width',), ('size cm width',), ('size cm height', 'height')]
+    """
     lowest = [plain((levels_of(title) or ("",))[-1]) for title in titles]
     return [
-        own.get(plain(title_of(title)), own.get(last) if lowest.count(last) == 1 else None)
+        (plain(title_of(title)), *([last] if lowest.count(last) == 1 else []))
         for title, last in zip(titles, lowest, strict=True)
     ]
+
+
+def _targets(titles: Titles, mapped: Mapping[str, str]) -> list[str | None]:
+    """Return what the user states of each column."""
+    targets = {plain(title): target for title, target in mapped.items()}
+    return [next((targets[name] for name in names if name in targets), None) for names in names_of(titles)]
 
 
 def _language_of(titles: Titles) -> str:

@@ -59,7 +59,7 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[FoundHeader
             titles = _ordered(_titles(rows[first:end], sheet.spans), [cells for _, cells in sheet.rows[end:][:_SAMPLE]])
             header = header_of(titles, mapped)
             if header.known:
-                measures = 0 if header.missing else _measures(header, sheet, end)
+                measures = 0 if header.missing else _count_measures(header, sheet, end)
                 yield FoundHeader(first, end, header, titles, measures)
 
 
@@ -115,7 +115,7 @@ def _is_of_units(row: Sequence[str]) -> bool:
     return all(not text or plain(text) in UNITS for text in row)
 
 
-def _measures(header: Header, sheet: Sheet, end: int) -> int:
+def _count_measures(header: Header, sheet: Sheet, end: int) -> int:
     """Return how many sizes the rows below a header give, none of them by two columns."""
     columns = [
         (k, each) for k, each in enumerate(header.columns) if each and each.stem in {*SIZES, "size", "body_file"}
@@ -124,15 +124,15 @@ def _measures(header: Header, sheet: Sheet, end: int) -> int:
     if len(set(fields)) < len(fields):
         return 0
     rows = (cells for _, cells in sheet.rows[end : end + _SAMPLE])
-    return sum(min(3, sum(_many(each, cells[k]) for k, each in columns if k < len(cells))) for cells in rows)
+    return sum(min(3, sum(_count_sizes(each, cells[k]) for k, each in columns if k < len(cells))) for cells in rows)
 
 
-def _many(column: InventoryColumn, cell: Cell) -> int:
+def _count_sizes(column: InventoryColumn, cell: Cell) -> int:
     """Return how many sizes a cell may give."""
-    many = len(re.findall(r"\d+(?:[.,]\d+)?", text_of(cell)))
     if column.stem == "body_file":
         return 3 if text_of(cell) else 0
-    return 3 * (many > 1) if column.stem == "size" else min(many, 1)
+    numbers = len(re.findall(r"\d+(?:[.,]\d+)?", text_of(cell)))
+    return 3 * (numbers > 1) if column.stem == "size" else min(numbers, 1)
 
 
 def text_of(cell: Cell) -> str:

@@ -20,6 +20,7 @@ from rocking.studies.inventory.columns import (
     InventoryColumn,
     check_header,
     mapping_of,
+    names_of,
     order_of,
     plain,
     stem_of,
@@ -185,7 +186,7 @@ def _of_texts(
             beginning = Sheet(source, [(k, list(row)) for k, row in enumerate(first) if any(map(str.strip, row))])
             called = f"{source} ({name})" if name in ENCODINGS else source
             ways.append((find_header(beginning, mapped), lines, delimiter, called))
-    whole = [(way[0], *way[1:]) for way in ways if way[0] and not way[0].header.missing]
+    whole = [(found, *rest) for found, *rest in ways if found and not found.header.missing]
     if not whole:
         raise _no_header(source, [(way[0], [(1, list(row)) for row in way[1].splitlines()[:1]]) for way in ways])
     _, lines, delimiter, called = max(whole, key=lambda way: (len(way[0].header.known), way[0].measures))
@@ -222,8 +223,8 @@ class _Reader:
 
     def inventory(self) -> Inventory:
         self.header, source, titles = self.found.header, self.sheet.source, self.found.header.titles
-        named = {plain(each) for levels in self.found.titles for each in (*levels, ": ".join(levels))}
-        if odd := [own for own in self.mapped if plain(own) not in named]:
+        names = {*itertools.chain.from_iterable(names_of(self.found.titles))}
+        if odd := [own for own in self.mapped if plain(own) not in names]:
             raise InvalidValueError(
                 f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}"
             )

@@ -1,4 +1,4 @@
-"""What a row of a list says: its measures, its shape, and what of it is no more than a remark."""
+"""Rows of a list: which of them are no objects, and the measures, shape and remarks of those that are."""
 
 import itertools
 import math
@@ -17,8 +17,6 @@ from rocking.studies.inventory.sheets import Cell, Row, Sheet
 
 _SHAPES = {word: shape for shape, text in WORDS["shapes"].items() for word in words_of(text)}
 _CONSEQUENCES = {word: level for level, text in WORDS["consequences"].items() for word in words_of(text)}
-
-
 _TOTALS, _FOOTERS, _HEADINGS = (words_of(WORDS[name]) for name in ("totals", "footers", "headings"))
 _LONGEST_NAME = 80
 _REMARK = "a remark or a signature"
@@ -30,10 +28,10 @@ class RowKinds:
     def __init__(self, sheet: Sheet, found: FoundHeader, rows: Sequence[Row]) -> None:
         self.sheet, self.header = sheet, found.header
         self.titles = [{plain(level) for level in levels} for levels in found.titles]
-        self.above = {plain(_whole(cells)) for _, cells in sheet.rows[: found.first]}
+        self.above = {plain(_row_text(cells)) for _, cells in sheet.rows[: found.first]}
         measured = [row for row in rows if self._is_measured(row[1]) and not self._is_sum_or_title(row[1])]
         self.last = measured[-1][0] if measured else 0
-        self.shapes = {_shape(self._text(cells, "number")) for _, cells in measured} - {""}
+        self.number_patterns = {_number_pattern(self._text(cells, "number")) for _, cells in measured} - {""}
         self.numbered = bool(measured) and sum(bool(self._text(cells, "number")) for _, cells in measured) > 0.8 * len(
             measured
         )
@@ -46,14 +44,18 @@ class RowKinds:
         first, measured = next(iter(texts.values())), self._is_measured(cells)
         if self._is_title_row(cells):
             return "the header again"
-        if first in _TOTALS or (not measured and _begins(first, _TOTALS)):
+        if first in _TOTALS or (not measured and _begins_with(first, _TOTALS)):
             return "a sum or an average"
         if measured:
             return ""
-        if len(texts) == 1 and _begins(first, _HEADINGS) and line < self.last:
+        if len(texts) == 1 and _begins_with(first, _HEADINGS) and line < self.last:
             return "a heading"
         number = self._text(cells, "number")
-        if number and _shape(number) in self.shapes and (len(texts) > 1 or any(map(str.isalpha, number))):
+        if (
+            number
+            and _number_pattern(number) in self.number_patterns
+            and (len(texts) > 1 or any(map(str.isalpha, number)))
+        ):
             return ""
         return self._reason_unmeasured(line, cells, texts)
 
@@ -61,7 +63,7 @@ class RowKinds:
         """Return why a row without measures, and without a number like the others, is no object."""
         first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
         stems, alone = {self._stem(k) for k in texts}, len(texts) == 1
-        if _begins(first, _FOOTERS) or own.startswith("*") or "___" in _whole(cells):
+        if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in _row_text(cells):
             return _REMARK
         if not stems & {"name", "number"}:
             return "neither name nor number nor measure"
@@ -70,7 +72,7 @@ class RowKinds:
         apart = self.numbered or line in self.after_gap
         merged = any((line, k) in self.sheet.spans for k in texts)
         if line > self.last:
-            return _REMARK if apart or merged or own.endswith(":") or _begins(first, _HEADINGS) else ""
+            return _REMARK if apart or merged or own.endswith(":") or _begins_with(first, _HEADINGS) else ""
         return "a heading" if alone and (apart or merged or "name" not in stems or len(own) > _LONGEST_NAME) else ""
 
     def _is_sum_or_title(self, cells: Sequence[Cell]) -> bool:
@@ -81,7 +83,7 @@ class RowKinds:
         if any(text[:1].isdigit() for text in texts.values()) and self._is_measured(cells):
             return False  # most rows
         again = sum(self._is_title(k, text) for k, text in texts.items())
-        return again >= 0.7 * len(texts) or plain(_whole(cells)) in self.above
+        return again >= 0.7 * len(texts) or plain(_row_text(cells)) in self.above
 
     def _is_title(self, place: int, text: str) -> bool:
         known = self._stem(place)
@@ -105,19 +107,19 @@ def _texts(cells: Sequence[Cell]) -> dict[int, str]:
     return {k: plain(text) or text for k, cell in enumerate(cells) if (text := text_of(cell))}
 
 
-def _whole(cells: Sequence[Cell]) -> str:
-    """Return what a row says."""
+def _row_text(cells: Sequence[Cell]) -> str:
+    """Return the texts of a row in one line."""
     return " ".join(filter(None, map(text_of, cells)))
 
 
-def _begins(text: str, words: Collection[str]) -> bool:
+def _begins_with(text: str, words: Collection[str]) -> bool:
     return any(text == word or text.startswith(f"{word} ") for word in words)
 
 
-def _shape(text: str) -> str:
-    """Return what numbers of a list have in common.
+def _number_pattern(text: str) -> str:
+    """Return the pattern of an inventory number: 9 for its digits, A or a for its letters.
 
-    >>> _shape("A-17"), _shape("1932.4 b")
+    >>> _number_pattern("A-17"), _number_pattern("1932.4 b")
     ('A-9', '9.9 a')
     """
     return re.sub(r"[^\W\d_]+", lambda match: "A" if match[0].isupper() else "a", re.sub(r"\d+", "9", text))

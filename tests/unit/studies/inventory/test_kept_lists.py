@@ -168,6 +168,16 @@ def test_columns_keep_the_language_of_the_list():
     assert rows_of(text, columns="X=width_cm, Y=depth_cm, Korpus (cm) Z=height_cm")[1] == [(3, "1", "Urne", 12, 20, 90)]
 
 
+@pytest.mark.parametrize("own", ["Breite", "Maße (cm)"])
+def test_a_title_above_several_columns_names_none_of_them(own):
+    """What a user states of a title that two columns have is refused by the whole titles, and not passed over."""
+    text = "Nr.;Objekt;Maße (cm);;;Transportkiste (cm);\n;;Breite;Tiefe;Höhe;Breite;Tiefe\n1;Uhr;60;50;220;70;60"
+    with pytest.raises(InvalidValueError, match=r"columns: no '.*' among Nr\., Objekt, Maße \(cm\): Breite, "):
+        rows_of(text, columns={own: "depth_cm"})
+    columns = {"Maße (cm): Breite": "depth_cm", "Maße (cm): Tiefe": "width_cm"}
+    assert rows_of(text, columns=columns)[1] == [(3, "1", "Uhr", 50, 60, 220)]
+
+
 def test_rows_that_are_no_objects_have_a_reason():
     """Headings, sums and remarks are named with their rows; a row with a number of the list stays one that is missing."""
     found = parse_inventory(
