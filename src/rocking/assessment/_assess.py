@@ -50,6 +50,11 @@ class TurnedMotion(Components):
     def name(self) -> str:
         return self.called
 
+    @property
+    def vertical(self) -> FloatArray | None:
+        """Vertical acceleration, as of a plane motion [m/s2]."""
+        return self.in_plane.vertical
+
 
 class SolidHistories:
     """Histories of a solid under motions, turned into every direction, both ways round."""

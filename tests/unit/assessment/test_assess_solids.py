@@ -37,6 +37,19 @@ def test_where_it_is_weakest(found):
     assert static[0] == pytest.approx(found.lifts.min(), rel=1e-3)
 
 
+def test_uplift_under_vertical_motion():
+    """Uplift with a vertical component is not that of the horizontal component alone."""
+    time = np.arange(0.0, 1.6, 0.01)
+    level = rk.GroundMotion(6.0 * np.sin(2.0 * math.pi * time / 0.8), 0.01, name="level")
+    up = rk.GroundMotion(np.full(time.size, -2.0), 0.01, name="up")
+    moved, alone = (rk.assess(TOWER, each, 0.9, azimuth=0.0, **QUICK) for each in ({"x": level, "z": up}, level))
+    reach, height = moved.standing.reach, TOWER.centre[2]
+    limit = f"{reach / height:.3g} g"
+    assert moved.lifts[0] == pytest.approx(9.80665 * reach / (6.0 * height + 2.0 * reach), rel=2e-3)  # samples
+    assert f"Without vertical acceleration it lifts from {limit}; with that of level at" in moved.governs[0]
+    assert f"It lifts from {limit}, at" in alone.governs[0]
+
+
 def test_it_falls_over_that_edge(found):
     """At its margin it falls towards its nearest edge, and just below it stands."""
     factor, _, motion, _ = found.lowest
