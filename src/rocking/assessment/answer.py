@@ -169,6 +169,22 @@ class BodyAssessment:
     outside: Mapping[str, str] = field(default_factory=dict)
     vertical: int = 0
 
+    def outside_words(self, method: str) -> str:
+        """Return that a code method does not apply, and the reason.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+
+        Returns
+        -------
+        str
+            Text for a row of a table or a picture.
+        """
+        reason = self.outside.get(method)
+        return f"outside its domain: {reason}" if reason else "outside its domain"
+
     @cached_property
     def lowest(self) -> Lowest:
         """The least factor on any motion that overturns it without sliding, with any model."""
@@ -256,13 +272,13 @@ class BodyAssessment:
     def probability_words(self) -> str:
         """How likely it overturns, of all motions and under the worst, in words."""
         chance = self.prediction.chances["overturning"]
-        words = f"With uncertain inputs sampled: {self.prediction.verdict}"
-        if len(self.prediction.motions) > 1:
-            worst = int(np.nanargmax(chance.per_motion))
-            each = percent(round(float(chance.per_motion[worst]), 3))
-            words += f" All motions are equally likely; the largest is {each}, under "
-            words += f"{self.prediction.motions[worst].name}."
-        return words
+        sentence = f"With uncertain inputs sampled: {self.prediction.verdict}"
+        if len(self.prediction.motions) == 1:
+            return sentence
+        worst = int(np.nanargmax(chance.per_motion))
+        largest = percent(round(float(chance.per_motion[worst]), 3))
+        name = self.prediction.motions[worst].name
+        return f"{sentence} All motions are equally likely; the largest is {largest}, under {name}."
 
     @property
     def governs(self) -> tuple[str, ...]:
@@ -278,12 +294,12 @@ class BodyAssessment:
         ]
         if self.standing is not None:
             found[0] = self.standing.words[0]
-        lifting = self.motions[first]
+        motion, factor, limit = self.motions[first], self.lifts[first], side.uplift_acceleration / g
         found[0] += (
-            f"It lifts from {side.uplift_acceleration / g:.3g} g, at {self.lifts[first]:.3g} times {lifting.name}."
-            if lifting.vertical is None
-            else f"Without vertical acceleration it lifts from {side.uplift_acceleration / g:.3g} g; with that of "
-            f"{lifting.name} at {self.lifts[first]:.3g} times this motion."
+            f"It lifts from {limit:.3g} g, at {factor:.3g} times {motion.name}."
+            if motion.vertical is None
+            else f"Without vertical acceleration it lifts from {limit:.3g} g; with that of {motion.name} at "
+            f"{factor:.3g} times this motion."
         )
         margins = {name: each.lowest for name, each in self.models.items() if math.isfinite(each.lowest)}
         if len(margins) > 1:

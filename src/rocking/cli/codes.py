@@ -15,11 +15,14 @@ from rocking.conventions import LENGTH_UNITS, percent
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
+    from rocking.assessment import BodyAssessment
     from rocking.cli.arguments import Arguments
     from rocking.spec.study import StudyProblem
     from rocking.studies.code_methods import CalledSafe, CodeComparison
+    from rocking.studies.code_methods.methods import CodeMethod
 
 COUNT, SEED, LEVEL = 100, 1, "2"
 """Synthetic motions, and what they are brought to, where nobody says otherwise."""
@@ -32,11 +35,11 @@ _HEAD = (
 
 def _csv(answer: "CodesAnswer", path: "Path") -> None:
     found, rows = answer.found, []
-    for one, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
-        called, bias = found.called_safe(one.name, k, j), found.bias(one.name, k)
+    for method, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
+        name = method.name
+        called, bias, outside = found.called_safe(name, k, j), found.bias(name, k), found.outside.get(name, "")
         counts = called.total, called.safe, called.overturned
-        outside = found.outside.get(one.name, "")
-        rows.append((one.name, body, level, *counts, called.ratio, bias.median, bias.censored, outside))
+        rows.append((name, body, level, *counts, called.ratio, bias.median, bias.censored, outside))
     write_columns(path, {name: (values, "") for name, values in zip(_HEAD, zip(*rows, strict=True), strict=True)})
 
 
@@ -183,34 +186,36 @@ class CodesAnswer:
                     (body, *(_share(found.called_safe(name, k, j)) for name in names))
                     for k, body in enumerate(found.bodies)
                 ], ("body",))  # fmt: skip
-        self._told(page)
+        show_limits(page, found.methods, found)
         page.line()
         page.line(
-            "safe: called so, or outside its domain; D/C: median of demand over capacity; capacity/truth: median of "
-            "the intensity up to which a method calls a body safe over the least that overturns it, above 1 where it "
-            "is unsafe; scatter: of its logarithm; in brackets 95 %. Sources, domains, and how sure the readings are: "
-            "--json."
+            "safe: rated safe, of the histories in the domain of the method. D/C: median of demand over capacity. "
+            "capacity/truth: median of capacity over the smallest intensity that overturns, above 1 where the method "
+            "is unsafe. scatter: that of the logarithm of capacity/truth. Brackets: 95 % interval. Sources, domains "
+            "and reliability of the readings: --json."
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
 
-    def _told(self, page: Page) -> None:
-        """Write why rows are empty, and which methods do not consider vertical motion."""
-        from rocking.studies.code_methods.methods import NOT_CONSIDERED
 
-        found = self.found
-        if any(found.outside.values()) or found.vertical:
-            page.line()
-        for name, why in found.outside.items():
-            if why:
-                page.line(f"{name}: outside its domain: {why}")
-        if found.vertical:
-            blind = [one.name for one in found.methods if one.vertical_motion == NOT_CONSIDERED]
-            page.line(f"Vertical motion: in {found.vertical} of {len(found.motions)} motions.")
-            page.line(f"! {', '.join(blind)}: {NOT_CONSIDERED}")
-            for one in found.methods:
-                if one.name not in blind:
-                    page.line(f"{one.name}: {one.vertical_motion}")
+def show_limits(page: Page, methods: "Iterable[CodeMethod]", found: "BodyAssessment | CodeComparison") -> None:
+    """Write the reasons of empty rows, and the treatment of vertical motion by each method."""
+    from rocking.studies.code_methods.methods import VerticalMotion
+
+    reasons = {name: reason for name, reason in found.outside.items() if reason}
+    if reasons:
+        page.line()
+    for name, reason in reasons.items():
+        page.line(f"{name}: outside its domain: {reason}")
+    if not found.vertical:
+        return
+    page.line(f"\nVertical motion: in {found.vertical} of {len(found.motions)} motions.")
+    for method in methods:
+        treatment = f"{method.name} {method.vertical_motion}."
+        if method.vertical is VerticalMotion.NOT_CONSIDERED:
+            page.warn([treatment])
+        else:
+            page.line(treatment)
 
 
 def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:

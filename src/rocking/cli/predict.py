@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from rocking.cli import options
+from rocking.cli.codes import show_limits
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
@@ -219,6 +220,8 @@ class AssessmentAnswer:
         return assessment_picture(self.found)
 
     def show(self, page: Page) -> None:
+        from rocking.studies.code_methods import CODE_METHODS
+
         found = self.found
         for words, style in zip(found.sentences[:3], ("bold", "bold", None), strict=True):
             page.line(words, style=style)
@@ -236,6 +239,7 @@ class AssessmentAnswer:
             (name, *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")))
             for name, of, safe, fell, least in found.code_rows
         ], head[:1])  # fmt: skip
+        show_limits(page, (CODE_METHODS[name] for name in found.capacities), found)
         for title, sentences in (("What governs", found.governs), ("What to do", found.to_do)):
             page.line()
             page.line(title, "bold")

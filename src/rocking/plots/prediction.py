@@ -278,11 +278,10 @@ def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         ratio = ratio[np.isfinite(ratio) & (ratio > 0.0)]
         axes.plot(ratio, np.full(ratio.size, row), "o", color=COLORS[5], markersize=3.0)
         if not ratio.size:
-            outside = f"outside: {found.outside.get(name, '')}".removesuffix(": ")
-            words = "no factor overturns" if np.isfinite(capacity).any() else outside
-            place: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "left", "va": "center"}
+            reason = "no factor overturns" if np.isfinite(capacity).any() else found.outside_words(name)
+            layout: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "left", "va": "center"}
             box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.8}
-            axes.text(0.02, row, words, fontsize=6.5, color=INK, bbox=box, **place)
+            axes.text(0.02, row, reason, fontsize=6.5, color=INK, bbox=box, **layout)
         ends += ratio.tolist()
     axes.axvspan(1.0, 1.5 * max(ends), color=PALE, linewidth=0.0, zorder=0)
     axes.set_xlim(min(ends) / 1.5, 1.5 * max(ends))

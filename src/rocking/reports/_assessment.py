@@ -1,7 +1,6 @@
 """The report of an assessment: verdict, margins, probability, what governs, what to do, codes, assumptions, sources."""
 
 import math
-import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -194,14 +193,8 @@ def _motions(found: BodyAssessment) -> ReportTable:
         "factor with any model; what overturns under less may stand under the motion as it is, where no model then "
         "falls, and that is no margin."
     )
-    head = [
-        "motion",
-        *peak_heads(found.prediction.motions),
-        "lifts at [-]",
-        "overturns at [-]",
-        "models that fall at 1",
-    ]
-    return table("Under each motion", head, rows, note)
+    head = ["lifts at [-]", "overturns at [-]", "models that fall at 1"]
+    return table("Under each motion", ["motion", *peak_heads(found.prediction.motions), *head], rows, note)
 
 
 def _pgv(motion: Any) -> float:
@@ -224,12 +217,8 @@ def _codes(found: BodyAssessment) -> ReportTable:
     rows = [
         (
             CODE_METHODS[name].title,
-            *(
-                (f"{safe} of {of}", str(fell), f"{least:.3g}")
-                if of
-                else (f"outside its domain: {found.outside.get(name, '')}".removesuffix(": "), "-", "-")
-            ),
-            re.split("[:,]", CODE_METHODS[name].vertical_motion)[0],
+            *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else (found.outside_words(name), "-", "-")),
+            CODE_METHODS[name].vertical.value,
         )
         for name, of, safe, fell, least in found.code_rows
     ]

@@ -15,9 +15,22 @@ def test_a_page(printed):
     assert first.startswith("It overturns under 1 of 1 motion, with all of 2 restitutions.")
     assert second.startswith("Margin to overturning: 0.")
     assert third.startswith("With uncertain inputs sampled: Overturning is ")
-    for words in ("r = 0.85", "asce-43", "What governs", "What to do", "kN along the left edge", "Assumed: "):
+    for words in ("r = 0.85", "What governs", "What to do", "kN along the left edge", "Assumed: "):
         assert words in page
+    assert "\nasce-43: outside its domain: unequal sides\n" in page
     assert len(page.splitlines()) < 50
+
+
+def test_vertical_motion_is_on_the_page(printed, tmp_path):
+    """Each method states its treatment of a vertical component; without one the page does not mention it."""
+    for name, peak in (("level", 7.0), ("up", 2.0)):
+        rows = "".join(f"{0.1 * k:.1f},{peak * (k % 4 == 1)}\n" for k in range(9))
+        (tmp_path / f"{name}.csv").write_text(f"time [s],acceleration [m/s2]\n{rows}", encoding="utf-8")
+    horizontal = (*BODY, *QUICK, "--motion", f"x={tmp_path / 'level.csv'}")
+    page = printed(*horizontal, "--motion", f"z={tmp_path / 'up.csv'}")
+    assert "Vertical motion: in 1 of 1 motions.\nstatic considers vertical motion" in page
+    assert "! italian-linear does not consider vertical motion.\n" in page
+    assert "ertical motion" not in printed(*horizontal)
 
 
 def test_json_says_the_same(answered):

@@ -13,7 +13,7 @@ from rocking.motions.components import with_vertical
 from rocking.studies import compare_code_methods
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.comparison import CodeComparison
-from rocking.studies.code_methods.methods import NOT_CONSIDERED, BodySides, Shaking
+from rocking.studies.code_methods.methods import BodySides, Shaking, VerticalMotion
 from rocking.studies.remedies import Margins
 
 SMALL, LARGE = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
@@ -227,15 +227,17 @@ def test_each_method_states_its_treatment_of_vertical_motion():
     for name, method in CODE_METHODS.items():
         before, after = (float(method.capacity(sides, each)[0, 0]) for each in (flat, falling))
         if name == "static":
-            assert method.vertical_motion.startswith("considered")
+            assert method.vertical is VerticalMotion.CONSIDERED
             assert after < before
         elif name == "asce-43":
+            assert method.vertical is VerticalMotion.EXCLUDED
             assert method.outside(sides, falling) == "vertical motion"
             assert math.isnan(after)
         else:
             assert before == after
-            known = "by its own rule" if name.startswith("asce-7") else NOT_CONSIDERED
-            assert method.vertical_motion.startswith(known)
+            own_rule = name.startswith("asce-7")
+            assert method.vertical is (VerticalMotion.OWN_RULE if own_rule else VerticalMotion.NOT_CONSIDERED)
+        assert method.vertical_motion.startswith(method.vertical.value)
         assert method.outside(sides, flat) == ""
 
 

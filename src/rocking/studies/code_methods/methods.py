@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -104,23 +105,29 @@ class Shaking:
         parts = [getattr(each, "vertical", None) for each in self.motions]
         return np.array([[part is not None and bool(np.any(part))] for part in parts])
 
-    def lifting(self, slope: FloatArray) -> FloatArray:
+    def uplift_demand(self, slope: FloatArray) -> FloatArray:
         """Return the largest |horizontal| - slope * vertical acceleration of each motion, by slope [m/s2].
 
         Vertical is positive upwards: a ground that falls reduces the weight of the body.
         """
-        found = np.broadcast_to(self.acceleration, (len(self.motions), *slope.shape)).copy()
+        demand = np.broadcast_to(self.acceleration, (len(self.motions), *slope.shape)).copy()
         for k in np.flatnonzero(self.vertical):
-            along, up = np.abs(self.motions[k].acceleration), np.asarray(self.motions[k].vertical)
-            found[k] = (along - slope[..., None] * up).max(axis=-1)
-        return found
+            horizontal, upward = np.abs(self.motions[k].acceleration), np.asarray(self.motions[k].vertical)
+            demand[k] = (horizontal - slope[..., None] * upward).max(axis=-1)
+        return demand
 
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
         """Return pseudo-spectral accelerations of every motion [m/s2] at periods [s] and a damping ratio [-]."""
         return np.array([response_spectrum(each, periods, damping).pseudo_acceleration for each in self.motions])
 
 
-NOT_CONSIDERED = "does not consider vertical motion"
+class VerticalMotion(Enum):
+    """Treatment of vertical motion by a code method; the value completes a sentence about the method."""
+
+    CONSIDERED = "considers vertical motion"
+    OWN_RULE = "considers vertical motion by its own rule"
+    EXCLUDED = "excludes vertical motion from its domain"
+    NOT_CONSIDERED = "does not consider vertical motion"
 
 
 class CodeMethod(ABC):
@@ -136,26 +143,32 @@ class CodeMethod(ABC):
     domain: ClassVar[str]
     reading: ClassVar[str]  # how sure we are that this is what the source says
     example: ClassVar[str] = "none of the source was at hand"  # with what numbers of the source it was compared
-    vertical_motion: ClassVar[str] = NOT_CONSIDERED  # treatment of vertical motion
+    vertical: ClassVar[VerticalMotion] = VerticalMotion.NOT_CONSIDERED
+    vertical_rule: ClassVar[str] = ""  # how vertical motion enters, or why not
+
+    @property
+    def vertical_motion(self) -> str:
+        """Treatment of vertical motion with its rule, to be read after the name of the method."""
+        return ": ".join(filter(None, (self.vertical.value, self.vertical_rule)))
 
     @abstractmethod
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion at which the limit is reached, fitting (motions, bodies, 2) [-]."""
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
-        """Return what the domain excludes, by its name: where it is the case, fitting (motions, bodies)."""
+        """Return flags of the excluded bodies and motions by the reason, fitting (motions, bodies)."""
         return {}
 
     def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
         """Return whether a body under a motion is in the domain, of shape (motions, bodies)."""
         excluded = np.zeros((len(shaking.motions), len(sides.slope)), dtype=np.bool_)
-        for each in self.exclusions(sides, shaking).values():
-            excluded |= each
+        for flags in self.exclusions(sides, shaking).values():
+            excluded |= flags
         return ~excluded
 
     def outside(self, sides: BodySides, shaking: Shaking) -> str:
-        """Return what excludes bodies or motions from the domain, in words; empty where nothing does."""
-        return ", ".join(name for name, each in self.exclusions(sides, shaking).items() if np.any(each))
+        """Return the reasons why bodies or motions are outside the domain, as text; empty without any."""
+        return ", ".join(reason for reason, flags in self.exclusions(sides, shaking).items() if np.any(flags))
 
     def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Return the factor on every motion up to which a body is safe, by its worse side; NaN outside the domain."""
@@ -171,13 +184,14 @@ class StaticOverturning(CodeMethod):
     title = "static overturning (West)"
     reference = "West's criterion, a = g b/h: equilibrium of moments about the foot"
     domain = "any body; says when it lifts, so it is safe for every motion"
-    vertical_motion = "considered: the vertical acceleration changes the weight at each sample"
+    vertical = VerticalMotion.CONSIDERED
+    vertical_rule = "the vertical acceleration changes the weight at each sample"
     reading = "certain: it is the equilibrium of moments about the foot"
     example = "closed form: the acceleration of uplift"
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eq. 329, which is Eq. 294 without vertical motion."""
-        demand = shaking.lifting(sides.slope)
+        demand = shaking.uplift_demand(sides.slope)
         with np.errstate(divide="ignore"):
             return np.asarray(sides.uplift / np.maximum(demand, 0.0))  # Eq. 329
 
@@ -196,7 +210,8 @@ class AsceComponents(CodeMethod):
         "medium: the standard itself was not read; Eq. 13.3-1 and its limits are those of public design aids of the "
         "2022 edition, the load combinations those of aids of the editions of 2005 and 2016"
     )
-    vertical_motion = "by its own rule, 0.2 S_DS D upwards, whatever the vertical motion is"
+    vertical = VerticalMotion.OWN_RULE
+    vertical_rule = "E_v = 0.2 S_DS D upwards, whatever the vertical motion is"
     demand: ClassVar[float] = 1.0  # factor on F_p [-]
     dead: ClassVar[float] = 0.9  # factor on the weight [-]
 
@@ -251,7 +266,8 @@ class AsceRocking(CodeMethod):
         "for sliding (lowest frequency); if any up to alpha would do, limits would be up to several times as high"
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
-    vertical_motion = "outside its domain as read (F_V = 1)"
+    vertical = VerticalMotion.EXCLUDED
+    vertical_rule = "F_V = 1 as read"
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
         """Unequal sides, vertical motion, and impacts without a coefficient."""
