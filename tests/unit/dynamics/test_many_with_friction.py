@@ -5,6 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 
 pytest.importorskip("xarray")
 
@@ -132,3 +133,23 @@ def test_a_history_without_a_result_is_neither():
 def test_what_is_refused(options, says):
     with pytest.raises(InvalidValueError, match=says):
         rk.simulate_many(STATUE, MOTIONS[0], **options)
+
+
+@pytest.mark.parametrize("engine", ["fast", "reference"])
+def test_a_continuation_that_fails_leaves_the_result_before(engine):
+    """With 20 events the first 15 sqrt(R / g) after the motion can be computed, and no more: that result is given.
+
+    Negative control: with 10 events not even that can be computed.
+    """
+    slender = rk.Section([rk.Region([(-0.35, 0.0), (0.25, 0.0), (0.3, 2.5), (-0.15, 2.2)], density=2400.0)])
+    pulse, how = rk.pulses.sine(3.5, 0.9), {"restitution": 0.97, "friction": 0.6, "most_events": 20}
+    one = rk.simulate(slender, pulse, **how)
+    assert one.outcome is Outcome.ROCKED
+    assert one.still_rocking
+    many = rk.simulate_many(slender, pulse, engine=engine, **how)
+    assert many["outcome"].item() == Outcome.ROCKED.code
+    assert many["still_rocking"].item() == 1.0
+    assert many["impacts"].item() == len(one.impacts)
+    limited = how | {"most_events": 10}
+    assert rk.simulate(slender, pulse, **limited).outcome is Outcome.FAILED
+    assert rk.simulate_many(slender, pulse, engine=engine, **limited)["outcome"].item() == Outcome.FAILED.code

@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import FEET, FloatArray
+from rocking.conventions import FEET, FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import (
@@ -256,15 +256,7 @@ class _Table:
         states = [[state_at_start(start, base) for start in self.starts] for base in self.bases]
         state = np.array([[each[:6] for each in row] for row in states])
         touching = np.array([[sum(1 if foot < 0 else 2 for foot in each.touching) for each in row] for row in states])
-        lengths = (AFTER, *LONGER) if self.duration is None else (AFTER,)
-        ends = [
-            np.array([
-                [ends_of(length_of(motion, slow, self.duration, after), each.step, isinstance(motion, Pulse), slow)
-                 for motion, each in zip(self.motions, segments, strict=True)]
-                for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
-            ])
-            for after in lengths
-        ]  # fmt: skip
+        ends = self._ends(segments)
         shape = (
             len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size,
             len(self.starts),
@@ -277,24 +269,48 @@ class _Table:
             values |= {"friction": self.friction[mu], "bounce": self.law.bounce, "scale": self.scales[scale]}
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
             values |= dict(zip(NUMBERS[10:], state[body, start].T, strict=True))
-            values = {name: np.broadcast_to(each, body.shape) for name, each in values.items()}
-            law, how, feet = self.law.bounce_law, self.settings, touching[body, start]
-            found: dict[str, np.ndarray] = {}
-            lossless = values["imposed_left"] * values["imposed_right"] >= 1.0
-            rows = np.arange(body.size)
-            for end in ends:  # what still rocks at one end is followed to the next
-                some = {name: each[rows] for name, each in values.items()} | {"end": end[body[rows], motion[rows]]}
-                made = run_compiled(library, some, motion[rows], law, feet[rows], settings=how, threads=threads)
-                found = found or {name: np.zeros(body.size, each.dtype) for name, each in made.items()}
-                for name, each in made.items():
-                    found[name][rows] = each
-                rows = rows[(made["still_rocking"] == 1) & ~lossless[rows]]
-                if not rows.size:
-                    break
-            pieces.append(found)
+            values = {name: np.broadcast_to(column, body.shape) for name, column in values.items()}
+            feet, ends_of_rows = touching[body, start], [end[body, motion] for end in ends]
+            pieces.append(self._followed(library, values, motion, feet, ends_of_rows, threads))
             if progress is not None:
                 progress(last - first)
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
+
+    def _ends(self, segments: Sequence[Segments]) -> list[FloatArray]:
+        """Return the durations to which histories may be followed, shortest first, each by body and motion [s]."""
+        return [
+            np.array([
+                [ends_of(length_of(motion, slow, self.duration, after), each.step, isinstance(motion, Pulse), slow)
+                 for motion, each in zip(self.motions, segments, strict=True)]
+                for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
+            ])
+            for after in ((AFTER, *LONGER) if self.duration is None else (AFTER,))
+        ]  # fmt: skip
+
+    def _followed(
+        self, library: Any, values: dict[str, Any], motion: IntArray, feet: IntArray, ends: list[FloatArray],
+        threads: int,
+    ) -> dict[str, np.ndarray]:  # fmt: skip
+        """Return results of rows; what still rocks at one end is followed to the next, unless that run fails."""
+
+        def computed(rows: IntArray, end: FloatArray) -> dict[str, np.ndarray]:
+            own = {name: column[rows] for name, column in values.items()} | {"end": end[rows]}
+            return run_compiled(
+                library, own, motion[rows], self.law.bounce_law, feet[rows], settings=self.settings, threads=threads
+            )
+
+        results = computed(np.arange(motion.size), ends[0])
+        rows = np.flatnonzero(~(values["imposed_left"] * values["imposed_right"] >= 1.0))  # NaN: no coefficient
+        for end in ends[1:]:
+            rows = rows[results["still_rocking"][rows] == 1]
+            if not rows.size:
+                break
+            longer = computed(rows, end)
+            good = longer["outcome"] != Outcome.FAILED.code
+            rows = rows[good]
+            for name, column in longer.items():
+                results[name][rows] = column[good]
+        return results
 
 
 _COUNTED = ("impacts", "still_rocking", "impacts_replaced", "shocks")

@@ -330,7 +330,10 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
             break
         if length > segments.duration:
             longer = _segments(motion, base, settings.gravity, length)
-            history, segments = computed(longer), longer
+            extended = computed(longer)
+            if extended.outcome is Outcome.FAILED:
+                break
+            history, segments = extended, longer
     return ContactResponse(body, motion, base, law, settings, segments, scale, history)
 
 
