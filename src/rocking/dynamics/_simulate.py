@@ -110,9 +110,9 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         Acceleration of gravity [m/s2].
     duration : float, optional
         How long to follow the body [s]; if not given, the motion and 15 / p (with friction 15 sqrt(R / g)) after it,
-        and where the body then still rocks until it rests, at most 300 / p (300 sqrt(R / g)) after the motion. A body
-        whose impacts lose no energy never rests, and one in space on a round base takes long to compute: both are
-        followed for 15 / p alone. The summary states what still rocks.
+        and where the body then still rocks until it rests, at most 300 / p (300 sqrt(R / g)) after the motion. A plane
+        body whose impacts lose no energy never rests, and a body in space on a round base takes long to compute: both
+        are followed for 15 / p alone. The summary states whether the body still rocks.
         With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
         leans less: `outcome` needs it. In space with friction until it rests.
     engine : {"auto", "fast", "reference"}
@@ -416,5 +416,6 @@ def in_plane(motion: Any) -> GroundMotion | Pulse:
         return x
     if not isinstance(z, GroundMotion) or isinstance(x, Pulse):
         raise InvalidValueError("vertical motion of a plane body is a record beside another: two GroundMotion, please")
-    still = z.changed("no horizontal motion", acceleration=0.0 * z.acceleration, metadata={})
-    return with_vertical(still if x is None else x, z)
+    if x is None:
+        x = z.changed("no horizontal motion", acceleration=0.0 * z.acceleration, metadata={})
+    return with_vertical(x, z)

@@ -448,7 +448,7 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     if duration is None and motion is None:
         found, segments = _until_rest(found, segments, 0)
     elif duration is None and motion is not None and found.still_rocking and not is_lossless(parameters):
-        found, segments = _gone_on(computed, motion.duration + _FREE / slow, found, segments)
+        found, segments = _extended(computed, motion.duration + _FREE / slow, found, segments)
     return Response(body, motion, parameters, settings, segments, scale, stream, found)
 
 
@@ -469,15 +469,15 @@ def is_lossless(parameters: RockingParameters) -> bool:
     return parameters.left.coefficient * parameters.right.coefficient >= 1.0
 
 
-def _gone_on(computed: Any, length: float, found: Any, segments: Segments) -> tuple[Any, Segments]:
-    """Return the response until the body rests, up to a length [s]; as it was where that cannot be computed."""
+def _extended(computed: Any, length: float, found: Any, segments: Segments) -> tuple[Any, Segments]:
+    """Return the response until the body rests, up to a length [s]; the given one where that cannot be computed."""
     length = min(length, most_samples_last(segments.step))
     if length <= segments.duration:
         return found, segments
-    longer, more = computed(length)
+    longer, longer_segments = computed(length)
     if longer.outcome is Outcome.FAILED:
         return found, segments
-    return _until_rest(longer, more, segments.count)
+    return _until_rest(longer, longer_segments, segments.count)
 
 
 def _until_rest(found: Any, segments: Segments, least: int) -> tuple[Any, Segments]:
