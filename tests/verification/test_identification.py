@@ -78,7 +78,7 @@ def _deviations(scatter, count, kind="usual"):
     "repeated sampling", "made-up rockings whose coefficient is constant, heard with bounces and gaps", room="evidence",
     control="within",
 )  # fmt: skip
-def test_a_constant_coefficient_is_told_as_such(monkeypatch):
+def test_a_constant_coefficient_is_identified_as_constant(monkeypatch):
     """Intervals without scatter are three times narrower than without the point mass, and hold r and a scatter of 0.
 
     The errors over the stated deviation have a root mean square of about 0.7, where 0.3 is over-cautious.
@@ -111,8 +111,8 @@ def test_times_of_asymmetric_bodies_belong_together(monkeypatch):
 
 @pytest.mark.verifies("closed form", "leaving one out of a linear model, by its normal equations", within="1e-3",
                       room="evidence", control="within")  # fmt: skip
-def test_strangeness_is_what_all_other_times_foretell():
-    """A time is compared with what a fit without that time foretells, over the standard deviation of both."""
+def test_standardized_residuals_are_those_of_leaving_one_out():
+    """They are the difference from the prediction by all other times, over the standard deviation of both."""
     mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
     mean[SPEED], mean[MEAN] = np.log(0.5 * P * overturning_speed(np.array(ALPHA))), np.log(R)
     deviation[START], deviation[SPEED], deviation[MEAN] = 1.0, 1e-4, 1e-4  # so little is not known that it is linear
@@ -129,7 +129,7 @@ def test_strangeness_is_what_all_other_times_foretell():
         u = np.linalg.solve(hessian, slopes[others].T @ (times - path.times[0])[others] / noise**2)
         spread = np.sqrt(noise**2 + slopes[left] @ np.linalg.solve(hessian, slopes[left]))
         expected = (times[left] - path.times[0, left] - slopes[left] @ u) / spread
-        assert found.strangeness(observer)[left] == pytest.approx(expected, abs=1e-3)
+        assert found.standardized_residuals(observer)[left] == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.verifies("behaviour", room="evidence", control="within")
@@ -146,7 +146,7 @@ def test_a_bounce_behind_a_missed_impact_is_no_impact(monkeypatch):
     assert found.mean.low < R < found.mean.high
     assert found.scatter.low == found.scatter.value == 0.0
     assert found.residual_times.size == 13
-    monkeypatch.setattr("rocking.identification.association._STRANGE", np.inf)
+    monkeypatch.setattr("rocking.identification.association._LARGEST_RESIDUAL", np.inf)
     believed = identify(ImpactTimes(times, sigma=1e-4), _block())
     assert believed.scatter.low > 0.0
     assert np.ptp([believed.mean.low, believed.mean.high]) > 3.0 * np.ptp([found.mean.low, found.mean.high])

@@ -59,7 +59,8 @@ class _Beam:
 def associate(
     times: FloatArray, sure: FloatArray, noise: float, ln_p: tuple[float, float], alternation: tuple[float, float]
 ) -> Track | None:
-    """Return the likeliest track, or None; sure: probability of each to be an impact; means and deviations."""
+    """Return the likeliest track, or None."""
+    # sure: probability of each time to be an impact [-]; ln_p, alternation: mean and standard deviation
     generic = np.log(_FALSE_SHARE * times.size / (times[-1] - times[0]))
     gain = np.log(sure) - np.log1p(-np.minimum(sure, 0.98)) - np.log(0.98 / 0.02)  # nothing where all are sure
     following = np.searchsorted(times, times + _BOUNCE, side="right") - np.arange(1, times.size + 1)
@@ -121,8 +122,8 @@ def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alterna
     covariance[:, 0, 0] = noise**2
     covariance[:, 0, 1] = covariance[:, 1, 0] = by_time * noise**2
     covariance[:, 2, 2], covariance[:, 3, 3], covariance[:, 4, 4] = 0.1**2, alternation[1] ** 2, ln_p[1] ** 2
-    known = 0.1**2 + alternation[1] ** 2 + _SCATTER**2 + (slope * ln_p[1]) ** 2
-    covariance[:, 1, 1] = 2.0 * (by_time * noise) ** 2 + known
+    prior_variance = 0.1**2 + alternation[1] ** 2 + _SCATTER**2 + (slope * ln_p[1]) ** 2
+    covariance[:, 1, 1] = 2.0 * (by_time * noise) ** 2 + prior_variance
     covariance[:, 1, 2] = covariance[:, 2, 1] = 0.1**2
     covariance[:, 1, 3] = covariance[:, 3, 1] = sign * alternation[1] ** 2
     covariance[:, 1, 4] = covariance[:, 4, 1] = slope * ln_p[1] ** 2
@@ -166,7 +167,7 @@ UNKNOWN_NOISE = Noise(3e-4, 1.2)
 """Of times whose reader does not say how sure they are [s]."""
 
 _USUAL = 0.9
-_FEWEST, _STRANGE = 5, 2.2  # times that are left; standard deviations from what the others foretell
+_FEWEST, _LARGEST_RESIDUAL = 5, 2.2  # times that remain; standardized residual of an impact [-]
 _NO_IMPACT = float(np.log((1.0 - _HEARD) * _BOUNCES / _HEARD))
 """Ln of how much likelier it is a priori, for each second, that an impact was missed and a bounce heard."""
 
@@ -187,15 +188,15 @@ def fit_times(measurement: ImpactTimes, known: Knowledge) -> tuple[Track, Poster
     found, observer = _fitted(track, measurement.times, known, noise, frequency)
     while found.no_scatter < 0.5 and track.clicks.size > _FEWEST:
         # r seems to scatter: perhaps only since a bounce was taken for an impact that was missed
-        strangeness = np.abs(found.strangeness(observer))[1:]  # the first time says on which foot the body stands
-        if strangeness.max() < _STRANGE:
+        sizes = np.abs(found.standardized_residuals(observer))[1:]  # the first time fixes the foot: it is kept
+        if sizes.max() < _LARGEST_RESIDUAL:
             break
-        strangest = int(np.argmax(strangeness)) + 1
-        fewer = replace(track, clicks=np.delete(track.clicks, strangest), impacts=np.delete(track.impacts, strangest))
-        other, seen = _fitted(fewer, measurement.times, known, noise, frequency)
-        if other.evidence + _NO_IMPACT <= found.evidence:  # Eq. 326
+        worst = int(np.argmax(sizes)) + 1
+        fewer = replace(track, clicks=np.delete(track.clicks, worst), impacts=np.delete(track.impacts, worst))
+        refitted, fewer_clicks = _fitted(fewer, measurement.times, known, noise, frequency)
+        if refitted.evidence + _NO_IMPACT <= found.evidence:  # Eq. 326
             break
-        track, found, observer = fewer, other, seen
+        track, found, observer = fewer, refitted, fewer_clicks
     return track, found
 
 

@@ -71,13 +71,13 @@ class Posterior:
         part = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
         return float(self.model.deviation[which] * np.sqrt(self.weights @ part))
 
-    def strangeness(self, observer: Observer) -> FloatArray:
-        """Return how far each measured value is from what all others foretell, over its standard deviation [-]."""
+    def standardized_residuals(self, observer: Observer) -> FloatArray:
+        """Return the residual of each measured value over the standard deviation of that residual [-]."""
         best = [int(np.argmax(self.weights))]
         residual, slopes = observer.residuals(self.model.path(self.u[best], self.scatter[best]))
         noise, slopes = float(self.noise[best[0]]), slopes[0]
-        known = np.einsum("mi,ij,mj->m", slopes, self.covariance[best[0]], slopes) / noise**2
-        return np.asarray(residual[0] / (noise * np.sqrt(np.maximum(1.0 - known, 1e-9))))  # Eq. 325
+        leverage = np.einsum("mi,ij,mj->m", slopes, self.covariance[best[0]], slopes) / noise**2
+        return np.asarray(residual[0] / (noise * np.sqrt(np.maximum(1.0 - leverage, 1e-9))))  # Eq. 325
 
     @property
     def no_scatter(self) -> float:
@@ -128,8 +128,8 @@ def posterior(
 ) -> Posterior:
     """Return the posterior; scatter: of ln r if it is known; start: unknowns to begin with, for scatters."""
     scatters = _first_nodes(_COARSE[0]) if scatter is None else (np.array([scatter]), np.zeros(1))
-    around = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
-    coarse = _on_grid(model, observer, scatters, _noise_nodes(noise, around, _COARSE[1]), start)
+    noise_ends = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
+    coarse = _on_grid(model, observer, scatters, _noise_nodes(noise, noise_ends, _COARSE[1]), start)
     if scatter is not None and noise.dispersion == 0.0:
         return coarse
     best = int(np.argmax(coarse.weights))
@@ -140,19 +140,19 @@ def posterior(
     if scatter is None:
         scatters = scatter_nodes(_narrowed(np.log(SCATTERS), coarse.scatter, coarse.weights), _FINE[0])
     if noise.dispersion > 0.0:
-        around = _narrowed(around, coarse.noise, coarse.weights)
-    return _on_grid(model, observer, scatters, _noise_nodes(noise, around, _FINE[1]), near)
+        noise_ends = _narrowed(noise_ends, coarse.noise, coarse.weights)
+    return _on_grid(model, observer, scatters, _noise_nodes(noise, noise_ends, _FINE[1]), near)
 
 
 def rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
     """Return unknowns with the same impacts in units of other scatters; without scatter there are no draws."""
-    found = np.repeat(u[None, :], scatters.size, axis=0)
-    found[:, len(SHARED) :] *= np.divide(at, scatters, out=np.zeros_like(scatters), where=scatters > 0.0)[:, None]
-    return found
+    rows = np.repeat(u[None, :], scatters.size, axis=0)
+    rows[:, len(SHARED) :] *= np.divide(at, scatters, out=np.zeros_like(scatters), where=scatters > 0.0)[:, None]
+    return rows
 
 
 def scatter_nodes(ends: FloatArray, count: int) -> Nodes:
-    """Return no scatter, and scatters between two of which ends are the logarithms, with their prior probabilities."""
+    """Return a scatter of zero and scatters between two ends, given as logarithms, with prior probabilities."""
     values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
     ln = np.log1p(-NO_SCATTER) + _ln_scatter_density(values) + np.log(step)  # Eq. 324
     return np.concatenate([[0.0], values]), np.concatenate([[np.log(NO_SCATTER)], ln])
@@ -171,7 +171,7 @@ def _ln_scatter_density(scatters: FloatArray) -> FloatArray:
 
 
 def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
-    """Return noises between two of which ends are the logarithms, with their prior probabilities."""
+    """Return noises between two ends, given as logarithms, with their prior probabilities."""
     if noise.dispersion == 0.0:
         return np.array([noise.median]), np.zeros(1)
     values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
@@ -180,21 +180,21 @@ def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
 
 
 def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
-    """Return median, 2.5 and 97.5 % of a scatter or a noise with weights on a grid.
+    """Return median, 2.5 % and 97.5 % quantile of a scatter or a noise with weights on a grid.
 
-    Median and lower end are zero as far as zero has a probability. The upper end is that of the values above zero: it
-    bounds a scatter that is not found.
+    The median and the lower quantile are zero where zero has at least that probability. The upper quantile is that of
+    the values above zero: it bounds a scatter that is not found.
     """
     nodes = np.unique(values)
     mass = np.array([weights[values == node].sum() for node in nodes])
-    none, above = float(mass[nodes == 0.0].sum()), nodes > 0.0
-    nodes, mass = nodes[above], mass[above]
+    at_zero, is_positive = float(mass[nodes == 0.0].sum()), nodes > 0.0
+    nodes, mass = nodes[is_positive], mass[is_positive]
     if nodes.size < 2 or mass.sum() == 0.0:
         return (float(nodes[0]),) * 3 if nodes.size else (0.0, 0.0, 0.0)
     middle = np.cumsum(mass) - 0.5 * mass
-    levels = [0.5 - none, 0.025 - none, 0.975 * mass.sum()]
-    found = np.exp(np.interp(levels, middle, np.log(nodes))).tolist()
-    return 0.0 if none >= 0.5 else found[0], 0.0 if none >= 0.025 else found[1], found[2]
+    levels = [0.5 - at_zero, 0.025 - at_zero, 0.975 * mass.sum()]
+    median, low, high = np.exp(np.interp(levels, middle, np.log(nodes))).tolist()
+    return 0.0 if at_zero >= 0.5 else median, 0.0 if at_zero >= 0.025 else low, high
 
 
 def _narrowed(ends: FloatArray, values: FloatArray, weights: FloatArray) -> FloatArray:

@@ -225,12 +225,12 @@ class Identification(Exported):
             return f"No coefficient of restitution: {'; '.join(self.refused)}."
         return (
             f"The coefficient of restitution is {self.mean}, from {len(self.impacts)} impacts; "
-            f"from impact to impact it {self.scatters}."
+            f"from impact to impact it {self.scatter_text}."
         )
 
     @property
-    def scatters(self) -> str:
-        """By how much the coefficient scatters, in words: a bound where no scatter is likelier than some."""
+    def scatter_text(self) -> str:
+        """The scatter as text: a verb and a percentage; an upper bound where no scatter is more likely than some."""
         if self.scatter.value == 0.0:
             return f"scatters by less than {100.0 * self.scatter.high:.2g} %"
         return f"scatters by {100.0 * self.scatter.value:.2g} %"

@@ -268,8 +268,8 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
         if taken == _PATIENCE:  # what is far behind by then weighs nothing
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
-        kept = (u[active], *(each[active] for each in best))
-        tried, found = _stepped(model, observer, scatter[active], noise[active], kept, damping[active])
+        state = (u[active], *(part[active] for part in best))
+        tried, found = _stepped(model, observer, scatter[active], noise[active], state, damping[active])
         value = best[0][active]
         better = found[0] <= value
         for old, new in zip(best, found, strict=True):
@@ -298,11 +298,11 @@ def _stepped(
     observer: Observer,
     scatter: FloatArray,
     noise: FloatArray,
-    kept: tuple[FloatArray, ...],
+    state: tuple[FloatArray, ...],
     damping: FloatArray,
 ) -> tuple[FloatArray, tuple[FloatArray, ...]]:
     """Return the better of a straight and a bent step for each node, and the objective there."""
-    u, value, residual, slopes, times, time_slopes = kept
+    u, value, residual, slopes, times, time_slopes = state
     turned, eye = slopes.transpose(0, 2, 1), np.eye(model.size)
     parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
     hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
@@ -310,21 +310,22 @@ def _stepped(
     step = np.linalg.solve(matrix, turned @ residual[..., None] - u[..., None])
     tried = u + step[..., 0]
     found = _objective(model, observer, scatter, noise, tried)
-    drawn = scatter > 0.0
-    again = np.flatnonzero(drawn | (found[0] > value))
-    bent, of = tried[again], drawn[again]
+    again = np.flatnonzero((scatter > 0.0) | (found[0] > value))
+    bent, has_draws = tried[again], scatter[again] > 0.0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         # times are known far better than speeds: what changes along the step is either linear in u or in them
-        goal = (times + (time_slopes @ step)[..., 0])[again][of]
-        bent[of] = model.reached(bent[of], scatter[again][of], goal)
-    # where nothing is drawn: a second step with the slopes of the first, in its valley
-    fixed = again[~of]
-    bent[~of] += np.linalg.solve(matrix[fixed], (turned @ found[1][..., None])[fixed] - tried[fixed][..., None])[..., 0]
-    other = _objective(model, observer, scatter[again], noise[again], bent)
-    better = other[0] < found[0][again]
+        goal = (times + (time_slopes @ step)[..., 0])[again][has_draws]
+        bent[has_draws] = model.reached(bent[has_draws], scatter[again][has_draws], goal)
+    # without draws: a second step with the slopes of the first, in its valley
+    fixed = again[~has_draws]
+    bent[~has_draws] += np.linalg.solve(matrix[fixed], (turned @ found[1][..., None])[fixed] - tried[fixed][..., None])[
+        ..., 0
+    ]
+    at_bent = _objective(model, observer, scatter[again], noise[again], bent)
+    better = at_bent[0] < found[0][again]
     tried[again[better]] = bent[better]
-    for one, two in zip(found, other, strict=True):
-        one[again[better]] = two[better]
+    for straight_part, bent_part in zip(found, at_bent, strict=True):
+        straight_part[again[better]] = bent_part[better]
     return tried, found
 
 

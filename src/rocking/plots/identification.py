@@ -168,7 +168,7 @@ def _impacts(axes: "Axes", found: Identification) -> None:
         axes.plot([each.number] * 2, [each.coefficient.low, each.coefficient.high], color=color, linewidth=0.8)
         axes.plot(each.number, each.coefficient.value, mark, color=color, markersize=3.5)
     axes.set_ylabel("r of each impact [-]")
-    axes.set_title(found.scatters, loc="left", fontsize=7.5)
+    axes.set_title(found.scatter_text, loc="left", fontsize=7.5)
 
 
 @in_journal_style

@@ -17,9 +17,10 @@ Measurement = ImpactTimes | RotationSeries
 _NOT_DECODED = (".m4a", ".aac", ".3gp", ".amr", ".wma")
 
 TEXTS = (".csv", ".tsv", ".txt", ".dat")
+_TABLES = (*TEXTS, ".xlsx")
 
 SOUNDS = (".wav", *COMPRESSED, *_NOT_DECODED)
-ENDINGS = (*SOUNDS, *VIDEOS, *TEXTS, ".xlsx")
+ENDINGS = (*SOUNDS, *VIDEOS, *_TABLES)
 """Of files that hold a sound, or any measurement, or seem to."""
 
 KINDS = ("sound", "video", "times", "rotation", "displacement", "angular velocity", "acceleration")
@@ -114,10 +115,8 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], M
         raise MeasurementError(f"{path.name}: {what} by its ending, kind={kind!r} was asked for")
     if sound:
         return _heard
-    if suffix not in {*TEXTS, ".xlsx"}:
-        raise MeasurementError(
-            f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *VIDEOS, *TEXTS, '.xlsx'))}"
-        )
+    if suffix not in _TABLES:
+        raise MeasurementError(f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *VIDEOS, *_TABLES))}")
     if kind == "video":
         raise MeasurementError(f"{path.name}: is no video by its ending, kind='video' was asked for")
     return impact_list if kind == "times" else motion_series
