@@ -186,7 +186,7 @@ def _of_texts(
             beginning = Sheet(source, [(k, list(row)) for k, row in enumerate(first) if any(map(str.strip, row))])
             called = f"{source} ({name})" if name in ENCODINGS else source
             ways.append((find_header(beginning, mapped), lines, delimiter, called))
-    whole = [(found, *rest) for found, *rest in ways if found and not found.header.missing]
+    whole = [(way[0], *way[1:]) for way in ways if way[0] and not way[0].header.missing]
     if not whole:
         raise _no_header(source, [(way[0], [(1, list(row)) for row in way[1].splitlines()[:1]]) for way in ways])
     _, lines, delimiter, called = max(whole, key=lambda way: (len(way[0].header.known), way[0].measures))
