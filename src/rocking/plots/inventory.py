@@ -111,7 +111,7 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
     >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     >>> vases = [InventoryObject(name="vase", width=0.12, depth=0.12, height=h) for h in (0.3, 0.6)]
     >>> figure = inventory_distribution(assess(Inventory(tuple(vases)), hazard))
-    >>> sum(bar.get_height() for bar in figure.axes[0].patches)
+    >>> float(sum(bar.get_height() for bar in figure.axes[0].patches))
     2.0
     """
     checks.of_kind("assessment", assessment, Assessment, "of an inventory")
