@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import beta
+from scipy.stats import beta, binom, norm
 
 import rocking as rk
-from rocking.prediction._predict import _chance
+from rocking.prediction._predict import _chance, _growth
 from rocking.prediction.mechanics import Uncertain
 from rocking.prediction.plane import PlaneMechanics, whole_settings
 
@@ -84,3 +84,100 @@ def test_no_restitution_creates_energy():
     assert left > 1.05 * right
     # onto the left foot the body turns about the right foot before
     np.testing.assert_allclose(found, [[math.sqrt(right / left), 1.0]], rtol=1e-12)
+
+
+def test_an_interval_over_motions_has_the_quantiles_of_a_binomial():
+    """Alike bodies overturn under 20 of 40 motions: motions drawn anew with replacement give a binomial share."""
+    found = _chance(bodies(*[20] * 400, motions=40), 0)
+    drawn = [float(binom.ppf(level, 40, 0.5)) / 40.0 for level in (0.025, 0.975)]
+    # one motion, the step of the share, for the quantiles of 1,000 draws
+    assert (found.wide_low, found.wide_high) == pytest.approx(drawn, abs=1.0 / 40.0)
+    # negative control: the interval over bodies is narrower by far more than a motion
+    assert found.high < drawn[1] - 2.0 / 40.0
+
+
+def test_pairs_that_rock_are_counted_and_compared():
+    """Pairs at rest, growing 3 and 5 times, over 1 % apart, of two outcomes, both overturning, and without a result.
+
+    Under a second motion all are at rest; one body more has no pair.
+    """
+    nan = math.nan
+    rows = {  # peak and its pair's, uplift, overturning and its pair's; one row a body, under both motions
+        "at rest": ((0.0, 0.0), 0.0, (0.0, 0.0)),
+        "growing thrice": ((0.1, 0.1 / (1.0 - 3e-6)), 1.0, (0.0, 0.0)),
+        "growing five times": ((0.2, 0.2 / (1.0 - 5e-6)), 1.0, (0.0, 0.0)),
+        "apart": ((0.1, 0.1 / (1.0 - 0.02)), 1.0, (0.0, 0.0)),
+        "ending otherwise": ((0.3, 1.5), 1.0, (0.0, 1.0)),
+        "both overturning": ((1.5, 1.5 / (1.0 - 0.5)), 1.0, (1.0, 1.0)),
+        "without a result": ((0.1, nan), 1.0, (0.0, nan)),
+    }
+
+    def grown(*names):
+        """One motion with these pairs, and a second one under which all bodies are at rest."""
+        pairs = [rows[name] for name in names]
+        first = {
+            "peak": [peaks[0] for peaks, _, _ in pairs],
+            "uplift": [rose for _, rose, _ in pairs],
+            "overturning": [fell[0] for _, _, fell in pairs],
+        }
+        again = {
+            "peak": [peaks[1] for peaks, _, _ in pairs],
+            "uplift": first["uplift"],
+            "overturning": [fell[1] for _, _, fell in pairs],
+        }
+        found = {key: np.column_stack([[*first[key], 0.0, *again[key]], np.zeros(2 * len(pairs) + 1)]) for key in first}
+        return _growth(found, len(pairs) + 1, ("strong", "weak"))
+
+    calm = grown("at rest", "growing thrice", "growing five times", "both overturning", "without a result")
+    assert (calm.pairs, calm.rocking, calm.lost, calm.motions_lost, calm.motions) == (5, 3, 0, (), 2)
+    assert calm.median == pytest.approx(4.0, rel=1e-6)  # of those that stay standing
+    wild = grown("at rest", "growing thrice", "apart", "ending otherwise")
+    assert (wild.rocking, wild.lost, wild.motions_lost) == (3, 2, ("strong",))
+    assert math.isnan(grown("at rest", "both overturning").median)
+
+
+KNOWN = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
+
+
+def mechanics(body, **given):
+    return PlaneMechanics(
+        body, rk.pulses.sine(4.2, 0.8), {**KNOWN, **given}, whole_settings(rk.conventions.g, 0.0, "newton")
+    )
+
+
+def coefficients(what, levels):
+    """Coefficients onto the left and the right foot of the body as it is drawn."""
+    levels = np.asarray(levels)
+    return what._coefficients(levels, np.tile(what._levers, (levels.size, 1)), np.full(levels.size, what._height))
+
+
+def test_a_given_distribution_of_restitution_keeps_its_tails():
+    """Quantiles of a lognormal, exp(ln m + s z); levels beyond 1/1,024 of either end too."""
+    levels = np.array([5e-4, 0.0015, 0.25, 0.5, 0.9, 0.9985, 0.9995])
+    what = mechanics(rk.Block(width=0.5, height=2.0), restitution={"median": 0.7, "dispersion": 0.05})
+    for found in coefficients(what, levels).T:
+        np.testing.assert_allclose(found, 0.7 * np.exp(0.05 * norm.ppf(levels)), rtol=5e-3)
+
+
+@pytest.mark.verifies("computed anew", "the model of the body on other feet", within="1e-9")
+def test_what_was_measured_follows_the_base():
+    """A quantile of the drawn body times the ratio of the calibrated shifted impulse on the feet that were drawn."""
+    from rocking.evidence import calibrate_hierarchy, restitution_distribution
+
+    body = rk.Block(width=0.6, height=2.2, centre=(0.35, 0.9))
+    model = rk.restitution.ShiftedImpulse(k=calibrate_hierarchy().summary["k"]["mean"])
+    worn = body.with_feet(body.feet[0] + 0.03, body.feet[1] - 0.01)
+    what, posterior = mechanics(body, restitution="measured"), restitution_distribution(body)
+    found = what._coefficients(np.array([0.3]), what._levers - [[0.03, 0.01]], np.array([what._height]))
+    for column, foot in enumerate(("left", "right")):
+        ratio = model.coefficient(worn, foot) / model.coefficient(body, foot)
+        assert found[0, column] == pytest.approx(posterior.quantile([0.3], foot)[0] * ratio, rel=1e-9)
+        assert abs(ratio - 1.0) > 1e-3  # the base matters
+
+
+def test_ends_of_a_range_are_means_of_its_fifths():
+    """Of friction from 0.1 to 0.9, all alike, the lowest fifth has the mean 0.18 and the highest 0.82."""
+    found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(1.0, 0.6), friction=(0.1, 0.9), count=64)
+    ends = found.ends["friction"]
+    # 12 of 64 draws are the lowest 18.75 %: half a step of 1/64 of the range
+    assert (ends.low, ends.high) == pytest.approx((0.18, 0.82), abs=0.8 / 64.0)

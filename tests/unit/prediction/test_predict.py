@@ -121,6 +121,8 @@ def test_the_input_that_decides_has_the_share():
     ends = found.ends["friction"]
     assert ends.low < math.tan(BLOCK.slenderness_angle) < ends.high
     assert (ends.probability_low, ends.probability_high) == (0.0, 1.0)
+    told = f"0 % with friction near {ends.low:.3g} and 100 % with friction near {ends.high:.3g}"
+    assert f"The probability of overturning is {told}." in found.sentences
 
 
 @pytest.mark.verifies("repeated sampling", "beta-distributed probabilities of motions", within="5 %")

@@ -111,6 +111,9 @@ def test_measured_coefficients_as_positions_of_the_impulse():
     after = inertia - radius_squared + 1.0 + b * point
     assert before / after == pytest.approx(median, abs=2e-3)  # the table has 1,025 levels
     assert 0.0 < k < 1.0
+    # what `simulate` is given of it, and of a coefficient or a model
+    assert what.law(0.5) == FixedPosition(k)
+    assert [mechanics(solid, restitution=each).law(0.5) for each in (0.8, "ked-3d")] == [0.8, "ked"]
 
 
 @pytest.mark.verifies("second engine", "the reference engine", within="1e-9")
@@ -147,6 +150,29 @@ def test_a_body_put_down_at_a_slant_stands_where_it_settles():
     """A block given on one of its long sides is a low block."""
     lying = SpaceMechanics(Solid(Part(box(2.0, 0.5, 0.5), 1000.0)), shaking(), KNOWN, rk.conventions.g)
     assert lying.pose.height == pytest.approx(0.25, abs=1e-12)
+
+
+@pytest.mark.verifies("invariant", "the same body given upright", within="1e-6")
+def test_a_body_given_at_a_slant_has_the_impacts_of_its_base():
+    """A block drawn at 6 degrees, on points that somebody stated, rocks and loses energy on its own base."""
+    shape, lean = box(0.5, 0.7, 2.0), 0.1
+    points = shape.vertices @ np.array([
+        [math.cos(lean), 0.0, math.sin(lean)], [0.0, 1.0, 0.0], [-math.sin(lean), 0.0, math.cos(lean)]
+    ]).T  # fmt: skip
+    points[:, 2] -= points[:, 2].min()
+    stated = [(-0.2, -0.3), (0.2, -0.3), (0.2, 0.3), (-0.2, 0.3)]
+    pulse, given = rk.pulses.sine(3.0, 0.8), {**KNOWN, "restitution": "ked-3d"}
+    peaks = {}
+    for name, solid in {
+        "slanted": Solid(Part(Polyhedron(points, shape.faces), 2500.0), base=stated),
+        "upright": Solid(Part(shape, 2500.0)),
+        "on stated points": Solid(Part(shape, 2500.0), base=stated),
+    }.items():
+        what = SpaceMechanics(solid, pulse, given, rk.conventions.g)
+        peaks[name] = what.run(np.empty((1, 0)), 0, np.ones(1), 1).peak[0]
+    assert peaks["slanted"] == pytest.approx(peaks["upright"], rel=1e-6)
+    # negative control: impacts as if the body stood on those points are others
+    assert peaks["on stated points"] != pytest.approx(peaks["upright"], rel=1e-3)
 
 
 @pytest.mark.parametrize(

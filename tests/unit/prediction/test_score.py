@@ -114,6 +114,17 @@ def test_few_motions_resolve_nothing(motions):
     assert found.as_dict()["motions"] == motions
 
 
+@pytest.mark.parametrize(("yes", "resolved"), [(5, True), (4, False)])
+def test_a_verdict_needs_as_many_motions_as_it_says(yes, resolved):
+    """Five motions of either outcome are enough, four of one are not, as the verdict's own sentence asks."""
+    names = np.repeat(np.arange(12), TRIALS)
+    fell = (names < yes) * 1.0
+    found = score(np.where(fell == 1.0, 0.9, 0.1), fell, names, pga=1.0 + names % 3, pgv=1.0 + names % 5)
+    assert found.either == (yes, 12 - yes)
+    assert found.enough == resolved
+    assert ("a verdict needs 5 of either" in found.verdict) == (not resolved)
+
+
 @pytest.mark.parametrize(
     ("changes", "why"),
     [
