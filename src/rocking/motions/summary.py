@@ -189,7 +189,7 @@ def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]
 
 def _shared(lines: Mapping[Any, Sequence[str]]) -> tuple[list[str], dict[Any, list[str]]]:
     """Return the lines that all sequences have, and the other lines of each by its key."""
-    first, *others = lines.values()
+    first, *others = lines.values() or [()]
     shared = [line for line in first if all(line in other for other in others)] if others else []
     return shared, {key: [line for line in own if line not in shared] for key, own in lines.items()}
 

@@ -66,6 +66,12 @@ def test_what_is_shared_stands_once():
     assert rows[-1][1].startswith("floor 3 of 5 of an elastic shear building")
 
 
+def test_no_motion_has_no_source():
+    """Free rocking has no motion, so that its answer has no row of a source."""
+    assert provenance_rows([]) == short_provenance([]) == []
+    assert len(provenance_rows([MotionSummary.of(record())])) == 1  # negative control
+
+
 def test_components_say_what_differs_by_axis():
     """Steps that differ between components are written by axis."""
     both = processed(Components(record(name="ns"), record(name="ew"), None), FLOOR)
