@@ -21,7 +21,11 @@ def written(tmp_path, text, name="trial.csv"):
     [
         ("rad", None, "rotation", 1.0),
         ("deg", None, "rotation", math.pi / 180.0),
+        ("mrad", None, "rotation", 1e-3),
+        ("\N{DEGREE SIGN}", None, "rotation", math.pi / 180.0),
         ("deg/s", None, "angular_velocity", math.pi / 180.0),
+        ("\N{DEGREE SIGN}/s", None, "angular_velocity", math.pi / 180.0),
+        ("dps", None, "angular_velocity", math.pi / 180.0),
     ],
 )
 def test_the_unit_says_which_sensor(tmp_path, unit, height, field, factor):

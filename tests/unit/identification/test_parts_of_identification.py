@@ -1,0 +1,230 @@
+"""Parts of the identification: sequences, shaken half cycles and sounds by closed forms, differences, invariants."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from benchmarks import identification_forced
+
+import rocking as rk
+from rocking.identification import association, forced_friction, forced_start, state_space
+from rocking.identification.design import peaks_bound
+from rocking.identification.forced_half_cycles import Flights
+from rocking.identification.forced_model import SIZE
+from rocking.identification.posterior import Knowledge
+from rocking.identification.readers import rocking_sequence, sound
+from rocking.identification.series import _peaks
+
+pytestmark = pytest.mark.verifies(room="evidence")
+BODY = rk.Block(width=0.2, height=1.0, mass=300.0, centre=(0.106, 0.48))
+KNOWN = Knowledge.of(BODY, 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
+
+
+def lawful(count, ln_r=(-0.12, -0.12), y=0.8, p=3.0):
+    """Times of impacts of a slender body: T = (2 / p) artanh y, y falls at every impact; r by the foot that it hits."""
+    found, ln_y = [0.0], math.log(y)
+    for n in range(count - 1):
+        found.append(found[-1] + 2.0 / p * math.atanh(math.exp(ln_y)))
+        ln_y += ln_r[n % 2]
+    return np.array(found)
+
+
+# ---- sequences ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("p", [2.0, 3.0])
+@pytest.mark.parametrize(("falls", "missed"), [((-0.1, -0.1), 0), ((-0.16, -0.06), 2)])
+def test_the_next_impact_of_a_lawful_sequence(p, falls, missed):
+    """Where the law puts it, if y begins at what is assumed of it: sides alike, and unlike with two impacts missed."""
+    times = lawful(12, falls, rocking_sequence._MODERATE, p)
+    at, span = rocking_sequence.next_impact(times[:8], np.arange(8), 8 + missed)
+    assert at == pytest.approx(times[8 + missed], rel=1e-9)
+    assert span == pytest.approx(times[8 + missed] - times[7 + missed], rel=1e-9)
+    assert np.isnan(rocking_sequence.next_impact(times[:2], np.arange(2), 2)[0])  # of one interval nothing follows
+
+
+def test_the_misfit_of_a_row_does_not_hang_on_the_others():
+    """The first arrangement of times has one misfit, alone and beside others; that of the law itself is small."""
+    times, orders = lawful(10), np.arange(10)
+    other = np.where(orders % 2 == 1, times + 0.02, times)
+    other[-1] += 0.1
+    beside = rocking_sequence.law_misfit(np.stack([times, other, 1.3 * other]), orders, loose=0.01)
+    alone = rocking_sequence.law_misfit(times[None], orders, loose=0.01)
+    assert beside[0] == pytest.approx(alone[0], rel=1e-9)
+    assert beside[0] < 1.0 < beside[1]
+
+
+def test_the_variance_of_the_first_speed_is_that_of_two_times():
+    """ln y of y = tanh(p T / 2), T between two times with noise s: twice (d ln y / dT)^2 s^2 beside the prior."""
+    times, noise, p = lawful(6), 2e-3, 3.0
+    quiet, loud = (
+        association._started(times, each, (math.log(p), 0.05), (0.0, 0.02)).covariance for each in (0.0, noise)
+    )
+    beam = association._started(times, noise, (math.log(p), 0.05), (0.0, 0.02))
+    whole = beam.number == 1
+    gap = times[beam.last] - times[np.argmax(beam.of_click == 0, axis=1)]
+    step = 1e-6
+    slope = (np.log(np.tanh(0.5 * p * (gap + step))) - np.log(np.tanh(0.5 * p * (gap - step)))) / (2.0 * step)
+    added = (loud - quiet)[whole]
+    np.testing.assert_allclose(added[:, 1, 1], 2.0 * (slope * noise)[whole] ** 2, rtol=1e-6)
+    np.testing.assert_allclose(added[:, 0, 1], slope[whole] * noise**2, rtol=1e-6)
+    np.testing.assert_allclose(added[:, 0, 0], noise**2, rtol=1e-12)
+
+
+def test_unknowns_lead_to_the_times_from_which_they_were_found():
+    """`reached` is the inverse of `path`, with sides, tilt, trend and another p."""
+    rng = np.random.default_rng(2)
+    mean, deviation = np.zeros(len(state_space.SHARED)), np.full(len(state_space.SHARED), 0.02)
+    alpha, p = (0.2, 0.17), (3.0, 3.2)
+    mean[state_space.SPEED] = math.log(0.7 * 3.0 * 2.0 * math.sin(0.1))
+    mean[state_space.MEAN] = -0.1
+    deviation[state_space.DAMPING] = 0.0
+    model = state_space.Model(np.arange(7) % 2, alpha, p, mean, deviation, middle=-1.0)
+    u, scatter = rng.normal(size=(3, model.size)), np.full(3, 0.03)
+    times = model.path(u, scatter).times
+    start = u.copy()
+    start[:, len(state_space.SHARED) :] = 0.0
+    start[:, [state_space.START, state_space.SPEED]] = 0.0
+    np.testing.assert_allclose(model.reached(start, scatter, times), u, atol=1e-7)
+
+
+def test_the_bound_of_two_peaks_is_error_propagation():
+    """r is the ratio of y = sqrt(1 - (1 - f)^2) after an impact and before it, for peaks f over alpha."""
+    before, after, noise, step = 0.6, 0.35, 0.01, 1e-6
+
+    def ln_r(f, g):
+        return 0.5 * (math.log(1.0 - (1.0 - g) ** 2) - math.log(1.0 - (1.0 - f) ** 2))
+
+    by_before = (ln_r(before + step, after) - ln_r(before - step, after)) / (2.0 * step)
+    by_after = (ln_r(before, after + step) - ln_r(before, after - step)) / (2.0 * step)
+    assert peaks_bound(before, after, noise) == pytest.approx(noise * math.hypot(by_before, by_after), rel=1e-8)
+
+
+def test_turns_of_a_series_are_its_extremes():
+    """1 - cos from 0 to 3 pi has a maximum and a minimum between its ends; where it begins and ends is no turn."""
+    t = np.linspace(0.0, 3.0 * np.pi, 301)
+    for values in (1.0 - np.cos(t), np.cos(t)):
+        assert _peaks(values, 0.1).tolist() == [100, 200]
+    assert _peaks(1.0 - np.cos(t), 2.1).tolist() == []
+
+
+def test_an_impact_loses_energy_a_priori():
+    """The prior of ln r holds what was measured: its mean is below 0 and all measured means are within 2 deviations."""
+    model = KNOWN.model(KNOWN.sides(4), 0.0, np.full(4, -1.0), KNOWN.frequencies[0])
+    mean, deviation = model.mean[state_space.MEAN], model.deviation[state_space.MEAN]
+    assert mean < 0.0
+    # published means of r from 0.81 to 0.99: the tables of Mao et al. (2024)
+    assert mean - 2.0 * deviation < math.log(0.81) < math.log(0.99) < mean + deviation
+
+
+# ---- shaken half cycles ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    """What is known of a body that rocks under a strong motion, and the first fit of its half cycles."""
+    case = identification_forced.shaken(0)
+    known = Knowledge.of(case["body"], 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
+    problem = forced_start.problem_of(case["series"], known, case["motion"], (case["clock"], 0.01))
+    problem, fit, _ = forced_start.first_fit(problem, problem.mean)
+    return replace(problem, middle=-0.5), fit.x
+
+
+def dense(problem, terms):
+    """Residuals of all terms, and slopes by all unknowns, a row each."""
+    size = terms.times[1].shape[1]
+    residuals, rows = [], []
+    for residual, by in terms.samples:
+        whole = np.zeros((residual.size, size))
+        whole[:, :SIZE] = by[:, :SIZE]
+        for n, k in enumerate(terms.owners):
+            for column in range(2):
+                if SIZE + 2 * k + column < size:
+                    whole[n, SIZE + 2 * k + column] = by[n, SIZE + column]
+                    if k > 0:
+                        whole[n, SIZE + 2 * k - 2 + column] = by[n, SIZE + 2 + column]
+        residuals.append(residual)
+        rows.append(whole)
+    return np.concatenate([*residuals, terms.times[0], terms.draws[0]]), np.concatenate([
+        *rows, terms.times[1], terms.draws[1]
+    ])  # fmt: skip
+
+
+# of feet that slide, slopes leave out what half cycles before the last one do
+@pytest.mark.parametrize(("friction", "within"), [(None, 2e-3), (0.3, 0.1)])
+def test_slopes_of_a_shaken_body_are_its_differences(shaken, friction, within):
+    """By every unknown, of samples, times and ln r: feet that hold, and feet that slide, which the one before moves."""
+    problem, x = shaken
+    if friction is not None:
+        problem, x = forced_friction.sliding(problem, math.log(friction), 0.5), x.copy()
+        x[forced_friction.FRICTION] = math.log(friction)
+    slopes, step = dense(problem, problem.terms(x))[1], 1e-7
+    assert problem.seen.joined.sum() > 5
+    for n in range(x.size):
+        ends = []
+        for moved in (x.copy(), x.copy()):
+            moved[n] += step * (1.0 - 2.0 * len(ends))
+            ends.append(dense(problem, problem.terms(moved))[0])
+        numeric = (ends[1] - ends[0]) / (2.0 * step)  # residuals fall where what is computed rises
+        largest = max(np.abs(numeric).max(), 1e-3)
+        np.testing.assert_allclose(slopes[:, n], numeric, rtol=0.0, atol=within * largest, err_msg=f"unknown {n}")
+
+
+def test_between_steps_the_energy_is_kept():
+    """Cubics: rotation and velocity of the steps at the steps, and between them the energy of free rocking."""
+    motion = rk.GroundMotion(np.zeros(400), 0.01)
+    state = np.zeros(1), np.zeros(1), np.array([0.5])
+    body = np.array([0.2]), np.array([3.5]), np.array([0.55])
+    coarse = Flights.of(motion, state, body, np.ones(1), np.array([0.6]))
+    count, which = len(coarse.rotation) - 1, np.zeros(len(coarse.rotation) - 1, dtype=np.int64)
+    h = coarse.step[0]
+    rotation, velocity = coarse.at(h * np.arange(1, count + 1) * (1.0 - 1e-12), which)
+    np.testing.assert_allclose(rotation, coarse.rotation[1:, 0], atol=1e-12)
+    np.testing.assert_allclose(velocity, coarse.velocity[1:, 0], atol=1e-9)
+    # free rocking of a slender body between the steps, theta'' = -p^2 sin(alpha - theta), by its energy
+    middle, turning = coarse.at(h * (np.arange(count) + 0.5), which)
+    energy = 0.5 * turning**2 + 3.5**2 * np.cos(0.2 - middle)
+    np.testing.assert_allclose(energy, 0.125 + 3.5**2 * math.cos(0.2), atol=1e-5)
+
+
+def test_friction_of_which_nothing_is_told_is_what_was_tried():
+    """Evidence that is alike from 0.2 to 0.5, and beyond up to the largest: uniform in the logarithm."""
+    tried = {math.log(each): (None, -7.0) for each in (0.2, 0.3, 0.4, 0.5)}
+    interval, lowest, above = forced_friction._quantiles(tried)
+    span = math.log(forced_friction._MOST / 0.2)
+    wanted = [0.2 * math.exp(level * span) for level in forced_friction.LEVELS]
+    assert sorted((interval.low, interval.value, interval.high)) == pytest.approx(sorted(wanted), rel=1e-3)
+    assert lowest == pytest.approx(0.2, rel=1e-9)
+    assert above == pytest.approx(math.log(forced_friction._MOST / 0.5) / span, rel=1e-3)
+
+
+@pytest.mark.verifies("repeated sampling", "4,000 fits to white noise", within="3 %")
+def test_noise_about_a_fit_has_its_degrees_of_freedom():
+    """Lines through 15 samples of each of 4 half cycles take 8 of 60 degrees: the variance is the sum over 52."""
+    random, line = np.random.default_rng(4), np.column_stack([np.ones(15), np.arange(15.0)])
+    off = np.eye(15) - line @ np.linalg.pinv(line)
+    problem = SimpleNamespace(kinds=(0,), seen=SimpleNamespace(sign=np.ones(4)))
+    found = []
+    for _ in range(4000):
+        rest = (random.normal(size=(4, 15)) @ off).ravel()
+        fit = SimpleNamespace(terms=SimpleNamespace(samples=[(rest, None)]))
+        scatter = forced_start.deviations(problem, fit)[0]
+        found.append(scatter**2 / forced_start.correlation(rest))
+    assert np.mean(found) == pytest.approx(1.0, rel=0.03)
+
+
+# ---- sounds ---------------------------------------------------------------------------------------------------------
+
+
+def test_noise_is_not_like_the_sum_of_other_noise():
+    """Correlations of independent noise are of 1 / sqrt(n), and of one click in all of them are 1."""
+    random, rate, places = np.random.default_rng(6), 8000.0, np.array([1000, 3000, 5000, 7000])
+    noise = random.normal(size=9000)
+    size = int(sound._LONG * rate) + int(sound._BEFORE * rate)
+    assert np.abs(sound._matches(noise, rate, places, 0)[1]).max() < 5.0 / math.sqrt(size)
+    click, alike = random.normal(size=size), np.zeros(9000)
+    for k, place in enumerate(places):
+        alike[place - int(sound._BEFORE * rate) :][:size] = (1.0 + k) * click
+    np.testing.assert_allclose(sound._matches(alike, rate, places, 0)[1], 1.0, rtol=1e-9)
