@@ -10,13 +10,15 @@ from scipy.spatial.transform import Rotation
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
+from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, valid
+from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, outline, solve, valid
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, added, applied, back, cross, dot, frame, length, product, scaled
-from rocking.dynamics.hull.histories import results_of, start_of
+from rocking.dynamics.hull.histories import hull_histories, results_of, start_of
 from rocking.dynamics.hull.history import HullHistory, HullSettings
 from rocking.dynamics.hull.motion import levelled, point_velocity, standing
+from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
@@ -185,3 +187,76 @@ def test_a_body_is_displaced_by_the_straight_distance():
     history.states = [start._replace(place=(1.0, 2.0, 0.5)), start._replace(place=(4.0, 6.0, 0.7))]
     history.time = [0.0, 1.0]
     assert 5.0 in results_of(history)[0]
+
+
+@pytest.mark.verifies("closed form", "statics of a base that pushes where a linear pressure is above zero",
+                      within="1e-9", control="within")  # fmt: skip
+@pytest.mark.parametrize("corners", [6, 12, 40])
+def test_a_base_presses_only_where_its_pressure_pushes(corners):
+    """A prism pulled aside: normal forces hold weight and moment, are linear where they push, and none pulls.
+
+    The control takes one linear pressure over all corners, which pulls at those behind.
+    """
+    turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    ring = np.column_stack([0.5 * np.cos(turn), 0.4 * np.sin(turn)])
+    points = np.concatenate([np.column_stack([ring, np.full(corners, z)]) for z in (0.0, 1.0)])
+    mass, height = 200.0, 0.5
+    body = HullBody(points, mass, (0.03, -0.02, height), np.diag([25.0, 22.0, 8.0]))
+    axes = frame(standing(body).attitude)
+    heights = [dot(axes[2], p) for p in body.points]
+    touching = tuple(i for i, h in enumerate(heights) if h < min(heights) + 1e-9)
+    assert len(touching) == corners
+    for pull in ((5.5, 0.0), (-5.0, 3.0), (1.0, -5.5)):
+        problem = Problem(body, axes, back(axes, (*pull, -G)), (0.0, 0.0, 0.0), math.inf)
+        members = outline(problem, touching)
+        contact = HullContact(members, members)
+        found = solve(problem, contact, {})
+        normal = np.array([found.normals[i] for i in members])
+        place = np.array([[dot(axis, body.points[i]) for axis in axes[:2]] for i in members])
+        assert length(found.linear) < 1e-9 * G
+        assert normal.sum() == pytest.approx(mass * G, rel=1e-9)
+        np.testing.assert_allclose(normal @ place, mass * height * np.array(pull), rtol=1e-9, atol=1e-9 * mass * G)
+        assert normal.min() >= 0.0
+        pushes = normal > 0.0
+        if pushes.sum() > 3:
+            table = np.column_stack([np.ones(corners), place])
+            linear_pressure = table @ np.linalg.lstsq(table[pushes], normal[pushes])[0]
+            np.testing.assert_allclose(linear_pressure[pushes], normal[pushes], atol=1e-9 * mass * G)
+            assert (linear_pressure[~pushes] < 1e-9 * mass * G).all()
+        plain = linear(problem, contact, list(members), {})
+        assert min(plain.normals.values()) < -0.01 * mass * G / corners
+
+
+def shaken_tower(size, gravity, scale, engine):
+    """Peak tilt, sliding over size, times over sqrt(size g / gravity), and all, of a tower that lifts off and slides."""
+    pace = math.sqrt(size * G / gravity)
+    time, body = 0.02 * np.arange(36), tower()
+    x, y = (GroundMotion(a * scale * gravity / G * np.sin(w * time), 0.02 * pace) for a, w in ((5.5, 9.0), (3.0, 6.0)))
+    inertia = size**5 * np.diag([25.0, 22.0, 8.0])
+    body = HullBody(size * np.array(body.vertices), body.mass * size**3, size * np.array([0.03, -0.02, 0.5]), inertia)
+    ground = HullGround(x, y, gravity=gravity)
+    batch = hull_histories(body, ground, 0.8, 0.45, engine=engine)
+    names = "peak_tilt", "sliding_distance", "peak_time", "first_uplift", "outcome", "steps"
+    found = {name: batch[name].item() for name in names}
+    lasts = [found["peak_time"] / pace, found["first_uplift"] / pace]
+    return np.array([found["peak_tilt"], found["sliding_distance"] / size, *lasts]), found
+
+
+@pytest.mark.verifies("invariant", "similar bodies under similar motions", within="1e-7", control="within")
+def test_similar_bodies_rock_alike():
+    """A tower of another size, or on another planet, moves alike in times of sqrt(size / g), by either engine.
+
+    The control is a motion of 1 % more.
+    """
+    plain, first = shaken_tower(1.0, G, 1.0, "reference")
+    assert first["outcome"] == Outcome.ROCKED_AND_SLID.code
+    for size, gravity in ((1e-4, G), (1e4, G), (1.0, 0.5)):
+        similar, other = shaken_tower(size, gravity, 1.0, "reference")
+        np.testing.assert_allclose(similar, plain, rtol=1e-7)
+        assert other["steps"] == pytest.approx(first["steps"], rel=0.02)  # rounding adds or spares one or two
+    assert np.abs(shaken_tower(1.0, G, 1.01, "reference")[0] / plain - 1.0).max() > 1e-3
+    if histories.available():
+        compiled, other = shaken_tower(1.0, G, 1.0, "fast")
+        np.testing.assert_allclose(compiled, plain, rtol=1e-7)
+        # each engine has its own way to try a step again
+        assert other["steps"] == pytest.approx(first["steps"], rel=0.2)
