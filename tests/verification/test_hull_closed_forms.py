@@ -228,7 +228,7 @@ def test_a_base_presses_only_where_its_pressure_pushes(corners):
 
 
 def shaken_tower(size, gravity, scale, engine):
-    """Peak tilt, sliding over size, times over sqrt(size g / gravity), and all, of a tower that lifts off and slides."""
+    """Peak tilt, sliding over size, times over sqrt(size g / gravity), and all, of a tower that slides."""
     pace = math.sqrt(size * G / gravity)
     time, body = 0.02 * np.arange(36), tower()
     x, y = (GroundMotion(a * scale * gravity / G * np.sin(w * time), 0.02 * pace) for a, w in ((5.5, 9.0), (3.0, 6.0)))
