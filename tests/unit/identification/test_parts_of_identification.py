@@ -228,3 +228,32 @@ def test_noise_is_not_like_the_sum_of_other_noise():
     for k, place in enumerate(places):
         alike[place - int(sound._BEFORE * rate) :][:size] = (1.0 + k) * click
     np.testing.assert_allclose(sound._matches(alike, rate, places, 0)[1], 1.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.01, -0.008])
+def test_an_impact_that_no_click_told_is_found_by_its_foot(late):
+    """Each foot has its click, weaker from impact to impact; the ninth is sought by those before it: to a sample."""
+    random, rate = np.random.default_rng(8), 8000.0
+    times = 0.5 + lawful(9, y=rocking_sequence._MODERATE)
+    times[-1] += late
+    heard, since = 0.01 * random.normal(size=int((times[-1] + 1.0) * rate)), np.arange(320) / rate
+    clicks = [random.normal(size=since.size) * np.exp(-since / 0.008) for _ in range(2)]
+    for n, time in enumerate(times):
+        heard[round(time * rate) :][: since.size] += 0.85**n * clicks[n % 2]
+    at, sure = sound._impact(heard, rate, times[:8], np.arange(8), 8)
+    assert at == pytest.approx(times[8], abs=1.5 / rate)
+    assert sure > 5.0
+
+
+@pytest.mark.parametrize("lead", [0.0, 10.0, 30.0])
+def test_clicks_are_sharpened_wherever_they_are_in_a_sound(lead):
+    """Sounding for 10 ms in a white noise, at a rate whose windows are odd: loud within 4 ms, at the end as at once."""
+    random, rate = np.random.default_rng(8), 22050.0
+    times, since = lead + np.array([0.6, 1.1, 1.5, 1.8]), np.arange(1300) / 22050.0
+    heard = 0.02 * random.normal(size=int((times[-1] + 1.0) * rate))
+    for time in times:
+        heard[round(time * rate) :][: since.size] += np.sin(3000.0 * np.pi * since) * np.exp(-since / 0.01)
+    power = sound.sharpened(heard, rate, times)[0] ** 2
+    off = np.arange(heard.size) / rate - times[:, None]
+    near, clear = ((off > -0.002) & (off < 0.004)).any(axis=0), ~((off > -0.1) & (off < 0.2)).any(axis=0)
+    assert power[near].mean() > 50.0 * power[clear].mean()
