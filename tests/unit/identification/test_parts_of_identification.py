@@ -9,12 +9,13 @@ import pytest
 from benchmarks import identification_forced
 
 import rocking as rk
-from rocking.identification import association, forced_friction, forced_start, state_space
+from rocking.identification import association, forced, forced_friction, forced_start, state_space
 from rocking.identification.design import peaks_bound
 from rocking.identification.forced_half_cycles import Flights
 from rocking.identification.forced_model import SIZE
 from rocking.identification.posterior import Knowledge
 from rocking.identification.readers import rocking_sequence, sound
+from rocking.identification.results import IntervalEstimate
 from rocking.identification.series import _peaks
 
 pytestmark = pytest.mark.verifies(room="evidence")
@@ -170,6 +171,23 @@ def test_slopes_of_a_shaken_body_are_its_differences(shaken, friction, within):
         numeric = (ends[1] - ends[0]) / (2.0 * step)  # residuals fall where what is computed rises
         largest = max(np.abs(numeric).max(), 1e-3)
         np.testing.assert_allclose(slopes[:, n], numeric, rtol=0.0, atol=within * largest, err_msg=f"unknown {n}")
+
+
+def test_the_frequency_parameter_is_that_of_the_sizes_that_were_found():
+    """p of widths and heights at the fit, by R over each foot: p falls as 1 / sqrt(R) where the body is larger."""
+    case = identification_forced.shaken(0)
+    known = Knowledge.of(case["body"], 0.02, (0.002, 0.004), 0.05, trend=False, damping=False, first="right")
+    found = forced.fit_forced(case["series"], known, case["motion"], (case["clock"], 0.01))
+    unknown = IntervalEstimate(math.nan, math.nan, math.nan)
+    answer = forced.answer(found, unknown, (), found)
+    across, up = (math.exp(found.fit.x[each]) for each in (forced.WIDTH, forced.HEIGHT))
+    square = 1.0
+    for foot in ("right", "left"):
+        side = case["body"].side(foot)
+        larger = math.hypot(across * side.half_width, up * side.centre_height) / side.semi_diagonal
+        square *= side.frequency_parameter / math.sqrt(larger)
+        assert abs(larger - 1.0) > 5e-3
+    assert answer.frequency_parameter.value == pytest.approx(math.sqrt(square), rel=3e-4)
 
 
 def test_between_steps_the_energy_is_kept():
