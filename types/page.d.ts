@@ -131,6 +131,8 @@ type LeftOpen = { needs: Need[]; choices?: Server.RecordFacts["choices"]; compon
 
 /** A file that was sent: its plain name, and its hash. */
 type SentFile = { name: string; sha: string };
+/** What was typed of single record files, by their names and keys. */
+type FileTexts = { [name: string]: { [key: string]: string } };
 /** What is typed in views, by view, and the form of one: app/forms.js. */
 type Forms = { [view: string]: { [name: string]: any } };
 type Form = { readonly value: any; at: (...path: string[]) => { value: any } };

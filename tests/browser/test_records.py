@@ -14,6 +14,7 @@ from rocking.motions.formats import read_motion
 
 expect = pytest.importorskip("playwright.sync_api").expect
 DROP = "Drop records or a folder here, or"
+STEP = re.compile("^time step")
 
 
 def record(path: Path, frequency: float) -> Path:
@@ -166,6 +167,119 @@ def test_a_folder_for_a_spectrum(open_page: Callable[..., Any], shot: Callable[.
     expect(section).to_contain_text("target.csv")
     outcome = asked(section)
     expect(outcome.get_by_test_id("verdict")).to_contain_text("target.csv")
+
+
+def plain(path: Path, factor: float, heading: str = "") -> Path:
+    """Write accelerations alone: 0.3 g at most, over the factor [m/s2], below a heading."""
+    values = 0.3 * 9.80665 * np.cos(0.2 * np.arange(200)) * np.exp(-0.02 * np.arange(200)) / factor
+    path.write_text(heading + "\n".join(f"{value:.8f}" for value in values) + "\n")
+    return path
+
+
+def mixed_set(open_page: Callable[..., Any], folder: Path) -> tuple[Any, Any, Any]:
+    """Send three records of mixed units, of which one has a heading; return the page, the view and its options."""
+    folder.mkdir()
+    plain(folder / "a.txt", 9.80665)
+    plain(folder / "b.txt", 0.01)
+    plain(folder / "c.txt", 1.0, "17 rows\n18 rows\n")
+    page = open_page(view="records")
+    section = page.locator("#view-records")
+    section.get_by_label("A folder", exact=True).set_input_files(folder)
+    expect(section.get_by_role("list", name="Files").get_by_role("listitem")).to_have_count(3)
+    section.get_by_text("What the file does not say").click()
+    section.get_by_label(STEP).fill("0,01")
+    return page, section, section.get_by_role("group", name="Options of single files")
+
+
+def peaks(rows: Any) -> list[list[str]]:
+    """Return names and PGA [g] of the table of records."""
+    return [row.split("\t")[:2] for row in rows.all_inner_texts()]
+
+
+def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[..., Any], tmp_path: Path) -> None:
+    """Files of mixed units are one set: the page offers unit, step, format and skip at each file that was not read."""
+    page, section, options = mixed_set(open_page, tmp_path / "mixed")
+    asked(section, "refused")
+    expect(section.get_by_role("alert")).to_contain_text("a.txt: the file does not state its unit: state it under")
+    first, second, third = (options.get_by_role("listitem", name=f"{name}.txt") for name in "abc")
+    expect(first).to_contain_text("The file does not state its unit.")
+    expect(options.get_by_role("listitem")).to_have_count(1)
+    first.get_by_label("units").select_option("g")
+    outcome = asked(section)
+    rows = outcome.get_by_role("table", name="Records").locator("tbody tr")
+    assert peaks(rows) == [["a", "0.3"]]
+    left_out = outcome.get_by_role("table", name="Files that were left out")
+    expect(left_out.locator("tbody tr")).to_have_count(2)
+    expect(left_out).to_contain_text("unit: state it under")
+    expect(options.get_by_role("listitem")).to_have_count(3)
+
+    second.get_by_label("units").select_option("cm/s2")
+    third.get_by_label("units").select_option("m/s2")
+    third.get_by_label(STEP).fill("0,02")
+    third.get_by_label("skip").fill("2")
+    shot(page, "records-units")
+    outcome = asked(section)
+    expect(rows).to_have_count(3)
+    assert peaks(rows) == [["a", "0.3"], ["b", "0.3"], ["c", "0.3"]]
+    expect(left_out).to_have_count(0)
+    outcome.get_by_text("The same on the command line").click()
+    table = '[motions.files."c.txt"]\nunits = "m/s2"\ntime_step = 0.02\nskip = 2'
+    expect(outcome.locator("pre").last).to_contain_text(table)
+
+
+def test_a_wrong_unit_of_one_file(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """A wrong unit gives another peak, a wrong step is marked at its file; a reload keeps what was typed."""
+    page, section, options = mixed_set(open_page, tmp_path / "mixed")
+    section.get_by_role("button", name="Leave out c.txt").click()
+    section.get_by_label("units").select_option("g")
+    section.get_by_label("Add a file with other options").select_option("b.txt")
+    second = options.get_by_role("listitem", name="b.txt")
+    second.get_by_label("units").select_option("mm/s2")
+    second.get_by_label(STEP).fill("-1")
+    asked(section, "refused")
+    expect(second.get_by_label(STEP)).to_have_attribute("aria-invalid", "true")
+    expect(section.locator("form [aria-invalid=true]")).to_have_count(1)
+    second.get_by_label(STEP).fill("0,02")
+    outcome = asked(section)
+    rows = outcome.get_by_role("table", name="Records").locator("tbody tr")
+    assert peaks(rows) == [["a", "0.3"], ["b", "0.03"]]
+
+    section.get_by_label("What is shown").select_option("b.txt")
+    outcome = asked(section)
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("PGA 0.03 g before")
+    done = outcome.get_by_role("list", name="What was done")
+    expect(done).to_contain_text("stated by the user: unit mm/s2, time step 0.02 s")
+    page.reload()
+    expect(second.get_by_label("units")).to_have_value("mm/s2")
+    second.get_by_role("button", name="Remove the options of b.txt").click()
+    expect(options.get_by_role("listitem")).to_have_count(0)
+
+
+def test_a_unit_for_each_file_that_shakes_the_body(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Decide offers the same at the file that it refuses; what is stated there is in the question."""
+    for name, unit in (("a.txt", 9.80665), ("b.txt", 0.01)):
+        lines = [f"{0.01 * k:.2f} {value}" for k, value in enumerate(plain(tmp_path / name, unit).read_text().split())]
+        (tmp_path / name).write_text("\n".join(lines))
+    page = open_page(link("sine:amplitude=3.2,period=0.8"))
+    page.locator("#tab-decide").click()
+    section = page.locator("#view-decide")
+    section.get_by_label("Question").select_option("predict")
+    section.get_by_label("count").fill("4")
+    section.get_by_label("Shaken by").select_option("records")
+    section.get_by_label("Drop records here, or").set_input_files([tmp_path / "a.txt", tmp_path / "b.txt"])
+    expect(section.get_by_role("list", name="Files").get_by_role("listitem")).to_have_count(2)
+    section.get_by_label("Unit of the accelerations").fill("cm/s2")
+    options = section.get_by_role("group", name="Options of single files")
+    section.get_by_label("Add a file with other options").select_option("a.txt")
+    options.get_by_label("units").select_option("g")
+    outcome = asked(section)
+    outcome.get_by_text("The same on the command line").click()
+    told = outcome.locator("pre").last
+    expect(told).to_contain_text('units = "cm/s2"')
+    expect(told).to_contain_text('[motions.files."a.txt"]\nunits = "g"')
+    section.get_by_label("Unit of the accelerations").fill("")
+    asked(section, "refused")
+    expect(options.get_by_role("listitem", name="b.txt")).to_contain_text("The file does not state its unit.")
 
 
 def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], served: Any) -> None:

@@ -16,6 +16,7 @@ from rocking.checks import length_unit
 from rocking.conventions import FEET
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.components import Components
+from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
@@ -275,10 +276,11 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     if twice:
         raise InvalidValueError(f"records: {twice[0]} is named twice")
     motions: list[Motion] = []
+    own = by_path(table.file_options, [inputs.folder / name for name in names])
     for name in names:
         path = inputs.file(name)
         with located(f"records: {name}"):
-            motions.append(_record(path, table, inputs))
+            motions.append(_record(path, table.model_copy(update=own.get(path, {})), inputs))
     return motions
 
 

@@ -116,14 +116,19 @@ class CampaignTable(JobTable):
     seed: Seed = _key("seed of what is drawn", 0)
 
 
-class MotionKeys(JobTable):
-    """What one motion, or several, are made of."""
+class FileKeys(JobTable):
+    """Options of a record file: its format, unit and time step, and lines to skip."""
 
-    synthetic: Text | None = _key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
     format: Text | None = _key("format of the record file, if not found by content: see rocking formats")
     units: Text | None = _key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
     time_step: Positive | None = _key("step between samples where the file does not state it [s]")
     skip: int | None = _key("lines at the top of a text file that are passed over", None, ge=0, le=100_000)
+
+
+class MotionKeys(FileKeys):
+    """What one motion, or several, are made of."""
+
+    synthetic: Text | None = _key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
     component: Text | None = _key("horizontal component of the file, by name")
     vertical: Text | None = _key("vertical component, by name")
     vertical_file: Text | None = _key("file of the vertical component, where it has its own")
@@ -196,6 +201,9 @@ class MotionTable(_Along, MotionKeys):
     """Records, pulses, a family of synthetic motions, or one motion along x, y and z of a body in space; z is up."""
 
     records: Names | None = _key("record files, a folder of them, a pattern such as *.at2, or a list in a .csv file")
+    files: dict[Text, FileKeys] | None = _key(
+        'options of single files, in place of those for all files: one table per file name, [motions.files."a.txt"]'
+    )
     pulse: Names | None = _key("pulses such as sine:amplitude=3,period=0.8")
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = _key(
         "how many synthetic motions, or records chosen for a target"
@@ -215,13 +223,18 @@ class MotionTable(_Along, MotionKeys):
             return self
         own = {"count", "seed", "pga", "pgv", "time_step"}
         chosen = {"target", "periods", "count"}
-        of_records = {*OF_FILES, *chosen, "scale", "mirrored"}
+        of_records = {*OF_FILES, "files", *chosen, "scale", "mirrored"}
         source = self._one_source({"records": of_records, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
             raise refused("count is missing: how many synthetic motions?")
         if source == "records" and self.target is None and (odd := sorted(chosen & self.model_fields_set)):
             raise refused(f"{odd[0]} of records goes with target, the spectrum that they are chosen for")
         return self
+
+    @property
+    def file_options(self) -> dict[str, dict[str, Any]]:
+        """The options of single record files, by their names; keys that are not stated are absent."""
+        return {name: table.model_dump(exclude_none=True) for name, table in (self.files or {}).items()}
 
 
 class AxisTable(Values):

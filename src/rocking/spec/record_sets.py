@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import plausibility
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
+from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.record_set import RecordSet, paths_of, plane_motions, read_records, rows_of_list
 from rocking.motions.formats.stations import BETWEEN, is_station_file, station_files
 from rocking.motions.pipeline import processed, steps_of
@@ -48,11 +49,13 @@ def record_set(
     steps = with_files(table, inputs)
     how: dict[str, Any] = {"format": table.format, "units": table.units, "time_step": table.time_step}
     how |= {"stations": stations_of(steps), "skip": table.skip or 0, "workers": workers, "progress": progress}
-    for names in _read_together(table.records or [], inputs):
-        for name in names:
-            _note(name, inputs)
+    groups = _read_together(table.records or [], inputs)
+    paths = [[path for name in names for path in _note(name, inputs)] for names in groups]
+    own = by_path(table.file_options, [path for of_group in paths for path in of_group])
+    for names, of_group in zip(groups, paths, strict=True):
+        files = {path: own[path] for path in of_group if path in own}
         with located("records" if len(names) > 1 else f"records: {names[0]}"):
-            found = _read(names, inputs, how)
+            found = _read(names, inputs, {**how, "files": files})
         records += found.records
         left_out += found.left_out
     with located("process"):
@@ -149,18 +152,21 @@ def stations_of(steps: Sequence[str]) -> str | None:
     return next((str(keys["stations"]) for _, keys in steps_of(steps) if "stations" in keys), None)
 
 
-def _note(name: str, inputs: InputFiles) -> None:
-    """Note the hash of every file that a name stands for."""
+def _note(name: str, inputs: InputFiles) -> list[Path]:
+    """Note the hash of every file that a name stands for; return the paths of its record files."""
     path = inputs.folder / name
-    if path.is_dir():
+    rows = rows_of_list(path)
+    if rows is not None:
+        inputs.file(name)
+        names = [(Path(name).parent / file).as_posix() for row in rows for file in row.files.values()]
+    elif path.is_dir():
         names = [(Path(name) / each.relative_to(path)).as_posix() for each in paths_of(path)]
-    elif (rows := rows_of_list(path)) is not None:
-        files = [Path(name).parent / file for row in rows for file in row.files.values()]
-        names = [name, *(each.as_posix() for each in files if (inputs.folder / each).is_file())]
     else:
         names = inputs.named(name)
     for each in names:
-        inputs.file(each)
+        if rows is None or (inputs.folder / each).is_file():
+            inputs.file(each)
+    return [inputs.folder / each for each in names]
 
 
 def _scaled(part: Any, factor: float) -> Any:

@@ -20,6 +20,7 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (document.ResponseTable, "`rocking simulate`"),
     "motion": (document.ComponentsTable, "`rocking simulate`, `rocking motion`"),
     "[motions]": (document.MotionTable, "every study"),
+    'motions.files."NAME"': (document.FileKeys, "every study"),
     "restitution": (document.RestitutionTable, "every question"),
     "restitution.distribution": (document.RandomTable, "every question but [inventory]"),
     "settings": (document.StudySettingsTable, "every question"),

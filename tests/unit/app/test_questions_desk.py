@@ -469,3 +469,25 @@ def test_a_question_about_a_record_is_quick(desk):
     tables = {"motion": {"record": "hall.txt", "process": ["mean", "taper"]}}
     assert ended(desk, desk.ask("convert", tables, {"hall.txt": sha}).id).state == "done"
     assert time.monotonic() - begun < allowed(1.5)
+
+
+def test_records_of_mixed_units(desk):
+    """The options of single files go from the question to its records; a name that is none of them is refused."""
+    wave = np.cos(0.2 * np.arange(200)) * 0.99 ** np.arange(200)
+    sent = {name: desk.store.add("\n".join(f"{peak * value:.8f}" for value in wave).encode(), name).record
+            for name, peak in (("a.txt", 0.3), ("b.txt", 300.0))}  # fmt: skip
+    files = {f"records/{name}": sha for name, sha in sent.items()}
+    table = {"records": ["records"], "time_step": 0.01, "units": "cm/s2"}
+
+    def asked(options):
+        return ended(desk, desk.ask("motions", {"motions": [{**table, "files": options}]}, files).id)
+
+    found = asked({"a.txt": {"units": "g"}})
+    assert found.state == "done", found.message
+    peaks = [row["pga_x"] for row in json.loads(desk.answer(found.id))["records"]]
+    assert peaks == pytest.approx([0.3 * 9.80665, 3.0], rel=1e-6)
+    assert '[motions.files."a.txt"]' in desk.tables(found.id)
+    refused = asked({"c.txt": {"units": "g"}})
+    assert (refused.state, "files: 'c.txt' is no file of this set" in refused.message) == ("refused", True)
+    refused = asked({"a.txt": {"time_step": -1.0}})
+    assert refused.message.startswith("motions[0].files.a.txt.time_step must be a number > 0, got -1")

@@ -252,3 +252,61 @@ def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
     code, out, err = run(command, *BLOCK, "--restitution", "0.9", *quick, folder)
     assert (code, out) == (2, "")
     assert "every record is zero throughout" in err
+
+
+@pytest.fixture
+def mixed(tmp_path, monkeypatch):
+    """Return a folder of two records without unit and step, 0.3 g and 300 cm/s2 at most, and one elsewhere, 3 m/s2."""
+    monkeypatch.chdir(tmp_path)
+    for name, peak in (("mixed/a.txt", 0.3), ("mixed/b.txt", 300.0), ("other/c.txt", 3.0)):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("\n".join(f"{peak * np.cos(0.2 * k) * 0.99**k:.8f}" for k in range(200)), "utf-8")
+    return tmp_path / "mixed"
+
+
+PEAKS = [0.3 * 9.80665, 3.0, 3.0]
+OPTIONS = 'motion.files={"a.txt" = {units = "g"}, "mixed/b.txt" = {units = "cm/s2", time_step = 0.02}}'
+
+
+@pytest.mark.filterwarnings("ignore:check the input")
+def test_options_of_single_files(run, mixed):
+    """One table serves a TOML file and `--set`: a folder, files of one folder, and files of several folders."""
+    question = mixed.parent / "question.toml"
+    question.write_text(
+        '[[motions]]\nrecords = ["mixed", "other/c.txt"]\nunits = "m/s2"\ntime_step = 0.01\n'
+        '[motions.files."a.txt"]\nunits = "g"\n[motions.files."b.txt"]\nunits = "cm/s2"\ntime_step = 0.02\n',
+        encoding="utf-8",
+    )
+    usual = ["--units", "m/s2", "--set", "motion.time_step=0.01", "--set", OPTIONS]
+    for words in (
+        ["motions", question, "--threads", 1],
+        ["motions", "mixed", "other/c.txt", "--threads", 1, *usual],
+        ["motions", "mixed/a.txt", "mixed/b.txt", "other/c.txt", "--threads", 1, *usual],
+    ):
+        code, out, err = run(*words, "--periods", "1", "--json")
+        assert code == 0, err
+        rows = json.loads(out)["records"]
+        assert [row["pga_x"] for row in rows] == pytest.approx(PEAKS, rel=1e-6)
+        assert [row["time_step"] for row in rows] == [0.01, 0.02, 0.01]
+    for word in ("mixed/b.txt", "other/c.txt"):  # files of one folder, and of two, which are read one by one
+        options = ["--units", "m/s2", "--set", "motion.time_step=0.01", "--set", 'motion.files={"a.txt"={units="g"}}']
+        code, out, _ = run("simulate", *BLOCK, "mixed/a.txt", word, *options, "--json")
+        assert code == 0
+        peaks = [row["peak_acceleration_m_s2"] for row in json.loads(out)["motions"]]
+        assert peaks[0] == pytest.approx(PEAKS[0], rel=1e-6)
+        assert peaks[1] == pytest.approx(300.0 if word == "mixed/b.txt" else 3.0, rel=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:check the input")
+def test_options_of_a_file_that_is_not_there(run, refuses, mixed):
+    """A name that is no file of the set, an unknown key, and a file that is left without a unit are named."""
+    usual = ["--set", "motion.time_step=0.01", "--set"]
+    for records in (["mixed"], ["mixed/a.txt", "mixed/b.txt"], ["mixed/a.txt", "other/c.txt"]):
+        words = ["motions", *records, *usual, 'motion.files={"d.txt"={units="g"}}']
+        refuses(words, "files: 'd.txt' is no file of this set")
+    refuses(["motions", "mixed", *usual, 'motion.files={"a.txt"={unit="g"}}'], "files.a.txt: unknown key 'unit'")
+    one = 'motion.files={"a.txt"={units="g"}}'
+    refuses(["motions", "mixed/a.txt", "mixed/b.txt", *usual, one], "b.txt: the file does not state its unit")
+    refuses(["simulate", *BLOCK, "mixed/a.txt", "other/c.txt", *usual, one], "c.txt: the file does not state its unit")
+    refuses(["fragility", *BLOCK, "--synthetic", "firm-ground", "--set", one], "synthetic takes no files")

@@ -164,3 +164,77 @@ def test_a_list_with_a_unit_for_each_file(tmp_path):
     path.write_text("motion,units,time_step\na.txt,g,quick\n", "utf-8")
     with pytest.raises(InvalidValueError, match="time_step of a row must be a number"):
         read_records(path)
+
+
+def _plain(path, factor, step_of_wave=0.2):
+    """Write accelerations without unit and time step: 0.3 times a factor at most."""
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("\n".join(f"{0.3 * factor * np.cos(step_of_wave * k):.8f}" for k in range(60)), "utf-8")
+
+
+def test_options_of_single_files(tmp_path):
+    """Unit, step, format and lines to skip of a file replace those of all, and stand in its provenance alone."""
+    _plain(tmp_path / "a.txt", 1.0)
+    _plain(tmp_path / "b.txt", 980.665)
+    _plain(tmp_path / "c.txt", 9.80665)
+    (tmp_path / "c.txt").write_text("17 rows\n18 rows\n" + (tmp_path / "c.txt").read_text("utf-8"), "utf-8")
+    with_words = {"units": "m/s2", "time_step": 0.02, "skip": 2, "format": "columns"}
+    options = {"a.txt": {"units": "g"}, "b.txt": {"units": "cm/s2"}, "c.txt": with_words}
+    found = read_records(tmp_path, time_step=0.01, files=options)
+    assert [part.x.peak for part in found] == pytest.approx([0.3 * 9.80665] * 3, rel=1e-7)
+    assert [part.x.time_step for part in found] == [0.01, 0.01, 0.02]
+    stated = "stated by the user: format columns, unit m/s2, time step 0.02 s, lines at the top passed over 2"
+    assert [stated in part.x.provenance for part in found] == [False, False, True]
+    assert "stated by the user: unit g, time step 0.01 s" in found[0].x.provenance
+    without = read_records(tmp_path, time_step=0.01, files={"c.txt": with_words})
+    assert [(name.rpartition("/")[2], "does not state its unit" in why) for name, why in without.left_out] == [
+        ("a.txt", True), ("b.txt", True),
+    ]  # fmt: skip
+
+
+def test_a_wrong_unit_of_a_file_is_seen(tmp_path):
+    """Negative control: another unit gives another peak, and one that the file contradicts leaves the file out."""
+    _plain(tmp_path / "a.txt", 1.0)
+    (tmp_path / "b.csv").write_text("time [s],x [cm/s2]\n0,0\n0.01,50\n0.02,-20\n0.03,5\n", "utf-8")
+    right, wrong = (read_records(tmp_path, time_step=0.01, files={"a.txt": {"units": unit}}) for unit in ("g", "gal"))
+    assert right[0].x.peak / wrong[0].x.peak == pytest.approx(980.665, rel=1e-9)
+    assert [len(right), len(wrong)] == [2, 2]
+    odd = read_records(tmp_path, units="g", time_step=0.01, files={"b.csv": {"units": "g"}})
+    assert (len(odd), "states the unit cm/s2, you say g" in odd.left_out[0][1]) == (1, True)
+
+
+def test_names_of_single_files(tmp_path):
+    """A name is that of one file, with folders where two files share it; keys and values are those that exist."""
+    for name in ("north/a.txt", "south/a.txt", "south/b.txt"):
+        _plain(tmp_path / name, 1.0)
+    how = {"units": "m/s2", "time_step": 0.01}
+    found = read_records(tmp_path, **how, files={"south/a.txt": {"units": "g"}})
+    assert [round(part.x.peak, 9) for part in found] == [0.3, round(0.3 * 9.80665, 9), 0.3]
+    for files, words in {
+        "d.txt": ({"units": "g"}, r"files: 'd\.txt' is no file of this set"),
+        "east/b.txt": ({"units": "g"}, r"files: 'east/b\.txt' is no file of this set; did you mean 'b\.txt'"),
+        "a.txt": ({"units": "g"}, "must name one file of this set, got .*north/a.txt, .*south/a.txt"),
+        "b.txt": ({"unit": "g"}, "b.txt: key must be one of units, time_step, format, skip, got 'unit'"),
+        "south/b.txt": ({"units": "gg"}, "b.txt: units must be one of"),
+        "south/a.txt": ({"time_step": 0.0}, "a.txt: time_step must be > 0"),
+        "north/a.txt": ({"skip": -1}, "a.txt: skip must be a whole number"),
+    }.items():  # fmt: skip
+        with pytest.raises(InvalidValueError, match=words[1]):
+            read_records(tmp_path, **how, files={files: words[0]})
+    with pytest.raises(InvalidValueError, match=r"b\.txt has two entries"):
+        read_records(tmp_path, **how, files={"b.txt": {"units": "g"}, "south/b.txt": {"units": "g"}})
+
+
+def test_single_files_of_a_list(tmp_path):
+    """A file of a list takes what its row leaves open; a key in both places is refused."""
+    for name in ("a.txt", "b.txt"):
+        _plain(tmp_path / name, 1.0)
+    path = tmp_path / "list.csv"
+    path.write_text("x,y,units\na.txt,b.txt,\n", "utf-8")
+    (record,) = read_records(path, time_step=0.01, files={"a.txt": {"units": "g"}, "b.txt": {"units": "m/s2"}})
+    assert record.x.peak / record.y.peak == pytest.approx(9.80665, rel=1e-9)
+    path.write_text("motion,units\na.txt,g\n", "utf-8")
+    with pytest.raises(InvalidValueError, match=r"list\.csv: a\.txt has units in its row and in files: remove one"):
+        read_records(path, time_step=0.01, files={"a.txt": {"units": "g"}})
+    with pytest.raises(InvalidValueError, match=r"'b\.txt' is no file of this set"):
+        read_records(path, time_step=0.01, files={"b.txt": {"units": "g"}})

@@ -155,6 +155,10 @@ def _refuse_files(tables: dict[str, Any]) -> None:
 
 def _refuse_record_files(table: dict[str, Any]) -> None:
     """Refuse whatever of a motion may name a file; keys that no motion has are refused later on, in other words."""
+    if table.get("files") is not None:
+        raise InvalidValueError(
+            "motions.files is for files by name; write one table of motions per unit, with the hashes of its records"
+        )
     for key in sorted(MotionTable.model_fields.keys() & table.keys() - MOTION_KEYS - {"records"}):
         raise InvalidValueError(
             f"motions.{key} names a file, which a page cannot do; upload one that has both components"

@@ -24,6 +24,7 @@ from rocking.motions.formats.directions import (
     orientation,
     settled,
 )
+from rocking.motions.formats.file_options import FileOptions, Options, by_path, together
 from rocking.motions.formats.reader import delay, motions_in
 from rocking.motions.formats.stations import Places, is_station_file
 from rocking.motions.motion import GroundMotion
@@ -120,12 +121,13 @@ def turned_round(motion: Any) -> Any:
     return motion.changed("turned round", acceleration=-motion.acceleration, name=f"{motion.name}, turned round")
 
 
-def read_records(
+def read_records(  # noqa: PLR0913 - every one of them is a property of some sets
     where: str | PathLike[str] | Sequence[str | PathLike[str]],
     format: str | None = None,
     units: str | None = None,
     time_step: float | None = None,
     *,
+    files: FileOptions | None = None,
     stations: Places | None = None,
     skip: int = 0,
     workers: int = 1,
@@ -149,6 +151,9 @@ def read_records(
         Of several, the files are put together as those of one folder are; one that is named twice is read once.
     format, units, time_step : optional
         As in `read_motion`, for all files.
+    files : mapping of path-like to mapping, optional
+        Options of single files by file name, in place of those for all files: ``units``, ``time_step`` [s], ``format``
+        and ``skip``, such as ``{"a.txt": {"units": "g"}}``. A name may include folders, to name exactly one file.
     stations : path-like or sequence of path-like, optional
         StationXML files, or folders of them, by which the counts of miniSEED files become accelerations: by network,
         station, location, channel and date. Those among the files of `where` are used without being named.
@@ -168,6 +173,8 @@ def read_records(
     ------
     RecordError
         If there is no such file, or none could be read.
+    InvalidValueError
+        If `files` names no file of the set, has an unknown key or value, or repeats a key of the file's row in a list.
 
     Examples
     --------
@@ -190,9 +197,12 @@ def read_records(
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
     paths = [one for one in paths if one not in beside]
+    in_lists = [file for path, rows in lists for row in rows for file in row.paths(path.parent).values()]
+    own = by_path(files, [*paths, *in_lists])
+    items = [(path, tuple(sorted(own.get(path, {}).items()))) for path in paths]
     for found in (
-        *(_of_list(path, rows, partial(_read_item, **read.keywords), workers, progress) for path, rows in lists),
-        paired(zip(paths, mapped(read, paths, workers, progress), strict=True)),
+        *(_of_list(path, rows, own, read, workers, progress) for path, rows in lists),
+        paired(zip(paths, mapped(read, items, workers, progress), strict=True)),
     ):
         records += found.records
         left_out += found.left_out
@@ -206,14 +216,21 @@ def read_records(
 def _of_list(
     path: Path,
     rows: Sequence["ListedRecord"],
+    own: Mapping[Path, Mapping[str, Any]],
     read: Callable[["Item"], "Read"],
     workers: int,
     progress: Callable[[int], None] | None,
 ) -> RecordSet:
-    """Return the records that the rows of a list name, whose files are beside it."""
-    items = list(dict.fromkeys(item for row in rows for item in row.items(path.parent).values()))
-    files = dict(zip(items, mapped(read, items, workers, progress), strict=True))
-    return _listed(rows, files, path.parent)
+    """Return the records that the rows of a list name, whose files are beside it; own: options stated for files."""
+    items: list[dict[str, Item]] = [
+        {axis: (file, together(file, row.how, own.get(file, {}), path.name)) for axis, file in paths.items()}
+        for row in rows
+        for paths in [row.paths(path.parent)]
+    ]
+    distinct = list(dict.fromkeys(item for by_axis in items for item in by_axis.values()))
+    reads = dict(zip(distinct, mapped(read, distinct, workers, progress), strict=True))
+    read_by_axis = [{axis: reads[item] for axis, item in by_axis.items()} for by_axis in items]
+    return _listed(zip(rows, read_by_axis, strict=True))
 
 
 def paths_of(where: str | PathLike[str]) -> list[Path]:
@@ -261,21 +278,16 @@ def mapped(
 Read = tuple[list[GroundMotion] | str, list[str]]  # the components or why there are none, and doubts
 
 
-def _read(path: Path, **options: Any) -> Read:
-    """Read one file, in whatever process: what it is doubted for is handed back."""
+def _read(item: "Item", **options: Any) -> Read:
+    """Read one file with its own options, in whatever process: what it is doubted for is handed back."""
+    path, own = item
     with warnings.catch_warnings(record=True) as doubts:
         warnings.simplefilter("always")
         try:
-            found: list[GroundMotion] | str = motions_in(path, **options)
+            found: list[GroundMotion] | str = motions_in(path, **{**options, **dict(own)})
         except RockingError as error:
             found = str(error).removeprefix(f"{path.name}: ")
     return found, [str(each.message) for each in doubts]
-
-
-def _read_item(item: "Item", **options: Any) -> Read:
-    """Read one file of a list, as its row says."""
-    path, how = item
-    return _read(path, **{**options, **dict(how)})
 
 
 def _motions(path: Path, read: Read, left_out: list[tuple[str, str]], doubted: list[str]) -> list[GroundMotion]:
@@ -476,12 +488,12 @@ class ListedRecord:
     metadata: Mapping[str, str]
     how: Mapping[str, Any] = field(default_factory=dict)  # how its files are read: units, time_step, format, skip
 
-    def items(self, folder: Path) -> dict[str, "Item"]:
-        """Return its files with how they are read, by axis."""
-        return {axis: (folder / name, tuple(sorted(self.how.items()))) for axis, name in self.files.items()}
+    def paths(self, folder: Path) -> dict[str, Path]:
+        """Return the paths of its files by axis."""
+        return {axis: folder / name for axis, name in self.files.items()}
 
 
-Item = tuple[Path, tuple[tuple[str, Any], ...]]
+Item = tuple[Path, Options]
 
 
 def rows_of_list(path: Path) -> list[ListedRecord] | None:
@@ -549,13 +561,12 @@ def _is_number(text: str) -> bool:
         return False
 
 
-def _listed(rows: Sequence[ListedRecord], files: Mapping[Item, Read], folder: Path) -> RecordSet:
+def _listed(rows: Iterable[tuple[ListedRecord, Mapping[str, Read]]]) -> RecordSet:
     records: list[Components] = []
     left_out: list[tuple[str, str]] = []
     doubted: list[str] = []
-    for row in rows:
-        items = row.items(folder)
-        parts = {axis: _motions(Path(name), files[items[axis]], left_out, doubted) for axis, name in row.files.items()}
+    for row, reads in rows:
+        parts = {axis: _motions(Path(name), reads[axis], left_out, doubted) for axis, name in row.files.items()}
         motions = [each for found in parts.values() for each in found]
         if not all(parts.values()):
             continue

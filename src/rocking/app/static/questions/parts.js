@@ -86,6 +86,8 @@ const WAYS = [
   [/ See [\w-]+\.\w+\.$/, ""],
   [/\btry (?:--set identify\.)?trend=true/i, "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d"],
   [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?(?:time_)?unit=/, "say it under \u201cUnit\u201d"],
+  [/; say (?:(?:--units|units=) one of [^;]*|(?:--set motion\.)?(?:time_step= in seconds|format= one of these))$/,
+    ": state it under \u201cWhat the file does not say\u201d"],
   [/; least_barrier= takes such poses together/, ""],
 ];
 
@@ -165,9 +167,12 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
+const OF_ONE_FILE = /^motions\[\d+\]\.files\.(.+\.\w+) must /; // the field is that of a key of one file
+
 /** A refusal of the server as fields know it: the key that it names, and its words. @param {string} message */
 export const refusedOf = (message) => ({
-  key: /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message)?.[1].toLowerCase(), words: sentence(ofThePage(message)),
+  key: (OF_ONE_FILE.exec(message) ?? /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message))?.[1].toLowerCase(),
+  words: sentence(ofThePage(message)),
 });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders

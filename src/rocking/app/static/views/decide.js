@@ -6,13 +6,14 @@ import { modelWords } from "/app/palette.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
 import { Choice, Field, KeyField, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
+import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
 import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
   ["soft-ground", "20 synthetic motions, soft ground"],
 ];
-const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", what: "assess" };
+const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", what: "assess", by_file: {} };
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -36,7 +37,7 @@ const Decide = ({ app, questions }) => {
       return;
     }
     const inputs = app.inputs.get();
-    const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value });
+    const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value, own: optionsOf(form.value.by_file, files.value, app) });
     const factor = Number(margin.value.replace(",", "."));
     const predicts = what.value === "predict";
     const faulty = app.faults.sentence({ inputs: true }) || asked.missing
@@ -68,7 +69,9 @@ const Decide = ({ app, questions }) => {
       ${shaken.value === "records" && html`
         <${FileDrop} label="Drop records here, or" many accept=${recordEndings(app)} files=${files} questions=${questions} app=${app}
           help="Several records at once; each is computed as it is." />
-        <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />`}
+        <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />
+        ${files.value.length > 1 && html`<${FileOptions} app=${app} form=${form} names=${files.value.map((/** @type {SentFile} */ { name }) => name)}
+          reasons=${reasonsOf(questions.shown.value, files.value)} />`}`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)
         && html`<${Field} label="Peak acceleration" name="pga" unit="g" value=${pga} inputmode="decimal" />`}
       ${what.value === "predict" ? html`
@@ -83,10 +86,10 @@ const Decide = ({ app, questions }) => {
 };
 
 /** What shakes the body as a job has it, the files that it needs, and what is missing.
- * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string }} said @returns {Shaking} */
-const motions = (inputs, shaken, files, { units, pga }) => {
+ * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string, own: object }} said @returns {Shaking} */
+const motions = (inputs, shaken, files, { units, pga, own }) => {
   if (shaken === "records") {
-    const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}) };
+    const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}), ...own };
     const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
     return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", words: "No record was sent yet." } };
   }

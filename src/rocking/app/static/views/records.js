@@ -7,10 +7,11 @@ import { number, parseNumber } from "/app/format.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
-import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
+import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
+import { Drawing, FileDrop, QuestionView, filled, ofThePage, recordEndings, useForm } from "/questions/parts.js";
 
 const G = 9.80665;
-const FIRST = { files: [], curve: [], steps: [], motion: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
+const FIRST = { files: [], curve: [], steps: [], motion: {}, by_file: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -31,6 +32,7 @@ const Records = ({ app, questions }) => {
   const shown = shownOf(form.value, records);
   const lists = records.filter((one) => /\.csv$/i.test(one.name));
   const single = shown !== "all" && shown !== "target";
+  const reasons = reasonsOf(questions.shown.value, records);
   /** @type {{ [key: string]: string[] | undefined }} */
   const choices = { units: app.info.units.acceleration, format: app.info.formats.map(({ name }) => name) };
   /** @param {string} name */
@@ -60,8 +62,11 @@ const Records = ({ app, questions }) => {
       ${!single && lists.length > 0 && records.length > 1 && html`<${Choice} label="List of records" value=${form.at("list")}
         help="A CSV with the columns motion, or x, y and z, and if needed units and time_step of each row; the files that it names are sent with it."
         options=${[["", "none: every file is a record"], ...lists.map(({ name }) => [name, name])]} />`}
-      <details open=${Object.values(form.value.motion).some(Boolean)}><summary>What the file does not say</summary>
-        <div class="fields">${["units", "time_step", "format", ...(single ? ["component"] : [])].map(key)}</div>
+      <details open=${Object.values(form.value.motion).some(Boolean) || Object.keys({ ...form.value.by_file, ...reasons }).length > 0}>
+        <summary>What the file does not say</summary>
+        <div class="fields">${["units", "time_step", "format", "skip", ...(single ? ["component"] : [])].map(key)}</div>
+        ${records.length > 1 && html`<${FileOptions} app=${app} form=${form} reasons=${reasons}
+          names=${records.map(({ name }) => name).filter((name) => name !== form.value.list)} />`}
       </details>
       <${Chain} app=${app} form=${form} stations=${files.filter(isStations)} faulty=${faultyOf(questions, form.value)} />
       ${shown === "target" && html`<${Target} app=${app} form=${form} questions=${questions} />`}
@@ -177,14 +182,14 @@ const Target = ({ app, form, questions }) => {
 const shas = (files, folder = "") => Object.fromEntries(files.map((one) => [`${folder}${one.name}`, one.sha]));
 
 /** @param {any} form @param {App} app @param {SentFile} record */
-const oneOf = ({ files, steps, motion }, app, record) => ({
-  tables: { motion: { record: record.name, ...filled(motion, app.info.keys.motion), ...processOf(steps) } },
+const oneOf = ({ files, steps, motion, by_file: byFile }, app, record) => ({
+  tables: { motion: { record: record.name, ...filled({ ...motion, ...byFile[record.name] }, app.info.keys.motion), ...processOf(steps) } },
   files: shas([record, ...files.filter(isStations)]),
   name: `${record.name}, before and after`,
 });
 
 /** @param {any} form @param {App} app @param {string} shown */
-const setOf = ({ files, curve, steps, motion, set, of, code, list }, app, shown) => {
+const setOf = ({ files, curve, steps, motion, by_file: byFile, set, of, code, list }, app, shown) => {
   const records = files.filter((/** @type {SentFile} */ one) => !isStations(one));
   const { component, ...keys } = motion;
   const { mirrored, ...chosen } = filled(set, app.info.keys.motions);
@@ -193,7 +198,8 @@ const setOf = ({ files, curve, steps, motion, set, of, code, list }, app, shown)
   const wanted = shown === "target" ? { target: code === "file" ? curve[0].name : spectrum, ...chosen } : {};
   const named = records.some((/** @type {SentFile} */ { name }) => name === list) ? `records/${list}` : "records";
   return {
-    tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
+    tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...optionsOf(byFile, records, app),
+      ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
     files: { ...shas(records, "records/"), ...shas(files.filter(isStations)), ...shas(shown === "target" && code === "file" ? curve : []) },
     name: `${records.length} records${shown === "target" ? ` for ${wanted.target}` : ""}`,
   };
@@ -264,5 +270,5 @@ const Chosen = ({ answer, question }) => {
     ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
       rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
-      rows=${left.map((/** @type {any} */ { file, why }) => [file, why])} />`}`;
+      rows=${left.map((/** @type {any} */ { file, why }) => [file, ofThePage(why)])} />`}`;
 };

@@ -1,0 +1,59 @@
+/** Options of single record files of a set: unit, time step, format, lines to skip, in place of those for all files. */
+
+import { html } from "/parts/preact.js";
+import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
+import { filled } from "/questions/parts.js";
+
+const KEYS = ["units", "time_step", "format", "skip"];
+const MOST_REASONS = 12; // files that get their fields without being chosen
+
+/** The options of the files that were sent, as a table of a job has them; nothing where no file has any.
+ * @param {FileTexts} byFile @param {SentFile[]} records @param {App} app */
+export const optionsOf = (byFile, records, app) => {
+  const files = Object.fromEntries(records.map(({ name }) => [name, filled(byFile[name] ?? {}, app.info.keys.motion)])
+    .filter(([, options]) => Object.keys(options).length));
+  return Object.keys(files).length ? { files } : {};
+};
+
+/** Why files were not read, by their names: files that the result leaves out, or that the refusal names.
+ * @param {Server.WholeQuestion | null} question @param {SentFile[]} records @returns {{ [name: string]: string }} */
+export const reasonsOf = (question, records) => {
+  /** @type {{ file: string, why: string }[]} */
+  const leftOut = question?.answer?.left_out ?? [];
+  const message = question?.state === "refused" ? question.message : "";
+  /** @param {string} name */
+  const reasonOf = (name) => leftOut.find(({ file }) => file.split("/").at(-1) === name)?.why
+    ?? (message.split(/[\s/]/).includes(`${name}:`) ? message.slice(message.indexOf(`${name}: `) + name.length + 2) : "");
+  return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, why]) => why).slice(0, MOST_REASONS));
+};
+
+/** Fields of the files that have options of their own or were not read; `reasons` are why they were not.
+ * @param {{ app: App, form: Form, names: string[], reasons: { [name: string]: string } }} props */
+export const FileOptions = ({ app, form, names, reasons }) => {
+  /** @type {FileTexts} */
+  const byFile = form.value.by_file;
+  const [shown, others] = [true, false].map((are) => names.filter((name) => (name in byFile || name in reasons) === are));
+  const added = {
+    get value() { return ""; },
+    set value(name) { if (name) form.at("by_file").value = { ...byFile, [name]: {} }; },
+  };
+  /** @type {{ [key: string]: string[] | undefined }} */
+  const choices = { units: app.info.units.acceleration, format: app.info.formats.map(({ name }) => name) };
+  /** @param {string} file @param {string} key */
+  const field = (file, key) => html`<${KeyField} key=${key} name=${`${file}.${key}`.toLowerCase()} label=${key.replace("_", " ")} help=""
+    value=${form.at("by_file", file, key)} facts=${{ ...app.info.keys.motion[key], choices: choices[key] ?? [] }} />`;
+  /** @param {string} file */
+  const without = (file) => Object.fromEntries(Object.entries(byFile).filter(([name]) => name !== file));
+  return html`
+    <div class="chain" role="group" aria-label="Options of single files">
+      ${shown.length > 0 && html`<ul>${shown.map((name) => html`<li key=${name} aria-label=${name}>
+        <div class="toolbar"><strong translate=${false}>${name}</strong>
+          ${name in byFile && html`<${Button} kind="quiet" aria-label=${`Remove the options of ${name}`}
+            onClick=${() => (form.at("by_file").value = without(name))}>remove<//>`}</div>
+        ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name].split("; say ")[0])} />`}
+        <div class="fields">${KEYS.map((key) => field(name, key))}</div></li>`)}</ul>`}
+      ${others.length > 0 && html`<${Choice} label="Add a file with other options" value=${added}
+        help="Its unit, time step, format and lines to skip replace those of all files."
+        options=${[["", "\u2013"], ...others.map((name) => [name, name])]} />`}
+    </div>`;
+};
