@@ -80,11 +80,13 @@ def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
         JobDocument.of(map_job(motions=[{"records": [SHA], "vertical_file": file}]))
     with pytest.raises(InvalidValueError, match=r"motions\.x names a file, which a page cannot do"):
         JobDocument.of(map_job(motions=[{"x": {"record": file}, "y": {"record": file}}]))
+    with pytest.raises(InvalidValueError, match=r"motions\.files is for files by name; write one table of motions per"):
+        JobDocument.of(map_job(motions=[{"records": [SHA], "files": {SHA: {"units": "g"}}}]))
 
 
 def test_only_keys_that_are_known_to_name_no_file_are_taken(map_job, monkeypatch):
     """The keys of motions are a list of what is allowed: one that is not on it, perhaps a new one, is refused."""
-    refused = {"records", "vertical_file", "x", "y", "z", "process", "target", "mirrored", "periods"}
+    refused = {"records", "files", "vertical_file", "x", "y", "z", "process", "target", "mirrored", "periods"}
     assert MotionTable.model_fields.keys() - MOTION_KEYS == refused
     motion = {"synthetic": "pulse-like", "count": 2, "pga": 4.0}
     JobDocument.of(map_job(motions=motion))
