@@ -200,7 +200,7 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
     """Files of mixed units are one set: the page offers unit, step, format and skip at each file that was not read."""
     page, section, options = mixed_set(open_page, tmp_path / "mixed")
     asked(section, "refused")
-    expect(section.get_by_role("alert")).to_contain_text("a.txt: the file does not state its unit: state it under")
+    expect(section.get_by_role("alert")).to_contain_text("a.txt: the file does not state its unit: state it in")
     first, second, third = (options.get_by_role("listitem", name=f"{name}.txt") for name in "abc")
     expect(first).to_contain_text("The file does not state its unit.")
     expect(options.get_by_role("listitem")).to_have_count(1)
@@ -210,7 +210,7 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
     assert peaks(rows) == [["a", "0.3"]]
     left_out = outcome.get_by_role("table", name="Files that were left out")
     expect(left_out.locator("tbody tr")).to_have_count(2)
-    expect(left_out).to_contain_text("unit: state it under")
+    expect(left_out).to_contain_text("unit: state it in the form")
     expect(options.get_by_role("listitem")).to_have_count(3)
 
     second.get_by_label("units").select_option("cm/s2")

@@ -87,7 +87,7 @@ const WAYS = [
   [/\btry (?:--set identify\.)?trend=true/i, "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d"],
   [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?(?:time_)?unit=/, "say it under \u201cUnit\u201d"],
   [/; say (?:(?:--units|units=) one of [^;]*|(?:--set motion\.)?(?:time_step= in seconds|format= one of these))$/,
-    ": state it under \u201cWhat the file does not say\u201d"],
+    ": state it in the form"],
   [/; least_barrier= takes such poses together/, ""],
 ];
 
