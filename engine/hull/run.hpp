@@ -50,7 +50,8 @@ class Run {
         : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction), trace_(trace) {
         pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
         slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
-        weak_ = set_.rest_speed * set_.rest_speed * b_.mass * g_.gravity * b_.size;
+        rest_ = greater(set_.rest_speed * set_.rest_speed, kClosed);  // gaps below that are none, nor is the energy that lifts the body by less
+        weak_ = rest_ * b_.mass * g_.gravity * b_.size;
         stop_ = greater(kSlip, std::sqrt(set_.tolerance)) * speed_, slides_at_ = greater(kSlides, 2.0 * std::sqrt(set_.tolerance)) * speed_;
         length_ = span_ = 0.1 / pace_;
     }
@@ -252,7 +253,11 @@ class Run {
         start_ = s_, span_ = whole;
         flow_.step(start_, field_, span_, part_ = 1.0, pace_);
         const double error = flow_.error;
-        if (!std::isfinite(error)) return end_with(kNotFinite);
+        if (!std::isfinite(error)) {  // so much force that the first stage leaves all bounds: a shorter step stays within them
+            if (!(whole * pace_ > 1e-10)) return end_with(kNotFinite);
+            length_ = 0.1 * whole;
+            return;
+        }
         for (const Forces& f : flow_.forces)
             if (!f.found) {
                 if (whole * pace_ > 1e-9) {
@@ -1023,7 +1028,7 @@ class Run {
     // Lays a body flat that hardly moves above a facet, if the ground holds it there.
     void calm() {
         Points near;
-        touch(near, 10.0 * set_.rest_speed * set_.rest_speed);
+        touch(near, 10.0 * rest_);
         if (mode_.resting() || near.size() < 3 || ended_ != kGood) return;
         const State state = s_;
         const Vec anchor = anchor_;
@@ -1035,7 +1040,8 @@ class Run {
         held.contact = {members, members};
         held.directions.assign(members.size(), Vec{});
         if (!solve(p, held) || !(*std::min_element(held.normals.begin(), held.normals.end()) > 0.0)) return;
-        for (int sticks = 1; sticks >= (mu_ < kInfinite ? 0 : 1); --sticks) {
+        const bool slides = std::any_of(near.begin(), near.end(), [&](int i) { return slip(i) > stop_; });
+        for (int sticks = 1; sticks >= (slides ? 0 : 1); --sticks) {
             if (sticks) anchor_ = s_.place + p.axes * b_.points[members[0]];
             settle_on({members, sticks ? members : Points{}}, {});
             if (before - energy() <= weak_) {
@@ -1053,7 +1059,7 @@ class Run {
     const double mu_;
     const Settings& set_;
     Flow flow_;
-    double pace_, speed_, slow_, stop_, slides_at_, slack_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
+    double pace_, speed_, slow_, stop_, slides_at_, slack_, rest_, weak_, length_, span_, until_ = 0.0, time_ = 0.0, part_ = -1.0;
     std::int64_t stretch_ = 0, smooth_ = 0;
     State s_, start_;
     Mode mode_;

@@ -67,7 +67,7 @@ class Settings:
         the body could rise again. With contact: of a bounce or a rocking motion after an impact, over sqrt(g R)
         (1e-7); its energy is booked as lost in that impact. In space: of a vertex that leaves the ground and would
         fall back at once, over sqrt(g R) (1e-5); its square is the energy, over that of overturning, at which a body
-        comes to rest.
+        comes to rest. In space with friction that energy is at least 1e-11 m g R, since smaller gaps count as closed.
     most_events : int
         A history with more impacts and changes of contact is stopped, with a status that says so.
     longest_step : float, optional

@@ -89,7 +89,9 @@ class HullEngine:
         self.slow = self.settings.rest_speed * self.speed
         stop = stops_at(self.settings.tolerance)
         self.stop, self.slides = stop * self.speed, max(_SLIDES, 2.0 * stop) * self.speed
-        self.weak = self.settings.rest_speed**2 * body.mass * ground.gravity * body.size
+        # gaps below CLOSED are none, nor is the energy that lifts the body by less
+        self.rest = max(self.settings.rest_speed**2, CLOSED)
+        self.weak = self.rest * body.mass * ground.gravity * body.size
         self.time, self.stretch = 0.0, 0
         self.length = 0.1 / self.pace  # of the next step
         self.mode = self._mode(FLIGHT, {})
@@ -272,7 +274,11 @@ class HullEngine:
 
         result = to(1.0)
         if not math.isfinite(result.error):
-            self.ended = Status.NOT_FINITE
+            # so much force that the first stage leaves all bounds: a shorter step stays within them
+            if whole * self.pace > 1e-10:
+                self.length = 0.1 * whole
+            else:
+                self.ended = Status.NOT_FINITE
             return
         if any(rates.found is None for _, _, rates in result.samples):
             if whole * self.pace > 1e-9:
@@ -609,7 +615,7 @@ class HullEngine:
 
     def _calm(self) -> None:
         """Lay a body flat that hardly moves above a facet, if the ground holds it there."""
-        near = self._touching(10.0 * self.settings.rest_speed**2)
+        near = self._touching(10.0 * self.rest)
         if self._resting or len(near) < 3 or self.ended is not None:
             return
         state, lost, anchors = self.state, self.history.lost, self.anchors
@@ -619,7 +625,8 @@ class HullEngine:
         held = contacts.solve(problem, HullContact(members, members), {}) if len(members) > 2 else None
         if held is None or not min(held.normals.values()) > 0.0:
             return
-        for stuck in (members, ()) if self.friction < math.inf else (members,):
+        slides = any(self._slip(i) > self.stop for i in near)
+        for stuck in (members, ()) if slides else (members,):
             self.anchors = {i: added(state.place, 1.0, applied(problem.axes, self.body.points[i])) for i in stuck}
             self._settle_on(HullContact(members, stuck))
             if before - sum(energies(self.body, self.state, self.ground.weight)) <= self.weak:
