@@ -60,8 +60,8 @@ def test_both_engines_let_a_prism_rest(drop):
     """A prism that does not slide comes to rest in both engines, with the same impacts."""
     found = []
     for engine in ("fast", "reference") if histories.available() else ("reference",):
-        start, settings = SpatialStart(tilt=2e-5, height=drop), HullSettings(most_events=200)
-        batch = hull_histories(_prism(16), HullGround(), "housner-3d", 1e6, 1.0, start, settings=settings, engine=engine)
+        start, how = SpatialStart(tilt=2e-5, height=drop), HullSettings(most_events=200)
+        batch = hull_histories(_prism(16), HullGround(), "housner-3d", 1e6, 1.0, start, settings=how, engine=engine)
         found.append([batch[name].item() for name in ("status", "still_rocking", "impacts", "peak_tilt")])
     assert found[0][:2] == [list(Status).index(Status.GOOD), False]
     assert found[0][2] > 20

@@ -269,7 +269,7 @@ class ResponseInputs(Inputs):
 
     @model_validator(mode="after")
     def _moves(self) -> "ResponseInputs":
-        check_start(self.motion is not None, self.response.free)
+        check_start(self.motion is not None, self.response)
         return self
 
 

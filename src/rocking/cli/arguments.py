@@ -249,7 +249,7 @@ class Arguments:
     def body_table(self, file: str | None) -> Tables:
         values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}
         if values["centre"] is not None:
-            values["centre"] = _numbers("--centre", values["centre"])
+            values["centre"] = numbers_in("--centre", values["centre"])
         if file is not None:
             in_toml = Path(file).suffix.lower() == ".toml"
             stated = any(values[name] is not None for name in ("density", *_KNOWN))
@@ -323,7 +323,8 @@ class Arguments:
         return [table(group) for group in groups]
 
 
-def _numbers(name: str, text: str) -> list[float]:
+def numbers_in(name: str, text: str) -> list[float]:
+    """Return numbers with commas between; name: the option, for the refusal."""
     try:
         return [float(word) for word in text.split(",")]
     except ValueError as error:

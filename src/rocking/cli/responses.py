@@ -9,6 +9,7 @@ from rocking.bodies.body import assumed_rows
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, sentence
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
+from rocking.dynamics import SpatialStart
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.summary import MotionSummary
 from rocking.outcome import Outcome, Regime
@@ -49,6 +50,20 @@ def _moved(response: Any) -> str:
     if response.motion is None:
         return f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
     return f"{'' if response.scale == 1.0 else f'{response.scale:g} times '}{response.motion.name}"
+
+
+def _start_lines(problem: ResponseProblem, length: str) -> list[tuple[str, str]]:
+    """Return the initial height and velocity of a body that does not start at rest on the ground."""
+    velocity = ", ".join(f"{value:g}" for value in problem.start_velocity)
+    height = in_unit(problem.start_height, length, ".4g")
+    lines = [("start", f"lowest point {height} above the ground")] if problem.start_height else []
+    return [*lines, *([("start", f"lowest point at ({velocity}) m/s")] if any(problem.start_velocity) else [])]
+
+
+def _drop_facts(problem: ResponseProblem) -> dict[str, Any]:
+    """Return the initial height and velocity, of a body that does not start at rest on the ground."""
+    velocity = list(problem.start_velocity) or [0.0] * len(problem.axes)
+    return {"start_height_m": problem.start_height, "start_velocity_m_s": velocity} if problem.dropped else {}
 
 
 def _sources(*motions: Any) -> list[tuple[str, str]]:
@@ -220,6 +235,7 @@ class ContactAnswer:
             },
             "motion": moved_facts(response.motion, response.scale),
             "initial_rotation_rad": float(response.rotation[0]),
+            **_drop_facts(self.problem),
             "friction": law.friction,
             "friction_assumed": isinstance(law.friction, Assumed),
             "bounce": law.bounce,
@@ -268,6 +284,7 @@ class ContactAnswer:
             ("body", f"{type(body).__name__}, {body.mass:.4g} kg"),
             *assumed_rows(body),
             ("motion", _moved(self.response)),
+            *_start_lines(self.problem, self.length),
             *_sources(self.response.motion),
             ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}{of_law}"),
             ("restitution", imposed),
@@ -332,17 +349,24 @@ class SpaceAnswer:
         }
 
     def _start_facts(self) -> dict[str, Any]:
-        """Return the initial tilt of free rocking, and its direction; nothing under a motion."""
-        start = self.problem.start if self.problem.free is not None else None
-        return {} if start is None else {"initial_tilt_rad": start.tilt, "initial_azimuth_rad": start.azimuth}
+        """Return the initial tilt of free rocking, and its direction; of a body that drops, height and velocity."""
+        facts, start = _drop_facts(self.problem), self.problem.start
+        if self.problem.free is None or not isinstance(start, SpatialStart):
+            return facts
+        return {"initial_tilt_rad": start.tilt, "initial_azimuth_rad": start.azimuth, **facts}
 
     def _motion_lines(self) -> list[tuple[str, str]]:
         problem = self.problem
+        start = _start_lines(problem, self.length)
+        if problem.motion is not None:
+            names = zip(("x", "y", "vertical"), self.response.names, strict=True)
+            return [*((f"motion {axis}", name) for axis, name in names), *start]
         if problem.free is None:
-            return [(f"motion {a}", n) for a, n in zip(("x", "y", "vertical"), self.response.names, strict=True)]
+            return [("motion", "none"), *start]
         tilt, balance = math.degrees(abs(problem.rotation)), math.degrees(problem.balance_angle)
         way = "x" if problem.rotation >= 0.0 else "-x"
-        return [("motion", f"none; released at {tilt:.4g} deg towards {way}, where {balance:.4g} deg is the balance")]
+        words = f"none; released at {tilt:.4g} deg towards {way}, where {balance:.4g} deg is the balance"
+        return [("motion", words), *start]
 
     def _last_state(self) -> dict[str, Any] | None:
         response = self.response

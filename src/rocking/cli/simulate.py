@@ -11,7 +11,7 @@ import typer
 from rocking import plausibility
 from rocking.bodies import Body
 from rocking.cli import completion, options
-from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
+from rocking.cli.arguments import Arguments, document_file, numbers_in, parsed_sets, with_sets
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import g
@@ -85,6 +85,8 @@ def simulate(
     scale: options.Scale = 1.0,
     friction: Annotated[float | None, options.key(ResponseTable, "friction")] = None,
     bounce: Annotated[float | None, options.key(ResponseTable, "bounce")] = None,
+    start_height: Annotated[float | None, options.key(ResponseTable, "start_height")] = None,
+    start_velocity: Annotated[str | None, options.key(ResponseTable, "start_velocity")] = None,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
@@ -120,18 +122,29 @@ def simulate(
     deliver(answer, exports, as_json=as_json)
 
 
+_RESPONSE = ("friction", "bounce", "start_height", "start_velocity")
+
+
+def _response_options(arguments: Arguments, names: tuple[str, ...]) -> dict[str, Any]:
+    values = {name: arguments.options[name] for name in names}
+    if values["start_velocity"] is not None:
+        values["start_velocity"] = numbers_in("--start-velocity", values["start_velocity"])
+    return values
+
+
 def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
-    names = ("free", "friction", "bounce")
-    response = arguments.table("response", {name: arguments.options[name] for name in names})
+    response = arguments.table("response", _response_options(arguments, ("free", *_RESPONSE)))
     free = "free" in response
+    dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
         raise InvalidValueError(f"give a motion or --free, not both; got {motions[0][:100]!r}")
     stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
-    if free and stated:
-        raise InvalidValueError(f"--free has no motion, so it takes no {', '.join(stated)}")
-    if not free and not motions and not arguments.solid:
+    if stated and not motions and (free or dropped):
+        name = "--free" if free else "a drop"
+        raise InvalidValueError(f"{name} has no motion, so it takes no {', '.join(stated)}")
+    if not free and not dropped and not motions and not arguments.solid:
         raise InvalidValueError(
             "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
         )
@@ -142,7 +155,7 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
             "restitution": arguments.restitution(),
             "settings": arguments.sets.get("settings", {}),
         }
-        if not free:
+        if motions or not (free or dropped):
             motion = arguments.of_body(motions)
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
@@ -158,7 +171,7 @@ def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAns
         raise InvalidValueError(f"give a motion or --free, not both; got {words[0][:100]!r}")
     files = CommandFiles(Path())
     with arguments.hinted():
-        own = {name: arguments.options[name] for name in ("friction", "bounce")}
+        own = _response_options(arguments, _RESPONSE)
         tables = {
             "response": arguments.table("response", own), "restitution": arguments.restitution(),
             "settings": arguments.sets.get("settings", {}),

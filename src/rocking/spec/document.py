@@ -519,6 +519,12 @@ class ResponseTable(JobTable):
     friction: float | None = _key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
     bounce: float | None = _key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
     bounce_law: Literal["newton", "poisson", "stronge"] | None = _key(_BOUNCE_LAW)
+    start_height: float | None = _key(
+        "with friction: initial height of the lowest point, from which the body drops [m]", None, ge=0.0
+    )
+    start_velocity: list[float] | None = _key(
+        "with friction: initial velocity of the lowest point; x and up for a plane body, x, y and up for a solid [m/s]"
+    )
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,
@@ -531,9 +537,18 @@ class ResponseTable(JobTable):
             raise refused("pure rocking does not leave the ground: bounce goes with friction")
         if self.bounce_law is not None and self.friction is None:
             raise refused("pure rocking does not leave the ground: bounce_law goes with friction")
+        if self.friction is None and self.dropped:
+            raise refused(
+                "without friction a body neither slides nor flies: start_height, start_velocity need friction"
+            )
         if self.friction is not None and "assumed_friction" in self.model_fields_set:
             raise refused("give friction, which lets the body slide, or assumed_friction, not both")
         return self
+
+    @property
+    def dropped(self) -> bool:
+        """Whether the body starts above the ground, or in motion."""
+        return bool(self.start_height) or any(self.start_velocity or ())
 
 
 class ResponseTables(JobTable):
@@ -551,11 +566,11 @@ class ResponseTables(JobTable):
         return self
 
 
-def check_start(moved: bool, free: float | None) -> None:
-    """Refuse a document that has neither or both of a motion and a first rotation over the slenderness angle [-]."""
-    if moved and free is not None:
+def check_start(moved: bool, start: ResponseTable) -> None:
+    """Refuse a document in which nothing moves the body, and one with both a motion and an initial rotation."""
+    if moved and start.free is not None:
         raise refused("give a motion or response.free, not both")
-    if not moved and free is None:
+    if not moved and start.free is None and not start.dropped:
         raise refused("what moves the body? Give a motion, or response.free (such as 0.5) for free rocking")
 
 
@@ -567,7 +582,7 @@ class ResponseDocument(ResponseTables):
 
     @model_validator(mode="after")
     def _moves(self) -> "ResponseDocument":
-        check_start(self.motion is not None, self.response.free)
+        check_start(self.motion is not None, self.response)
         return self
 
 

@@ -9,7 +9,7 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
-from rocking.dynamics import SpatialBody, SpatialStart, free_rocking, simulate
+from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, simulate
 from rocking.dynamics._simulate import together
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
@@ -44,6 +44,8 @@ class ResponseProblem:
     bounce_law: str = "newton"  # what it is the ratio of
     assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
     free: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
+    start_height: float = 0.0  # of the lowest point above the ground, with friction [m]
+    start_velocity: tuple[float, ...] = ()  # of the lowest point: x and up in a plane, x, y and up in space [m/s]
     scale: float = 1.0  # factor on the motion [-]
 
     def __post_init__(self) -> None:
@@ -53,8 +55,17 @@ class ResponseProblem:
                 plausibility.warn(plausibility.of_friction(checks.positive("friction", getattr(self, name))))
         if self.free is not None:
             checks.number("free", self.free)
-        if (self.motion is None) != (self.free is not None):
-            raise InvalidValueError("give either a motion or a first rotation (free), got both or neither")
+        if self.motion is not None and self.free is not None:
+            raise InvalidValueError("give either a motion or a first rotation (free), got both")
+        if self.motion is None and self.free is None and not self.dropped:
+            raise InvalidValueError(
+                "give either a motion or a first rotation (free), or a drop (start_height, start_velocity), got none"
+            )
+        if self.start_velocity and len(self.start_velocity) != len(self.axes):
+            raise InvalidValueError(
+                f"start_velocity must be {len(self.axes)} numbers, {', '.join(self.axes)} [m/s], got "
+                f"{list(self.start_velocity)!r:.60}"
+            )
 
     @property
     def mechanics(self) -> str:
@@ -78,11 +89,24 @@ class ResponseProblem:
         return 0.0 if self.free is None else float(self.free * self.balance_angle)
 
     @property
-    def start(self) -> SpatialStart | None:
-        """Initial tilt of a body in space, towards x or, where `free` is below zero, the other way; None in a plane."""
+    def axes(self) -> tuple[str, ...]:
+        """Axes of the initial velocity: those of a plane body, or of one in space."""
+        return ("x", "up") if isinstance(self.body, Body) else ("x", "y", "up")
+
+    @property
+    def dropped(self) -> bool:
+        """Whether the body starts above the ground, or in motion."""
+        return bool(self.start_height) or any(self.start_velocity)
+
+    @property
+    def start(self) -> SpatialStart | Start:
+        """Initial position and velocity; in space the tilt is towards x, or -x where `free` is below zero."""
+        velocity = self.start_velocity or (0.0,) * len(self.axes)
         if isinstance(self.body, Body):
-            return None
-        return SpatialStart(abs(self.rotation), 0.0 if self.rotation >= 0.0 else math.pi)
+            x, up = velocity
+            return Start(self.rotation, horizontal_velocity=x, height=self.start_height, vertical_velocity=up)
+        way = 0.0 if self.rotation >= 0.0 else math.pi
+        return SpatialStart(abs(self.rotation), way, height=self.start_height, velocity=velocity)
 
     def answer(self, restitution: Any = ...) -> Any:
         """Return the response with one restitution, the first if none is given."""
@@ -94,9 +118,10 @@ class ResponseProblem:
             options |= {"friction": self.friction, "bounce": self.bounce, "bounce_law": self.bounce_law}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
+            if self.free is not None or self.dropped:
+                options["start"] = self.start
             if self.motion is None:
-                where = {"rotation": self.rotation} if self.start is None else {"start": self.start}
-                return free_rocking(self.body, restitution=law, **where, **options)
+                return free_rocking(self.body, restitution=law, **options)
             return simulate(self.body, self.motion, law, scale=self.scale, **options)
 
 
@@ -131,6 +156,8 @@ def problem_of(
         bounce_law=start.bounce_law or "newton",
         assumed_friction=start.assumed_friction,
         free=start.free,
+        start_height=start.start_height or 0.0,
+        start_velocity=tuple(start.start_velocity or ()),
         scale=scale if scale is not None else 1.0 if table is None else table.scale,
     )
 

@@ -274,11 +274,7 @@ class HullEngine:
 
         result = to(1.0)
         if not math.isfinite(result.error):
-            # so much force that the first stage leaves all bounds: a shorter step stays within them
-            if whole * self.pace > 1e-10:
-                self.length = 0.1 * whole
-            else:
-                self.ended = Status.NOT_FINITE
+            self._shorten(whole)
             return
         if any(rates.found is None for _, _, rates in result.samples):
             if whole * self.pace > 1e-9:
@@ -308,6 +304,12 @@ class HullEngine:
         self._settle_on(self.mode.contact)
         self._keep()
         self._end(kind)
+
+    def _shorten(self, whole: float) -> None:
+        """Take a tenth of a step whose first stages leave all bounds, as the forces of a large friction can."""
+        self.length = 0.1 * whole
+        if whole * self.pace <= 1e-10:
+            self.ended = Status.NOT_FINITE
 
     def _pace_on(self, whole: float, growth: float, *, cut: bool) -> None:
         """Set the length of the next step; cut: whether a sample of the motion has cut this one."""
