@@ -377,6 +377,7 @@ class SpaceAnswer:
             "time_s": response.end,
             "quaternion": last.quaternion[0].tolist(),
             "angular_velocity_rad_s": last.angular_velocity[0].tolist(),
+            "ends_early": response.ends_early,
             "sentence": response.unfinished,
         }
 

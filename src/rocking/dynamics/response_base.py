@@ -78,9 +78,14 @@ class ResponseBase(Exported):
         if not self.still_rocking:
             return ""
         doing, end, place = self._last_motion
-        why = "; no impact loses energy, so that it never comes to rest" if self._never_rests else ""
+        reason = f"; {self._end_reason}" if self._end_reason else ""
         ends = f"when the computation ends at {end:.4g} s, {place}; later impacts are not counted"
-        return f"it is still {doing} {ends}{why}"
+        return f"it is still {doing} {ends}{reason}"
+
+    @property
+    def _end_reason(self) -> str:
+        """Why the body does not come to rest within the response; empty if the duration alone ends it."""
+        return "no impact loses energy, so that it never comes to rest" if self._never_rests else ""
 
     @property
     def _never_rests(self) -> bool:

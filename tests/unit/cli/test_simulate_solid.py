@@ -217,3 +217,24 @@ def test_capitals_of_a_model_do_not_matter(run, answered, body):
     upper, lower = (answered(*words, name) for name in ("KED-3D", "ked-3d"))
     assert upper["peak_tilt_rad"] == lower["peak_tilt_rad"]
     assert run(*words, "KED-3E")[0] == 2
+
+
+def test_the_end_on_a_round_base_has_its_reason(printed, answered, tmp_path):
+    """Screen, --json and Python state why a cylinder is not followed to rest; with a duration that is no reason."""
+    file, reason = tmp_path / "drum.toml", "a round base, which takes long to compute, is followed for 15 / p"
+    file.write_text(
+        'units = "m"\n[[solid.part]]\ncylinder = { diameter = 0.5, height = 2.0 }\ndensity = 1000\n', encoding="utf-8"
+    )
+    words = (file, "sine:amplitude=3.2,period=0.8", "--restitution", "housner")
+    told, page = answered(*words), printed(*words)
+    assert told["still_rocking"]["ends_early"] is True
+    for text in (told["still_rocking"]["sentence"], told["summary"], " ".join(page.split())):
+        assert reason in text
+        assert "duration= in Python follows it further" in text
+    solid, pulse = read_body(file), rk.pulses.sine(3.2, 0.8)
+    by_default = rk.simulate(solid, {"x": pulse}, "housner")
+    assert by_default.exported().provenance["ends_early"] is True
+    # negative control: a stated duration ends another history without that reason
+    stated = rk.simulate(solid, {"x": pulse}, "housner", duration=3.0)
+    assert (stated.still_rocking, stated.ends_early) == (True, False)
+    assert "round base" not in stated.summary

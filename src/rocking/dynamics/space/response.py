@@ -60,6 +60,8 @@ class SpatialResponse(ResponseBase):
         End of the response; the engine may have gone on to find out whether the body overturns [s].
     components : tuple
         Motions along x, y and upwards; None where there is none.
+    ends_early : bool
+        Whether a body on a round base was followed for 15 / p after the motion only, as no duration was given.
     """
 
     body: SpatialBody
@@ -70,6 +72,7 @@ class SpatialResponse(ResponseBase):
     trajectory: SpatialTrajectory
     end: float
     components: tuple[Component, Component, Component] = (None, None, None)
+    ends_early: bool = False
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -173,6 +176,15 @@ class SpatialResponse(ResponseBase):
         last = self.at(self.end)
         angle, rate = np.degrees(attitude.tilt(last.quaternion)[0]), math.hypot(*last.angular_velocity[0])
         return "rocking", self.end, f"leaning by {angle:.3g} degrees and turning at {rate:.3g} rad/s"
+
+    @property
+    def _end_reason(self) -> str:
+        if not self.ends_early:
+            return super()._end_reason
+        return (
+            f"without a duration a round base, which takes long to compute, is followed for {_AFTER:g} / p after the "
+            "motion; duration= in Python follows it further"
+        )
 
     @property
     def _ending(self) -> str:
@@ -326,6 +338,7 @@ class SpatialResponse(ResponseBase):
         return {
             **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
             **self.body.facts,
+            "ends_early": self.ends_early,
             "restitution": self.law.label,
             **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), self.names, strict=True)},
             "motion_provenance": [motion_provenance(motion) for motion in self.components],
@@ -363,7 +376,8 @@ def response_in_space(
     found = engine.run(start.quaternion, start.body_velocity, length)
     least = length if shaken else 0.0
     rocks = found.outcome is Outcome.ROCKED and found.pieces[-1].contact.mode is not ContactMode.REST
-    if shaken and duration is None and rocks and not made.round:  # a rolling base takes far longer to compute
+    unbounded = bool(shaken) and duration is None and rocks
+    if unbounded and not made.round:  # a rolling base takes far longer to compute
         longest = max(motion.duration for motion in shaken) + _LONG / p
         ground = ground_of(*components, until=longest, scale=scale)
         engine = SpatialReference(made, ground, law_of(restitution, made), settings)
@@ -375,7 +389,9 @@ def response_in_space(
     end = min(length, max(least, last.start + _FINE / p) if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
-    return SpatialResponse(made, ground, engine.law, settings, time, found, end, components)
+    return SpatialResponse(
+        made, ground, engine.law, settings, time, found, end, components, ends_early=unbounded and made.round
+    )
 
 
 def started(start: SpatialStart, pace: float) -> SpatialStart:
