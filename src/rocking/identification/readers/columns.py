@@ -14,7 +14,7 @@ from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray, g
 from rocking.errors import MeasurementError, extra
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.motions.formats.column_text import ColumnText
-from rocking.motions.formats.numbers import gap_words, number
+from rocking.motions.formats.numbers import gap_words
 from rocking.motions.formats.record import Source
 
 _EVEN = 0.5
@@ -239,14 +239,9 @@ def _text(source: Source) -> tuple[tuple[str, ...], FloatArray]:
     if not source.is_text:
         raise source.error(None, "not a text file")
     text = ColumnText.of(source)
-    if text.names is None:
+    if not text.first or text.names is None:
         raise source.error(0, "names of the columns expected, with their units, such as: time [s], rotation [rad]")
-    values = np.empty((len(text.rows), len(text.names)))
-    for row, (line, cells) in enumerate(text.rows):
-        if len(cells) != len(text.names):
-            raise source.error(line, f"{len(text.names)} numbers expected, as many as names, found {len(cells)}")
-        values[row] = [number(source, line, cell.replace(",", ".")) for cell in cells]
-    return text.names, values
+    return text.names, text.numbers()
 
 
 def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:

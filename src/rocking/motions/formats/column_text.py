@@ -2,18 +2,23 @@
 
 import csv
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
 from rocking.motions.formats.directions import orientation
 from rocking.motions.formats.headers import acceleration_unit
+from rocking.motions.formats.numbers import plain_table, read_rows
 from rocking.motions.formats.record import Source, readable
 
 MOST_NAMED = 20  # columns of a file that names them
 _FIRST_ROWS = 50
 MARK = "\xef\xbb\xbf"  # the three bytes with which some programs begin a file in UTF-8
 _MOST_WORDS = 60  # lines of words above the numbers
-_WORD = re.compile(r"[^\W\d_]{3,}")
+_WORD = re.compile(r"[^\W\d_]{2,}")
 _PROPERTY = re.compile(r"[^\W\d_]{2,20}\s*(?:[=:;]|[\[(]\s*[^\W\d]+\s*[\])]|(?<=dt)\s)", re.IGNORECASE)
 _BLANKS = " \t\x1a"
 _MIXED = re.compile(r"\s*,\s*|\s+")
@@ -78,22 +83,21 @@ _TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # quantities t
 class ColumnText:
     """The cells of a file of columns, none of them read as a number yet."""
 
+    source: Source
     names: tuple[str, ...] | None  # what the columns are called, with their units; None if the file begins with numbers
     heading: str  # the line of the names; empty if there is none
     words: tuple[tuple[int, str], ...]  # lines above that are neither names nor comments, with their places
-    rows: list[tuple[int, list[str]]]  # index of each line of numbers, and its cells
     separator: str  # ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part
+    first: list[tuple[int, list[str]]]  # index of each of the first lines of numbers, and its cells
 
     @classmethod
-    def of(cls, source: Source, most: int | None = None) -> "ColumnText":
-        """Part a file into cells."""
-        lines = _lines(source, None if most is None else max(most, _FIRST_ROWS) + _MOST_WORDS + 1)
-        if most is None:
-            lines = [(line, text) for line, text in lines if line < source.end]
+    def of(cls, source: Source, most: int = _FIRST_ROWS) -> "ColumnText":
+        """Part the first lines of a file into cells."""
+        lines = _lines(source, max(most, _FIRST_ROWS) + _MOST_WORDS + 1)
         top = next((k for k, (_, text) in enumerate(lines[: _MOST_WORDS + 1]) if not is_words(text)), 0)
         above, body, names, heading = lines[:top], lines[top:], None, ""
         if above and not body:
-            return cls(None, "", (), [], "")
+            return cls(source, None, "", (), "", [])
         if above and (names := _names_above(above, body)) is not None:
             heading = above.pop()[1]
         elif not above and body and (names := _names(body[0][1], _separator(body[0][1]))) is not None:
@@ -101,8 +105,73 @@ class ColumnText:
         separator = _separator(heading) if names else ""
         if names is None or separator == " ":
             separator = " " if names and len(names) == 1 else _separator_of_numbers([text for _, text in body])
-        rows = [(line, _cells(text, separator, names)) for line, text in body[:most]]
-        return cls(names, readable(heading), tuple(above), rows, separator)
+        first = [(line, _cells(text, separator, names)) for line, text in body[:most]]
+        return cls(source, names, readable(heading), tuple(above), separator, first)
+
+    @cached_property
+    def rows(self) -> list[tuple[int, list[str]]]:
+        """Index of each line of numbers, and its cells."""
+        top = self.first[0][0] if self.first else len(self.source.lines)
+        end = self.source.end
+        lines = [(line, text) for line, text in _lines(self.source, None) if top <= line < end]
+        return [(line, _cells(text, self.separator, self.names)) for line, text in lines]
+
+    @cached_property
+    def _columns(self) -> int:
+        return len(self.first[0][1] if self.names is None else self.names)
+
+    @cached_property
+    def _plain(self) -> tuple[list[str], str | None]:
+        """The lines from the first with numbers to the end, and what separates the columns of all; None for blanks."""
+        lines = self.source.lines[self.first[0][0] : self.source.end]
+        if self.separator == "":
+            return lines, "," if "," in lines[0] and "." in lines[0] else None
+        return lines, None if self.separator == " " else self.separator
+
+    @cached_property
+    def _plain_numbers(self) -> FloatArray | None:
+        """All numbers, where there is nothing but plain decimal numbers in all columns."""
+        numbers = plain_table(*self._plain)
+        return numbers if numbers is not None and numbers.shape[1] == self._columns else None
+
+    def column(self, place: int) -> list[str]:
+        """Return the cells of one column."""
+        if self._plain_numbers is None:
+            return [cells[place] for _, cells in self.rows]
+        lines, separator = self._plain
+        return "\n".join(lines).replace(separator or " ", " ").split()[place :: self._columns]
+
+    def numbers(self, *, last_short: bool = False) -> FloatArray:
+        """Return all numbers, of shape (rows, columns); where the last row may be short, NaN for what it lacks."""
+        values = None if last_short else self._plain_numbers
+        if values is None:
+            self._check_commas()
+            short = len(self.rows[-1][1])
+            missing = self._columns - short if last_short and 0 < short < self._columns else 0
+            values = np.append(read_rows(self.source, self._checked_rows(missing)), np.full(missing, np.nan))
+        if values.size < 2 * self._columns and not last_short:
+            raise self.source.error(None, "at least 2 samples are needed, found 1")
+        return values.reshape(-1, self._columns)
+
+    def _check_commas(self) -> None:
+        commas = [line for line, _ in self.rows if "," in self.source.lines[line]]
+        points = [line for line, cells in self.rows if any("." in cell for cell in cells)] if commas else []
+        if commas and self.separator == "" and not points:
+            raise self.source.error(commas[0], "commas but no decimal point: write decimal commas as points")
+        if commas and points and self.separator not in {"", ","}:
+            raise self.source.error(
+                commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind"
+            )
+
+    def _checked_rows(self, missing: int) -> Iterator[tuple[int, list[str]]]:
+        """Yield rows of as many cells as there are columns; the last one may lack some."""
+        why = " as on the first line" if self.names is None else ", as many as there are names"
+        hint = "; where commas part the columns, decimals need a point" if self.separator == "," else ""
+        for row, (line, cells) in enumerate(self.rows, 1):
+            if len(cells) + missing * (row == len(self.rows)) != self._columns:
+                found = f"{self._columns} numbers expected{why}, found {len(cells)}{hint}"
+                raise self.source.error(line, found)
+            yield line, [cell.replace(",", ".") for cell in cells]
 
 
 def is_words(text: str) -> bool:
@@ -113,8 +182,9 @@ def is_words(text: str) -> bool:
     """
     words = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
     begins_with_number = re.match(r"[-+.,\d]", text.strip()) is not None
+    are_words = len(words) > begins_with_number and max(map(len, words)) > 2
     states_property = _PROPERTY.match(text.strip()) is not None
-    return (len(words) > begins_with_number or states_property) and len(text) <= 100 * MOST_NAMED
+    return (are_words or states_property) and len(text) <= 100 * MOST_NAMED
 
 
 def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> tuple[str, ...] | None:
@@ -354,10 +424,10 @@ def _separator_of_numbers(rows: list[str]) -> str:
 
 
 def _cells(text: str, separator: str, names: tuple[str, ...] | None) -> list[str]:
+    if separator == " " or (separator == "" and "," not in text):
+        return text.split()
     if separator == "":
         return _MIXED.split(text.rstrip(",").rstrip())
-    if separator == " ":
-        return text.split()
     cells = [cell.strip() for cell in text.split(separator)]
     while cells and not cells[-1] and (names is None or len(cells) > len(names)):
         cells.pop()

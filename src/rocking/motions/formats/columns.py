@@ -97,21 +97,21 @@ class Columns(RecordFormat):
             raise source.error(None, "not a text file")
         headers.refuse_other(source)
         text = ColumnText.of(source)
-        if not text.rows:
+        if not text.first:
             raise source.error(None, "no line with numbers")
         # such a number comes first: what it does to names, commas and widths would only hide it
-        for line, cells in text.rows[:_LOOK]:
+        for line, cells in text.first[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
         comments = _comments(source)
-        stated = HeaderWords.of(source, [*comments, *text.words], len(text.rows[0][1]))
+        stated = HeaderWords.of(source, [*comments, *text.words], len(text.first[0][1]))
         _check_words(source, text)
         names = text.names or stated.names
-        wide = names is None and len(text.rows[0][1]) > _MOST_COLUMNS
+        wide = names is None and len(text.first[0][1]) > _MOST_COLUMNS
         if wide:
-            chosen, values = _row_by_row(source, _table(source, text, ragged=True))
+            chosen, values = _row_by_row(source, text.numbers(last_short=True))
         else:
             chosen = _by_place(source, text) if names is None else NamedColumns.of(source, names)
-            values = _table(source, text, ragged=False)
+            values = text.numbers()
         if text.words and names is None:
             _check_first(source, text, values)
         chosen = chosen.with_one_time(source, values)
@@ -119,7 +119,7 @@ class Columns(RecordFormat):
         step, metadata = known, {}
         if chosen.time is not None:
             times, place = values[:, chosen.time.place], chosen.time.place
-            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], known)
+            step = step_of_times(source, times, text.column(place), known)
             metadata = {"first time": f"{times[0]:g} s"}
         step = step_between_samples(source, None, step)
         if stated.count is not None:
@@ -173,7 +173,7 @@ def _check_words(source: Source, text: ColumnText) -> None:
 
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
     """Refuse a first number below words that is the number of the samples behind it."""
-    first, line = values[0], text.rows[0][0]
+    first, line = values[0], text.first[0][0]
     if first.size == 1 and first[0] >= 10.0 and first[0] in {len(values) - 1, len(values) - 2}:
         raise source.error(line, f"{first[0]:g} may be the number of samples, no sample; {SKIP}")
 
@@ -184,10 +184,10 @@ def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
     if not source.is_text or not all(map(is_understood, comments)):
         return None
     text = ColumnText.of(source, _LOOK)
-    if text.words and (len(text.rows) < _LOOK or not all(is_understood(words) for _, words in text.words)):
+    if text.words and (len(text.first) < _LOOK or not all(is_understood(words) for _, words in text.words)):
         return None
     # damage further down is told by the reader, with its line, where names say that these are columns
-    looked = text.rows if text.names is None else text.rows[:1]
+    looked = text.first if text.names is None else text.first[:1]
     # an acceleration that goes on row after row ends where it ends
     if 1 < len(looked) < _LOOK and len(looked[0][1]) > _MOST_COLUMNS:
         looked = looked[:-1]
@@ -210,15 +210,19 @@ def _beyond_numbers(cell: str) -> bool:
 
 
 def _comments(source: Source, most: int | None = None) -> list[tuple[int, str]]:
-    bare = ((line, text.removeprefix(MARK)) for line, text in enumerate(source.lines[:most]))
-    return [
-        (line, text) for line, text in bare if text.lstrip()[:1] in {"#", "%"} or SAMPLING_LINE.fullmatch(text.strip())
-    ]
+    lines = source.lines[:most]
+    first = [(0, lines[0].removeprefix(MARK))] if lines else []
+    return [(line, text) for line, text in (*first, *enumerate(lines[1:], 1)) if _is_comment(text)]
+
+
+def _is_comment(text: str) -> bool:
+    start = text.lstrip()[:1]
+    return start in {"#", "%"} or (start in {"N", "n"} and SAMPLING_LINE.fullmatch(text.strip()) is not None)
 
 
 def _by_place(source: Source, text: ColumnText) -> NamedColumns:
     """Return what columns without names are: a lone acceleration, or a time and one to three of them."""
-    line, cells = text.rows[0]
+    line, cells = text.first[0]
     if not 1 <= len(cells) <= _MOST_COLUMNS:
         raise source.error(line, f"1 to {_MOST_COLUMNS} columns expected, found {len(cells)}; which format is it?")
     if len(cells) == 1:
@@ -238,31 +242,6 @@ def _row_by_row(source: Source, values: FloatArray) -> tuple[NamedColumns, Float
         return NamedColumns(ColumnName(0, "", "column 1"), accelerations, ()), values
     one = NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
     return one, values[np.isfinite(values)].reshape(-1, 1)
-
-
-def _table(source: Source, text: ColumnText, *, ragged: bool) -> FloatArray:
-    commas = [line for line, _ in text.rows if "," in source.lines[line]]
-    points = [line for line, cells in text.rows if any("." in cell for cell in cells)]
-    if commas and text.separator == "" and not points:
-        raise source.error(commas[0], "commas but no decimal point: write decimal commas as points")
-    if commas and points and text.separator not in {"", ","}:
-        raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")
-    hint = "; where commas part the columns, decimals need a point" if text.separator == "," else ""
-    if text.names is None:
-        columns, why = len(text.rows[0][1]), " as on the first line"
-    else:
-        columns, why = len(text.names), ", as many as there are names"
-    values = np.full((len(text.rows), columns), np.nan)
-    for row, (line, cells) in enumerate(text.rows):
-        if ragged and row == len(text.rows) - 1 and 0 < len(cells) < columns:
-            values[row, : len(cells)] = [_value(source, line, cell) for cell in cells]
-            continue
-        if len(cells) != columns:
-            raise source.error(line, f"{columns} numbers expected{why}, found {len(cells)}{hint}")
-        values[row] = [_value(source, line, cell) for cell in cells]
-    if len(text.rows) < 2 and not ragged:
-        raise source.error(None, "at least 2 samples are needed, found 1")
-    return values
 
 
 def _value(source: Source, line: int, cell: str) -> float:

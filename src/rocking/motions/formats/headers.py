@@ -28,6 +28,7 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     return stated or asked or ""
 
 
+_POWER = re.compile("[ed]", re.IGNORECASE)
 _OTHER = re.compile(
     r"(?<![^\W_])(?:(vel|velocity|velocities|vt2)|(disp|dis|displacements?|dt2))(?![^\W_])", re.IGNORECASE
 )
@@ -89,19 +90,22 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
 
 def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
     """Return the step of a column of times [s]; the user's where it is the same to the digits of the column."""
-    plain: list[int] = []
-    powers: list[int] = []
-    for word in words:
-        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
-        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
+    decimals = [len(word.replace(",", ".").partition(".")[2]) for word in words]
+    powers = [_last_place(word) for word in words if _POWER.search(word)] if _POWER.search("".join(words)) else []
     # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
-    places = min(powers) if powers else max(plain)
+    places = min(powers) if powers else max(decimals)
     digit = float(10.0 ** -min(15, max(-3, places)))
-    last = digit if powers else np.maximum(digit, _last_digits(times, plain))
+    last = digit if powers else np.maximum(digit, _last_digits(times, decimals))
     step = uniform_step(source, times, last)
     if told is not None and abs(step - told) * times.size <= 2.0 * float(np.max(last)):
         return told
     return step_between_samples(source, step, told)
+
+
+def _last_place(word: str) -> int:
+    """Return the place behind the point of the last digit of a number with an exponent."""
+    digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
+    return len(digits.partition(".")[2]) - int(power)
 
 
 def _last_digits(times: FloatArray, decimals: list[int]) -> FloatArray:

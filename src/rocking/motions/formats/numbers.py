@@ -2,7 +2,8 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -12,6 +13,10 @@ from rocking.motions.formats.record import Source
 
 # what float() takes beyond plain decimal numbers (nan, infinity, 1_000) is damage in a record
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,3})?")
+_CHARACTERS = b"0123456789+-.eE \t\n"  # of plain decimal numbers
+_ZEROS = bytes.maketrans(b"123456789E", b"000000000e")
+
+Row = tuple[int, Sequence[str]]  # index of a line, and the numbers on it as text
 
 
 def number(source: Source, line: int, word: str, what: str = "number") -> float:
@@ -23,6 +28,61 @@ def number(source: Source, line: int, word: str, what: str = "number") -> float:
     if not math.isfinite(value):
         raise source.error(line, f"{what} is beyond all range: {text[:40]!r}")
     return value
+
+
+def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
+    """Return all numbers of rows in one array; of a number and a row that are refused, the error of the first."""
+    read: list[Row] = []
+    refusal = None
+    try:
+        read.extend(rows)
+    except RecordError as error:
+        refusal = error
+    values = at_once(list(chain.from_iterable(words for _, words in read))) if refusal is None else None
+    if values is None:
+        values = np.array([number(source, line, word) for line, words in read for word in words], dtype=np.float64)
+    if refusal is not None:
+        raise refusal
+    return values
+
+
+def at_once(words: Sequence[str]) -> FloatArray | None:
+    """Return words as numbers; None if `number` may be needed for one of them.
+
+    >>> at_once(["1.5", "-2e-3"]), at_once(["1.5", "nan"]), at_once(["1_000", "2"])
+    (array([ 1.5  , -0.002]), None, None)
+    """
+    if not _is_plain("\n".join(words)):
+        return None
+    try:
+        values = np.array(list(map(float, words)), dtype=np.float64)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() else None
+
+
+def plain_table(lines: Sequence[str], separator: str | None) -> FloatArray | None:
+    """Return lines of equally many numbers, of shape (n, columns); None if `number` may be needed for one of them.
+
+    >>> plain_table(["0.0, 1.5", "0.1, -2e-3"], ",").tolist(), plain_table(["0.0 1.5", "0.1"], None)
+    ([[0.0, 1.5], [0.1, -0.002]], None)
+    """
+    if not _is_plain("\n".join(lines), separator or ""):
+        return None
+    try:
+        values = np.loadtxt(lines, comments=None, delimiter=separator, ndmin=2)
+    except ValueError:
+        return None
+    return values if np.isfinite(values).all() else None
+
+
+def _is_plain(text: str, separator: str = "") -> bool:
+    """Return whether a text holds no character, and no exponent, beyond those of plain decimal numbers."""
+    data = text.encode("utf-8")
+    if data.translate(None, _CHARACTERS + separator.encode()):
+        return False
+    zeros = data.translate(_ZEROS)
+    return not any(sign + b"0000" in zeros for sign in (b"e", b"e+", b"e-"))
 
 
 def gap_words(text: str) -> str:
@@ -50,14 +110,16 @@ def matched(source: Source, line: int, form: str) -> re.Match[str]:
 
 def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
     """Return the numbers between blanks on some lines, of shape (n,) or (lines, columns)."""
-    rows: list[float] = []
+    values = read_rows(source, _free_rows(source, first, last, columns))
+    return values if columns is None else values.reshape(-1, columns)
+
+
+def _free_rows(source: Source, first: int, last: int, columns: int | None) -> Iterator[Row]:
     for line in range(first, last):
         words = source.lines[line].split()
         if columns is not None and words and len(words) != columns:
             raise source.error(line, f"{columns} numbers expected, found {len(words)}")
-        rows.extend(number(source, line, word) for word in words)
-    found = np.array(rows, dtype=np.float64)
-    return found if columns is None else found.reshape(-1, columns)
+        yield line, words
 
 
 def rows(source: Source, first: int, last: int) -> FloatArray:
@@ -86,19 +148,21 @@ def fixed(source: Source, first: int, count: int, per_line: int, width: int, ski
 
     Each line begins with `skip` blanks that belong to no column.
     """
-    values: list[float] = []
-    line = first
-    while len(values) < count:
+    values = read_rows(source, _fixed_rows(source, first, count, per_line, width, skip))
+    return values, first + math.ceil(count / per_line)
+
+
+def _fixed_rows(source: Source, first: int, count: int, per_line: int, width: int, skip: int) -> Iterator[Row]:
+    for done in range(0, count, per_line):
+        line = first + done // per_line
         if line >= len(source.lines):
-            raise source.error(None, f"{count} samples expected, the file ends after {len(values)}")
+            raise source.error(None, f"{count} samples expected, the file ends after {done}")
         text = source.lines[line].rstrip()
         text = text[skip:] if not text[:skip].strip() else text
-        wanted = min(per_line, count - len(values))
+        wanted = min(per_line, count - done)
         if len(text) > wanted * width or len(text) <= (wanted - 1) * width:
             raise source.error(line, f"{wanted} columns of {width} characters expected, found {len(text)} characters")
-        values.extend(number(source, line, text[k * width : (k + 1) * width]) for k in range(wanted))
-        line += 1
-    return np.array(values, dtype=np.float64), line
+        yield line, [text[k * width : (k + 1) * width] for k in range(wanted)]
 
 
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
