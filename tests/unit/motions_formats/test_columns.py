@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import Component, Record, Source, formats
+from rocking.motions.formats.column_text import ColumnText
 
 COLUMNS = formats()["columns"]
 
 
 def _source(text: str, alphabet: str = "latin-1") -> Source:
-    return Source("hand.txt", text.encode(alphabet))
+    return Source("hand.txt", text.encode(alphabet, "replace"))
 
 
 def test_one_value_a_line() -> None:
@@ -291,6 +292,46 @@ def test_damaged_copies_are_refused_or_have_a_sample_for_every_line(gap: str) ->
         assert part.acceleration.size == len(plain) - any(word in plain[0] for word in ("time", "acc", "[", "]"))
         assert abs(part.time_step - 0.02) < 1e-12
     assert refused > 200
+
+
+LAYOUTS = {
+    "comma": ("time [s],acc [g]\n", "{0:.2f},{1:.5f}"),
+    "comma and blank": ("", "{0:.2f}, {1:.5e}"),
+    "blanks": ("# time s, acceleration m/s2\n", " {0:8.2f} {1:12.5f}"),
+    "tab": ("time [s]\tacc [g]\n", "{0:.2f}\t{1:.5f}"),
+    "semicolon": ("time [s];acc [g]\n", "{0:.2f};{1:.5f}"),
+    "one column": ("acc [g]\n", "{1:.6g}"),
+    "fortran": ("acc [g]\n", "{1:.6D}"),
+}
+
+
+def _read_or_refused(text: str) -> tuple[list[list[float]], float] | str:
+    try:
+        record = COLUMNS.read(_source(text), "g" if "[g]" not in text else None, 0.02 if "time" not in text else None)
+    except RecordError as error:
+        return str(error)
+    return [part.acceleration.tolist() for part in record.components], record.components[0].time_step
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_plain_numbers_are_read_at_once_as_one_by_one(layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 300 damaged copies each has the same samples, or the same refusal with its line, as number by number."""
+    heading, form = LAYOUTS[layout]
+    values = np.random.default_rng(4).normal(size=30)
+    rows = [form.replace("D", "e").format(0.02 * k, value) for k, value in enumerate(values)]
+    good = heading + "\n".join(row.replace("e", "D") if "D" in form else row for row in rows) + "\n"
+    chance = random.Random(layout)
+    copies = [good, *(_damaged(good, chance) for _ in range(300))]
+    copies += [good.replace(".", mark, 3) for mark in (",", "..", "e9999", "e-0001", "_", ".\u0661", "inf", "nan")]
+    at_once, used = [], 0
+    for text in copies:
+        at_once.append(_read_or_refused(text))
+        columns = ColumnText.of(_source(text))
+        used += bool(columns.first) and columns.at_once is not None
+    monkeypatch.setattr("rocking.motions.formats.column_text.plain_table", lambda *_: None)
+    assert [_read_or_refused(text) for text in copies] == at_once
+    assert sum(isinstance(found, str) for found in at_once) > 30
+    assert (used > 30) == (layout != "fortran")  # the copies that are read one by one alone would compare nothing
 
 
 BBP = (

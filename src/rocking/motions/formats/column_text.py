@@ -129,21 +129,21 @@ class ColumnText:
         return lines, None if self.separator == " " else self.separator
 
     @cached_property
-    def _plain_numbers(self) -> FloatArray | None:
+    def at_once(self) -> FloatArray | None:
         """All numbers, where there is nothing but plain decimal numbers in all columns."""
         numbers = plain_table(*self._plain)
         return numbers if numbers is not None and numbers.shape[1] == self._columns else None
 
     def column(self, place: int) -> list[str]:
         """Return the cells of one column."""
-        if self._plain_numbers is None:
+        if self.at_once is None:
             return [cells[place] for _, cells in self.rows]
         lines, separator = self._plain
         return "\n".join(lines).replace(separator or " ", " ").split()[place :: self._columns]
 
     def numbers(self, *, last_short: bool = False) -> FloatArray:
         """Return all numbers, of shape (rows, columns); where the last row may be short, NaN for what it lacks."""
-        values = None if last_short else self._plain_numbers
+        values = None if last_short else self.at_once
         if values is None:
             self._check_commas()
             short = len(self.rows[-1][1])
