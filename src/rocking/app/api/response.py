@@ -58,6 +58,8 @@ MovedFacts: Any = shape(
     "What moved the ground.",
     kind=Literal["record", "pulse"],
     name=str,
+    support=(str, "what moves: the ground, or a floor of a building"),
+    provenance=(list[str], "its source and each processing step, in order"),
     scale=(float, "factor on the motion [-]"),
     duration_s=(float, ""),
     peak_acceleration_m_s2=(float, "scaled"),
