@@ -8,7 +8,7 @@ import rocking as rk
 from rocking.bodies.formats import read_body
 from rocking.dynamics import SpatialStart, Start
 
-pytestmark = pytest.mark.verifies("behaviour", room="command line")
+pytestmark = pytest.mark.verifies("behaviour", room="doors")
 COMMAND = "simulate"
 PRISM = 'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 1.4 }\n'
 HEIGHT, DOWN, G = 0.08, 0.3, rk.conventions.g
