@@ -27,6 +27,7 @@ _PASSING = (
     (r"\(\d+ bytes", "(BYTES"),
     (r"\bprocess \d+", "PROCESS"),
     (r"^[0-9a-f]{32}$", "CHECK"),
+    (r"\b[0-9a-f]{64}\b", "HASH"),
     (r"(?<=fast \()(avx512|avx2|plain)|(?<=order [68], )(avx512|avx2|plain)|^(avx512|avx2|plain)$", "KERNELS"),
 )
 _NUMBER = re.compile(r"[-+]?\d+\.\d+(?:e[-+]?\d+)?")
@@ -40,8 +41,10 @@ _KEYS = {
 
 def tree(value: Any) -> Any:  # noqa: PLR0911 - one a kind
     """Turn an answer into dicts, lists, arrays, numbers and words."""
-    if value is None or isinstance(value, (bool, int, float, str, np.ndarray)):
-        return masked(value) if isinstance(value, str) else value
+    if isinstance(value, str):
+        return _of_text(value)
+    if value is None or isinstance(value, (bool, int, float, np.ndarray)):
+        return value
     if isinstance(value, np.generic):
         return tree(value.item())
     if isinstance(value, enum.Enum):
@@ -57,6 +60,14 @@ def tree(value: Any) -> Any:  # noqa: PLR0911 - one a kind
     if dataclasses.is_dataclass(value):
         return {field.name: tree(getattr(value, field.name)) for field in dataclasses.fields(value)}
     return masked(str(value))
+
+
+def _of_text(text: str) -> Any:
+    """Return a text without what differs from run to run; what is JSON as a tree."""
+    try:
+        return tree(json.loads(text)) if text.startswith("{") else masked(text)
+    except json.JSONDecodeError:
+        return masked(text)
 
 
 def _passing(key: str) -> bool:
