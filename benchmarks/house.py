@@ -39,6 +39,10 @@ FLOORS = (
 )  # fmt: skip
 
 
+# methods of results that may import a room above, within themselves, and the rooms that they may import
+UPWARD, DRAWN_BY = {"plot", "_plot", "animate", "report"}, ("rocking.plots", "rocking.reports")
+
+
 @dataclass(frozen=True)
 class Measure:
     """One line of the table."""
@@ -124,8 +128,20 @@ def _executed(tree: ast.AST) -> Iterator[ast.AST]:
             if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
                 inside += node.orelse
                 continue
+            if isinstance(node, ast.ClassDef):
+                inside += [part for each in node.body for part in _of_method(each)]
+                continue
             yield node
             inside.append(node)
+
+
+def _of_method(node: ast.stmt) -> list[ast.AST]:
+    """Return what is executed of a statement of a class, without the imports by which a result draws itself."""
+    body = ast.Module(body=[node], type_ignores=[])
+    if not isinstance(node, ast.FunctionDef) or node.name not in UPWARD:
+        return [body]
+    drawn = [part for part in node.body if isinstance(part, ast.ImportFrom) and part.module in DRAWN_BY]
+    return [ast.Module(body=[part for part in node.body if part not in drawn], type_ignores=[])]
 
 
 def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:

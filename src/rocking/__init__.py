@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rocking.lazy import exports, presenters
+from rocking.lazy import exports
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -42,16 +42,3 @@ if TYPE_CHECKING:
     )
 else:
     __all__, __getattr__, __dir__ = exports(__name__)
-
-presenters.update({
-    "picture of Response": "rocking.plots:response_picture",
-    "picture of ContactResponse": "rocking.plots:regimes_picture",
-    "picture of HullResponse": "rocking.plots:spatial_picture",
-    "picture of SpatialResponse": "rocking.plots:spatial_picture",
-    "picture of Identification": "rocking.plots:identification_picture",
-    "writer of pictures": "rocking.plots:write",
-    "animation as .html": "rocking.plots:animate_html",
-    "animation as .gif": "rocking.plots:animate_gif",
-    "report": "rocking.reports:report",
-    "recommendation": "rocking.evidence.recommending:recommendation_for",
-})  # fmt: skip

@@ -28,14 +28,3 @@ def exports(package: str) -> tuple[list[str], Callable[[str], Any], Callable[[],
 
     names = sorted(homes)
     return names, get, names.copy
-
-
-presenters: dict[str, str] = {}
-"""What rooms above do for those below, as "module:function" by its name: the root of the package fills it in."""
-
-
-def presenter(name: str) -> Callable[..., Any]:
-    """Return what a room above does for one below."""
-    module, _, function = presenters[name].partition(":")
-    found: Callable[..., Any] = getattr(import_module(module), function)
-    return found

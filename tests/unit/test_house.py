@@ -49,6 +49,28 @@ def test_every_way_to_import_is_seen(way, tmp_path):
     assert house.upward(arrows) == [("rocking.dynamics.engine", "rocking.studies.map")]
 
 
+DRAWS = """class Response:
+    def {name}(self):
+        from rocking.{room} import drawn
+        return drawn(self)
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "room", "upward"), [("plot", "plots", 0), ("report", "plots", 0), ("draw", "plots", 1), ("plot", "cli", 1)]
+)
+def test_methods_that_draw_alone_import_a_room_above(name, room, upward, tmp_path):
+    """Methods named plot, animate and report import plots and reports; no other method and no other room."""
+    house_of = {
+        "__init__.py": "", "dynamics.py": DRAWS.format(name=name, room=room),
+        f"{room}.py": "def drawn(response):\n    return response",
+    }  # fmt: skip
+    (tmp_path / "rocking").mkdir()
+    for file, text in house_of.items():
+        (tmp_path / "rocking" / file).write_text(text, "utf-8")
+    assert len(house.upward(house.imports(tmp_path / "rocking"))) == upward
+
+
 def test_what_only_the_checker_of_types_reads_is_no_arrow(tmp_path):
     (tmp_path / "rocking").mkdir()
     text = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from rocking.other import Name"

@@ -56,7 +56,7 @@ def test_samples_in_place_of_a_motion_name_the_class() -> None:
         ANY.coefficient_of_restitution,
         lambda given: ANY.coefficient_of_restitution(given, 0.9),
         lambda given: ANY.predict(given, [PULSE]),
-        ANY.restitution.recommend,
+        ANY.evidence.recommend,
     ],
 )
 def test_a_path_in_place_of_a_body_names_the_reader(call: Any) -> None:

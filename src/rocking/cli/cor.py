@@ -72,7 +72,7 @@ def cor(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
-    from rocking.restitution import recommend as recommended
+    from rocking.evidence import recommend as recommended
 
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body", "settings")

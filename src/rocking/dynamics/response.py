@@ -18,13 +18,14 @@ from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError, PlausibilityWarning
-from rocking.lazy import presenter
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 from rocking.restitution.from_file import origin_of
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
@@ -347,6 +348,11 @@ class Response(ResponseBase):
         }  # fmt: skip
         return {name: each[: self._finite] for name, each in values.items()}  # a fall may come after the last sample
 
+    def _plot(self, **options: Any) -> "Figure":
+        from rocking.plots import response_picture
+
+        return response_picture(self, **options)
+
     @property
     def _beside(self) -> dict[str, dict[str, Any]]:
         impacts = {name: self.impacts[name] for name in ("time", "velocity_before", "velocity_after", "coefficient")}
@@ -397,8 +403,9 @@ class Response(ResponseBase):
         MissingExtraError
             If matplotlib, and typst or jinja2, are not installed.
         """
-        written: Path = presenter("report")(self, path, **options)
-        return written
+        from rocking.reports import report
+
+        return report(self, path, **options)
 
 
 # p times: the step between samples of a pulse's response, what is followed after a motion, and on ground at rest

@@ -12,7 +12,6 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.exported import Exported
-from rocking.lazy import presenter
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 from rocking.motions.summary import provenance_of
@@ -146,10 +145,16 @@ class ResponseBase(Exported):
         RockingError
             If the ending of the path is another.
         """
-        figure: Figure = presenter(f"picture of {type(self).__name__}")(self, **options)
+        from rocking.plots import write
+
+        figure = self._plot(**options)
         if path is not None:
-            presenter("writer of pictures")(figure, Path(path))
+            write(figure, Path(path))
         return figure
+
+    @abstractmethod
+    def _plot(self, **options: Any) -> "Figure":
+        """Draw the response by the picture of its kind."""
 
     def exported(self) -> "Table":
         """Return samples, with tables of impacts and the like beside them."""
@@ -188,13 +193,15 @@ class ResponseBase(Exported):
         MissingExtraError
             If matplotlib is not installed, which films need.
         """
+        from rocking.plots import animate_gif, animate_html
+
         suffix = Path(path).suffix.lower()
         if suffix not in {".html", ".gif"}:
             raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
         if suffix == ".html" and options:
             raise InvalidValueError(f"{', '.join(options)}: these are for films (.gif); the page has its own controls")
-        written: Path = presenter(f"animation as {suffix}")(self, path, **options)
-        return written
+        response: Any = self
+        return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)
 
     def _known(self, time: Any, end: float) -> FloatArray:
         """Return times up to an end, to rounding; what lies outside is refused [s]."""

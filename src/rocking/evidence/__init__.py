@@ -24,5 +24,6 @@ if TYPE_CHECKING:
     from rocking.evidence.measurements import all_measurements as all_measurements
     from rocking.evidence.measurements import datasets as datasets
     from rocking.evidence.recommendation import Recommendation as Recommendation
+    from rocking.evidence.recommending import recommend as recommend
 else:
     __all__, __getattr__, __dir__ = exports(__name__)

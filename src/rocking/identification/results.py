@@ -15,7 +15,6 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
-from rocking.lazy import presenter
 from rocking.restitution import RestitutionModel, implied, models
 
 if TYPE_CHECKING:
@@ -308,9 +307,11 @@ class Identification(Exported):
         MissingExtraError
             If matplotlib is not installed.
         """
-        figure: Figure = presenter("picture of Identification")(self)
+        from rocking.plots import identification_picture, write
+
+        figure = identification_picture(self)
         if path is not None:
-            presenter("writer of pictures")(figure, Path(path))
+            write(figure, Path(path))
         return figure
 
     def report(self, path: str | Path, *, name: str = "", date: str = "") -> Path:
@@ -330,8 +331,9 @@ class Identification(Exported):
         Path
             The file.
         """
-        written: Path = presenter("report")(self, path, name=name, date=date)
-        return written
+        from rocking.reports import report
+
+        return report(self, path, name=name, date=date)
 
     def exported(self) -> "Table":
         """Return one row an impact, the models and what is left over beside them."""

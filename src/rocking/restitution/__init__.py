@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from rocking.restitution.registry import coefficient_of_restitution as coefficient_of_restitution
     from rocking.restitution.registry import model as model
     from rocking.restitution.registry import models as models
-    from rocking.restitution.registry import recommend as recommend
     from rocking.restitution.registry import register as register
     from rocking.restitution.shifted_impulse import ShiftedImpulse as ShiftedImpulse
 else:

@@ -329,7 +329,7 @@ def test_models_in_space_that_need_the_distribution_refuse():
     with pytest.raises(InvalidValueError, match="needs the distribution of mass"):
         rk.simulate(body, {"x": rk.pulses.sine(7.0, 0.8)}, restitution="ked-3d")
     assert rk.simulate(body, {"x": rk.pulses.sine(7.0, 0.8)}, restitution="housner-3d").outcome is not None
-    standings = {row.name: row.standing.name for row in rk.restitution.recommend(body).models}
+    standings = {row.name: row.standing.name for row in rk.evidence.recommend(body).models}
     assert standings == standings | {"ked-3d": "EXCLUDED", "housner-3d": "UNJUDGED"}
 
 

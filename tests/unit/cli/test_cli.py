@@ -179,7 +179,7 @@ def test_help_is_quick():
 def test_cor_says_which_model_to_use(run):
     """With --recommend page and JSON say what Python says; without it neither does; a value by hand is no model."""
     words = ("cor", "--width", 2, "--height", 16, "--units", "cm")
-    found = rk.restitution.recommend(rk.Block(width=0.02, height=0.16))
+    found = rk.evidence.recommend(rk.Block(width=0.02, height=0.16))
     code, out, err = run(*words, "--recommend")
     assert (code, err) == (0, "")
     for sentence in (*found.evidence, *found.advice):

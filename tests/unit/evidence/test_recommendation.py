@@ -14,8 +14,7 @@ from rocking.bodies import Body
 from rocking.bodies.solid import Solid, box, cylinder
 from rocking.conventions import opposite
 from rocking.errors import InvalidValueError, UnknownModelError
-from rocking.evidence import all_measurements, judgement, restitution_distribution
-from rocking.restitution import recommend
+from rocking.evidence import all_measurements, judgement, recommend, restitution_distribution
 from rocking.restitution.space import spatial_model
 
 FORMULAS = {

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 from rocking.tables import Column
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -247,6 +250,11 @@ class ContactResponse(ResponseBase):
             "potential_energy": energy.potential, "work_of_ground": energy.work,
             "energy_lost": energy.lost_in_impacts, "lost_in_friction": energy.lost_in_friction,
         }  # fmt: skip
+
+    def _plot(self, **options: Any) -> "Figure":
+        from rocking.plots import regimes_picture
+
+        return regimes_picture(self, **options)
 
     @property
     def _beside(self) -> dict[str, dict[str, Any]]:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from rocking.dynamics.space.response import samples, started
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.portable import applied
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FINE = 0.05  # time between samples where no record gives it, over sqrt(size / g)
 _NO_SLIP = 1e-6  # over the size: what an answer does not speak of
@@ -314,6 +317,11 @@ class HullResponse(ResponseBase):
             "touching": states.touching.astype(np.float64), "sliding": states.sliding.astype(np.float64),
             **axes("centre", states.centre), **axes("ground_acceleration", self.ground.motion.at(self.time)),
         }  # fmt: skip
+
+    def _plot(self, **options: Any) -> "Figure":
+        from rocking.plots import spatial_picture
+
+        return spatial_picture(self, **options)
 
     @property
     def _beside(self) -> dict[str, dict[str, Any]]:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from rocking.motions.motion import GroundMotion
 from rocking.outcome import ContactMode, Outcome
 from rocking.portable import applied, dot, gauss_legendre, norm
 from rocking.tables import Column
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _NODES, _WEIGHTS = gauss_legendre(20)
 _AXES = ("x", "y", "z")
@@ -315,6 +318,11 @@ class SpatialResponse(ResponseBase):
             "kinetic_energy": energy.kinetic, "potential_energy": energy.potential,
             "work_of_ground": energy.work, "energy_lost": energy.lost,
         }  # fmt: skip
+
+    def _plot(self, **options: Any) -> "Figure":
+        from rocking.plots import spatial_picture
+
+        return spatial_picture(self, **options)
 
     @property
     def _beside(self) -> dict[str, dict[str, Any]]:
