@@ -50,14 +50,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _refusal(error: Exception, arguments: list[str]) -> str:
-    """Return why the words make no sense, with how an option of earlier is said now, or a comma for a point."""
+    """Return why the words make no sense, with a key for an option that does not exist, or a comma for a point."""
     from rocking.checks import number_hint  # numpy with it, which help does not need
-    from rocking.cli.options import renamed
+    from rocking.cli.options import key_of
 
-    option = str(getattr(error, "option_name", ""))
-    if new := renamed(option):
-        return f"{option} {new}"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
+    if hasattr(error, "possibilities") and (key := key_of(str(getattr(error, "option_name", "")))):
+        return f"{message.rstrip('.')}; it is a key: {key}"
     hints = [number_hint(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
     return f"{message}{next(filter(None, hints), '') if re.search('valid (number|float)', message) else ''}"
 

@@ -154,43 +154,12 @@ def out(kinds: dict[str, Any]) -> Any:
     return typer.Option(help=described(kinds), rich_help_panel=OUTPUT)
 
 
-_TO_OUT = ("--csv", "--mat", "--netcdf", "--picture", "--animation", "--stages", "--p58", "--nrml", "--excel")
-_RENAMED = {
-    "--contact": "--friction VALUE alone, with which a body slides, hops and flies",
-    "--motion-y": "--motion y=FILE",
-    "--motion-z": "--motion z=FILE",
-    "--component": "FILE#COMPONENT",
-    "--component-y": "--motion y=FILE#COMPONENT",
-    "--component-z": "--motion z=FILE#COMPONENT",
-    "--vertical": "--motion x=FILE#COMPONENT --motion z=FILE#VERTICAL",
-    "--vertical-file": "--motion x=FILE --motion z=FILE",
-    "--format": "--set motion.format=NAME",
-    "--time-step": "--set motion.time_step=SECONDS",
-    "--linear": "--set settings.linear=true",
-    "--engine": "--set settings.engine=NAME",
-    "--gravity": "--set settings.gravity=VALUE",
-    "--angle": "--set body.slenderness_angle=RAD",
-    "--semi-diagonal": "--set body.semi_diagonal=LENGTH",
-    "--up": "--set body.up=y",
-    "--fill-holes": "--set body.repair=all",
-    "--repair": "--set body.repair=all",
-    "--surface": "--set body.surface=wrap",
-    "--inner-parts": "--set body.inner_parts=solid",
-    "--base-tolerance": "--set body.base_tolerance=LENGTH",
-    "--record": "--motion FILE",
-    "--records": "--motion FOLDER, a pattern in quotes, or LIST.csv",
-    "--model": "--restitution MODEL",
-    "--common-dispersion": "--crossing common-dispersion",
-    "--to": "--out FILE",
-    "--what": "--out WHAT=FILE",
-    **{option: f"--out {option.removeprefix('--')}=FILE, or --out FILE by its ending" for option in _TO_OUT},
-}
+def key_of(option: str) -> str:
+    """Return how `--set` states what is no option, but a key of a motion or of the settings; empty for others.
 
-
-def renamed(option: str) -> str:
-    """Return how an option of earlier is said now; empty if there was none.
-
-    >>> renamed("--gravity")
-    'is now --set settings.gravity=VALUE'
+    >>> key_of("--gravity"), key_of("--time-step"), key_of("--colour")
+    ('--set settings.gravity=VALUE', '--set motion.time_step=VALUE', '')
     """
-    return f"is now {_RENAMED[option]}" if option in _RENAMED else ""
+    key = option.removeprefix("--").replace("-", "_")
+    names = {"motion": tables.ComponentsTable, "settings": tables.StudySettingsTable}
+    return next((f"--set {name}.{key}=VALUE" for name, table in names.items() if key in table.model_fields), "")

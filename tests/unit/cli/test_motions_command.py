@@ -123,7 +123,7 @@ def test_simulate_has_a_row_for_each_record(run, folder):
 
 
 def test_what_is_no_set_is_refused(refuses, folder):
-    """One record is wanted, a pattern with a damaged file, a target without records, and options of earlier."""
+    """One record is wanted, a pattern with a damaged file, a target without records, and an unknown option."""
     refuses(["map", *BLOCK, folder], "this is of one motion")
     refuses(["motion", folder], "one record is wanted")
     refuses(["fragility", *BLOCK, str(folder / "*.at2")], "damaged.at2")
@@ -131,7 +131,7 @@ def test_what_is_no_set_is_refused(refuses, folder):
     refuses(["motions", folder, "--set", "motion.count=2"], "goes with target")
     refuses(["motions", folder, "--set", "motion.component=000"], "a set takes no component")
     refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
-    refuses(["fragility", *BLOCK, "--records", folder], "is now --motion FOLDER")
+    refuses(["fragility", *BLOCK, "--records", folder], "No such option: --records")
     refuses(["motions", folder, "--set", "motion.target=eurocode8:ag=0.25,ground=C"], "with its unit such as 0.25g")
 
 

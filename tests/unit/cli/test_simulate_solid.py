@@ -190,7 +190,7 @@ REFUSED = {
     "no record": (["none.at2"], "none.at2: no such file"),
     "units of a pulse": ([SINE, "--units", "g"], "a pulse takes no --units"),
     "component of a pulse": ([SINE, "--set", "motion.component=N"], "a pulse takes no motion.component"),
-    "component by name": ([SINE, "--component-z", "UP"], "--component-z is now --motion z=FILE#COMPONENT"),
+    "component by name": ([SINE, "--component-z", "UP"], "No such option: --component-z"),
     "component unknown": (["record.txt#up", "--units", "m/s2"], "'up'"),
     "components": (["--motion", "y=record.txt", "--units", "m/s2"], "record.txt#column 2"),
     "unit": ([SINE, "--units", "cm"], 'states units = "m"'),

@@ -111,15 +111,19 @@ def test_models_in_space_are_listed_and_shown(printed):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (("simulate", *SIZE, PULSE, "--contact"), "--contact is now --friction VALUE alone"),
-        (("map", *SIZE, PULSE, "--gravity", "9"), "--gravity is now --set settings.gravity=VALUE"),
-        (("motion", PULSE, "--csv", "a.csv"), "--csv is now --out csv=FILE, or --out FILE by its ending"),
+        (("simulate", *SIZE, PULSE, "--contact"), "No such option: --contact"),
+        (
+            ("map", *SIZE, PULSE, "--gravity", "9"),
+            "No such option: --gravity; it is a key: --set settings.gravity=VALUE",
+        ),
+        (("map", *SIZE, PULSE, "--time-step", "9"), "it is a key: --set motion.time_step=VALUE"),
+        (("map", *SIZE, PULSE, "--out"), "Option '--out' requires an argument"),
         (("simulate", *SIZE, PULSE, "--set", "settings.gravty=9"), "unknown key 'gravty'; did you mean gravity?"),
         (("simulate", *SIZE, PULSE, "--set", "setting.gravity=9"), "no table named 'setting' here; there are body"),
     ],
 )
-def test_an_option_of_before_or_an_unknown_key_says_the_new_way(capsys, words, sentence):
-    """An old option, an unknown table and an unknown key are met with one sentence that says what to type."""
+def test_an_unknown_option_or_key_is_refused_with_what_to_type(capsys, words, sentence):
+    """An option that is a key, an unknown table and an unknown key are refused in one sentence with what to type."""
     with pytest.raises(SystemExit) as stop:
         main([str(word) for word in words])
     assert (stop.value.code, sentence in capsys.readouterr().err) == (2, True)
