@@ -86,7 +86,7 @@ def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
         (pulses, by_speed, Settings(gravity=9.8125, linear=True)),
         (pulses, ConstantRestitution(), Settings(gravity=9.8125, friction=0.3125)),
         (upright, ConstantRestitution(), Settings(gravity=9.8125, friction=0.75, bounce=0.25)),
-        (flat, on_hull, Settings(gravity=9.8125, friction=0.625, mechanics="space with friction")),
+        (flat, on_hull, Settings(gravity=9.8125, friction=0.5, mechanics="space with friction")),
     ]
 
 

@@ -55,7 +55,7 @@ def prediction_picture(found: Prediction) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(5.0, 0.8), count=16)
+    >>> found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.3, 0.8), count=16)
     >>> [panel.get_xlabel() for panel in prediction_picture(found).axes]
     ['probability [-]', 'contribution to the variance of overturning [-]']
     """
