@@ -161,5 +161,5 @@ def key_of(option: str) -> str:
     ('--set settings.gravity=VALUE', '--set motion.time_step=VALUE', '')
     """
     key = option.removeprefix("--").replace("-", "_")
-    names = {"motion": tables.ComponentsTable, "settings": tables.StudySettingsTable}
-    return next((f"--set {name}.{key}=VALUE" for name, table in names.items() if key in table.model_fields), "")
+    keys = {"motion": tables.ComponentsTable.model_fields, "settings": tables.StudySettingsTable.model_fields}
+    return next((f"--set {name}.{key}=VALUE" for name, known in keys.items() if key in known), "")
