@@ -135,15 +135,15 @@ class ColumnText:
         return numbers if numbers is not None and numbers.shape[1] == self._columns else None
 
     def column(self, place: int) -> list[str]:
-        """Return the cells of one column."""
+        """Return the cells of one column, with decimal points."""
         if self.at_once is None:
-            return [cells[place] for _, cells in self.rows]
+            return [cells[place].replace(",", ".") for _, cells in self.rows]
         lines, separator = self._plain
         return "\n".join(lines).replace(separator or " ", " ").split()[place :: self._columns]
 
     def numbers(self, *, last_short: bool = False) -> FloatArray:
         """Return all numbers, of shape (rows, columns); where the last row may be short, NaN for what it lacks."""
-        values = None if last_short else self.at_once
+        values = self.at_once
         if values is None:
             self._check_commas()
             short = len(self.rows[-1][1])

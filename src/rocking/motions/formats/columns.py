@@ -102,7 +102,7 @@ class Columns(RecordFormat):
         # such a number comes first: what it does to names, commas and widths would only hide it
         for line, cells in text.first[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
-        comments = _comments(source)
+        comments = _comments(source, None if text.at_once is None else text.first[0][0])  # none among plain numbers
         stated = HeaderWords.of(source, [*comments, *text.words], len(text.first[0][1]))
         _check_words(source, text)
         names = text.names or stated.names

@@ -28,7 +28,6 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     return stated or asked or ""
 
 
-_POWER = re.compile("[ed]", re.IGNORECASE)
 _OTHER = re.compile(
     r"(?<![^\W_])(?:(vel|velocity|velocities|vt2)|(disp|dis|displacements?|dt2))(?![^\W_])", re.IGNORECASE
 )
@@ -90,8 +89,8 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
 
 def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
     """Return the step of a column of times [s]; the user's where it is the same to the digits of the column."""
-    decimals = [len(word.replace(",", ".").partition(".")[2]) for word in words]
-    powers = [_last_place(word) for word in words if _POWER.search(word)] if _POWER.search("".join(words)) else []
+    decimals = [len(word.partition(".")[2]) for word in words]
+    powers = [_last_place(word) for word in words if _has_power(word)] if _has_power("".join(words)) else []
     # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
     places = min(powers) if powers else max(decimals)
     digit = float(10.0 ** -min(15, max(-3, places)))
@@ -102,9 +101,14 @@ def step_of_times(source: Source, times: FloatArray, words: list[str], told: flo
     return step_between_samples(source, step, told)
 
 
+def _has_power(text: str) -> bool:
+    low = text.lower()
+    return "e" in low or "d" in low
+
+
 def _last_place(word: str) -> int:
     """Return the place behind the point of the last digit of a number with an exponent."""
-    digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
+    digits, _, power = word.lower().replace("d", "e").partition("e")
     return len(digits.partition(".")[2]) - int(power)
 
 

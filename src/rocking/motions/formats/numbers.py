@@ -81,8 +81,7 @@ def _is_plain(text: str, separator: str = "") -> bool:
     data = text.encode("utf-8")
     if data.translate(None, _CHARACTERS + separator.encode()):
         return False
-    zeros = data.translate(_ZEROS)
-    return not any(sign + b"0000" in zeros for sign in (b"e", b"e+", b"e-"))
+    return b"e0000" not in data.translate(_ZEROS, b"+-")
 
 
 def gap_words(text: str) -> str:
