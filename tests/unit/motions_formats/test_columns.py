@@ -334,6 +334,13 @@ def test_plain_numbers_are_read_at_once_as_one_by_one(layout: str, monkeypatch: 
     assert (used > 30) == (layout != "fortran")  # the copies that are read one by one alone would compare nothing
 
 
+@pytest.mark.parametrize("text", ["END\nEND\n", "end of data\nEOF", "***\n---\n", "acc [g]\nEND\n", "acc [g]\n"])
+def test_a_file_without_a_line_of_numbers_is_refused(text: str) -> None:
+    """Words that close a file are no line of numbers."""
+    with pytest.raises(RecordError):
+        COLUMNS.read(_source(text), "g", 0.02)
+
+
 BBP = (
     "#    time(sec)      N-S({0})      E-W({0})      U-D({0})\n"
     "0.0\t1.0\t2.0\t3.0\n2.5e-2\t4.0\t5.0\t6.0\n5.0e-2\t7.0\t8.0\t9.0\n"

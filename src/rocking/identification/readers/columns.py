@@ -239,7 +239,7 @@ def _text(source: Source) -> tuple[tuple[str, ...], FloatArray]:
     if not source.is_text:
         raise source.error(None, "not a text file")
     text = ColumnText.of(source)
-    if not text.first or text.names is None:
+    if text.is_empty or text.names is None:
         raise source.error(0, "names of the columns expected, with their units, such as: time [s], rotation [rad]")
     return text.names, text.numbers()
 

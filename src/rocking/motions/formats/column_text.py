@@ -108,6 +108,11 @@ class ColumnText:
         first = [(line, _cells(text, separator, names)) for line, text in body[:most]]
         return cls(source, names, readable(heading), tuple(above), separator, first)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no line of numbers comes before the words that close the file."""
+        return not self.first or self.first[0][0] >= self.source.end
+
     @cached_property
     def rows(self) -> list[tuple[int, list[str]]]:
         """Index of each line of numbers, and its cells."""
@@ -169,8 +174,8 @@ class ColumnText:
         hint = "; where commas part the columns, decimals need a point" if self.separator == "," else ""
         for row, (line, cells) in enumerate(self.rows, 1):
             if len(cells) + missing * (row == len(self.rows)) != self._columns:
-                found = f"{self._columns} numbers expected{why}, found {len(cells)}{hint}"
-                raise self.source.error(line, found)
+                cause = f"{self._columns} numbers expected{why}, found {len(cells)}{hint}"
+                raise self.source.error(line, cause)
             yield line, [cell.replace(",", ".") for cell in cells]
 
 

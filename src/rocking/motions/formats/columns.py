@@ -97,7 +97,7 @@ class Columns(RecordFormat):
             raise source.error(None, "not a text file")
         headers.refuse_other(source)
         text = ColumnText.of(source)
-        if not text.first:
+        if text.is_empty:
             raise source.error(None, "no line with numbers")
         # such a number comes first: what it does to names, commas and widths would only hide it
         for line, cells in text.first[:_LOOK]:
