@@ -110,9 +110,9 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         Acceleration of gravity [m/s2].
     duration : float, optional
         How long to follow the body [s]; if not given, the motion and 15 / p (with friction 15 sqrt(R / g)) after it,
-        and where the body then still rocks until it rests, at most 300 / p (300 sqrt(R / g)) after the motion. A plane
-        body whose impacts lose no energy never rests, and a body in space on a round base takes long to compute: both
-        are followed for 15 / p alone. The summary states whether the body still rocks.
+        and where the body then still rocks until it rests, at most 300 / p (300 sqrt(R / g)) after the motion. A body
+        whose impacts lose no energy never rests: it is followed for 15 / p alone. The summary states whether the body
+        still rocks.
         With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
         leans less: `outcome` needs it. In space with friction until it rests.
     engine : {"auto", "fast", "reference"}

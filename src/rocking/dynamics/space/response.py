@@ -64,7 +64,7 @@ class SpatialResponse(ResponseBase):
     components : tuple
         Motions along x, y and upwards; None where there is none.
     ends_early : bool
-        Whether a body on a round base was followed for 15 / p after the motion only, as no duration was given.
+        Whether it was followed for 15 / p after the motion only, because no impact cost energy in that time.
     """
 
     body: SpatialBody
@@ -185,8 +185,8 @@ class SpatialResponse(ResponseBase):
         if not self.ends_early:
             return super()._end_reason
         return (
-            f"without a duration a round base, which takes long to compute, is followed for {_AFTER:g} / p after the "
-            "motion; duration= in Python follows it further"
+            f"no impact cost energy in the {_AFTER:g} / p after the motion, so it does not come to rest; duration= in "
+            "Python follows it further"
         )
 
     @property
@@ -368,7 +368,7 @@ def response_in_space(
 ) -> SpatialResponse:
     """Return how a body rocks in space; without any component, when it is let go."""
     # duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, and where it then still
-    # rocks until it rests or lies, at most 300 / p after the motion, but for round bases; on ground at rest the same
+    # rocks until it rests or lies, at most 300 / p after the motion, unless it rocks on without loss
     made = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start.check_grounded()
@@ -380,26 +380,34 @@ def response_in_space(
     length = usual if duration is None else checks.positive("duration", duration, "s")
     ground = ground_of(*components, until=length if shaken else np.inf, scale=scale)
     plausibility.warn(plausibility.of_scaled(shaken, scale))
-    engine = SpatialReference(made, ground, law_of(restitution, made), settings)
-    found = engine.run(start.quaternion, start.body_velocity, length)
-    least = length if shaken else 0.0
-    rocks = found.outcome is Outcome.ROCKED and found.pieces[-1].contact.mode is not ContactMode.REST
-    unbounded = bool(shaken) and duration is None and rocks
-    if unbounded and not made.round:  # a rolling base takes far longer to compute
-        longest = max(motion.duration for motion in shaken) + _LONG / p
-        ground = ground_of(*components, until=longest, scale=scale)
-        engine = SpatialReference(made, ground, law_of(restitution, made), settings)
-        longer = engine.run(start.quaternion, start.body_velocity, longest)
-        if longer.outcome is not Outcome.FAILED:
+    law = law_of(restitution, made)
+
+    def followed(until: float) -> SpatialTrajectory:
+        engine = SpatialReference(made, ground, law, settings)
+        return engine.run(start.quaternion, start.body_velocity, until)
+
+    found, ends_early, least = followed(length), False, length if shaken else 0.0
+    if shaken and duration is None and _rocks(found):
+        ends_early = not _loses_energy(found, length - _AFTER / p)
+        longest = length + (_LONG - _AFTER) / p
+        longer = found if ends_early else followed(longest)
+        if longer is not found and longer.outcome is not Outcome.FAILED:
             found, length = longer, longest
     last = found.pieces[-1]
     rests = duration is None and last.contact.mode is ContactMode.REST
     end = min(length, max(least, last.start + _FINE / p) if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
-    return SpatialResponse(
-        made, ground, engine.law, settings, time, found, end, components, ends_early=unbounded and made.round
-    )
+    return SpatialResponse(made, ground, law, settings, time, found, end, components, ends_early=ends_early)
+
+
+def _rocks(history: SpatialTrajectory) -> bool:
+    return history.outcome is Outcome.ROCKED and history.pieces[-1].contact.mode is not ContactMode.REST
+
+
+def _loses_energy(history: SpatialTrajectory, since: float) -> bool:
+    """Return whether an impact after a time costs energy; a rim that rolls on without one never comes to rest."""
+    return any(event.after < event.before for event in history.impacts if event.time > since)
 
 
 def started(start: SpatialStart, pace: float) -> SpatialStart:
