@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
 SOURCE, TESTS = ROOT / "src" / "rocking", ROOT / "tests"
 # rooms from the lowest up: what stands on one line does not know each other
 FLOORS = (
-    ("conventions", "errors", "lazy", "version"),
+    ("conventions", "errors", "lazy", "messages", "version"),
     ("language", "outcome", "checks", "plausibility", "portable"),
     ("quantities",),
     ("tables", "statistics"),
