@@ -46,7 +46,7 @@ def coarser(table: BedTable) -> BedTable:
 def read(table: BedTable, points: int, cases: FloatArray) -> FloatArray:
     found = []
     for flatness, offset, damping, hardness in cases.tolist():
-        kappa = table.position(table.plane(points, damping, hardness), np.array(flatness), np.array(offset))
+        kappa = table.position(table.bed(points, damping, hardness), np.array(flatness), offset)
         arm, gyration = float(kappa) - offset, 1.0 / flatness - 1.0
         found.append((gyration - arm * (1.0 + offset)) / (gyration + arm * (1.0 - offset)))
     return np.minimum(found, most(cases))

@@ -1,29 +1,43 @@
 """What could make the measured groups differ: explanations by the contact bed, their fit, and a verdict in words."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.evidence.comparison import rmse
 from rocking.evidence.likelihood import interval_log_likelihood
 from rocking.evidence.measurements import DataSet, all_measurements
-from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table
+from rocking.evidence.simplex import minimise_many
+from rocking.portable import each
+from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, Bed, bed_table
 from rocking.restitution.calibrated import scatter
 from rocking.restitution.impact import ImpactGeometry
-from rocking.restitution.shifted_impulse import shifted
 
 _SCATTER = ((-2.3, 0.8), ((-6.0, 0.0), (0.0, 1.5)))
 _FIRST, _POLISHED, _AGAIN = 300, 1500, 100
 
-Predict = Callable[[FloatArray, DataSet, int], FloatArray]
 BLOCKS = ("S", "M", "L")
 DAMPED = (1.0, DAMPING[1])
 """Damping ratios that are fitted [-]: below 1 hops are left over, and the stated error nears the scatter."""
+
+
+_DAMPING, _HARDNESS, _FACTOR, _SHARE = (slice(first, first + 4) for first in (0, 4, 8, 12))  # of each group
+_TAPE, _UNEVEN = 16, 17
+_WITHOUT = (math.nan,) * 8 + (1.0,) * 8 + (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One fitted number of an explanation."""
+
+    name: str  # name
+    start: float  # where the fit starts
+    bounds: tuple[float, float]  # its range
+    sets: slice  # columns of `coefficients` that have its value
 
 
 @dataclass(frozen=True)
@@ -32,31 +46,50 @@ class Physics:
 
     name: str  # short name
     sentence: str  # what it says
-    parameters: tuple[str, ...]  # names of the fitted numbers, the number of points not among them
-    start: tuple[float, ...]  # where the fit starts
-    bounds: tuple[tuple[float, float], ...]  # range of each
-    predict: Predict  # takes parameters, a `DataSet` and the number of points; returns coefficients
+    parameters: tuple[Parameter, ...]  # the fitted numbers, the number of points not among them
+
+    def columns(self, behind: int) -> IntArray:
+        """Return where each number of `coefficients` is: a parameter's number, or behind them those without effect."""
+        columns = behind + np.arange(len(_WITHOUT))
+        for number, parameter in enumerate(self.parameters):
+            columns[parameter.sets] = number
+        return columns
+
+    def predict(self, values: Sequence[float], data: DataSet, points: int) -> FloatArray:
+        """Return the coefficients of the rows of data [-]."""
+        return coefficients(np.array([*values, *_WITHOUT])[self.columns(len(values))], data, points)
+
+
+def coefficients(numbers: FloatArray, data: DataSet, points: IntArray | int) -> FloatArray:
+    """Return coefficients of rows, of shape (..., rows), for numbers of shape (..., 18) [-].
+
+    The columns are damping ratio, hardness, factor of the interface and share of the base, each of Table 1, S, M and
+    L; the energy lost beside the bed times mass [kg]; and the shift of the impulse times the relative width.
+    """
+    group = data.group_number
+    cell, across, along = bed_table().bed(points, numbers[..., _DAMPING], numbers[..., _HARDNESS])
+    light = np.where(np.isnan(data.mass), 0.0, 1.0 / np.where(np.isnan(data.mass), 1.0, data.mass))
+    tape = np.sqrt(np.maximum(1.0 - numbers[..., _TAPE, None] * light, 0.0))
+    shift = numbers[..., _UNEVEN, None] / relative_width(data)
+    of_rows = cell[..., group], across[..., group], along[..., group]
+    r = _on_bed(data.slenderness, of_rows, numbers[..., _SHARE][..., group], shift)
+    return np.asarray(numbers[..., _FACTOR][..., group] * tape * r)
 
 
 def bed_coefficients(
-    slenderness: FloatArray,
-    points: int,
-    damping: FloatArray | float,
-    hardness: FloatArray | float,
-    *,
-    share: FloatArray | float = 1.0,
-    shift: FloatArray | float = 0.0,
+    slenderness: FloatArray, points: int, damping: float, hardness: float, share: float = 1.0, shift: float = 0.0
 ) -> FloatArray:
     """Return the bed's coefficients of rectangles of a slenderness h/b that stand on the middle of their base [-]."""
-    # share: part of the base that the bed reaches over [-]; shift: added to the position of the impulse, which stays
-    # between the middle and the foot [-]
-    block = ImpactGeometry.of_slenderness(slenderness)
-    lever = share * block.old_lever
-    geometry = ImpactGeometry(block.height, lever, lever, block.spread_x, block.spread_y)
-    flatness = 1.0 / (1.0 + geometry.base_gyration / share**2)
-    table = bed_table()
-    kappa = table.position(table.plane(points, damping, hardness), flatness, np.zeros_like(flatness))
-    return shifted(geometry, np.minimum(np.maximum(kappa + shift, 0.0), 1.0))
+    # share: part of the base that the bed reaches over [-]; shift: added to the position of the impulse [-]
+    return _on_bed(slenderness, bed_table().bed(points, damping, hardness), np.asarray(share), np.asarray(shift))
+
+
+def _on_bed(slenderness: FloatArray, bed: Bed, share: FloatArray, shift: FloatArray) -> FloatArray:
+    gyration = ImpactGeometry.of_slenderness(slenderness).base_gyration
+    kappa = bed_table().position(bed, 1.0 / (1.0 + gyration / share**2), 0.0)
+    # the impulse stays between the middle and the foot
+    arm = np.minimum(np.maximum(kappa + shift, 0.0), 1.0) * share
+    return np.asarray((gyration - arm * share) / (gyration + arm * share))  # Eq. 3
 
 
 def relative_width(data: DataSet) -> FloatArray:
@@ -69,72 +102,50 @@ def relative_width(data: DataSet) -> FloatArray:
 
 def explanations() -> tuple[Physics, ...]:
     """Return the explanations that are compared."""
-    zeta, hard, eta, base = ("damping", DAMPED), ("hardness", HARDNESS), (0.9, 1.0), (0.5, 1.0)
-    bed = ((zeta[0], hard[0]), (1.5, 100.0), (zeta[1], hard[1]))
+    bed = Parameter("damping", 1.5, DAMPED, _DAMPING), Parameter("hardness", 100.0, HARDNESS, _HARDNESS)
+    damping, hardness = bed
+    eta, base = (0.98, (0.9, 1.0), _FACTOR), (0.95, (0.5, 1.0), _SHARE)
     return (
-        Physics("one bed", "all blocks stand on one bed; mass has no effect", *bed, _bed),
+        Physics("one bed", "all blocks stand on one bed; mass has no effect", bed),
         Physics(
             "loss beside the bed",
             "a factor eta for all blocks on tape (S, M, L), none for Table 1",
-            (*bed[0], "eta"), (*bed[1], 0.98), (*bed[2], eta),
-            lambda p, data, points: _by_row(data, 1.0, p[2], p[2], p[2]) * _bed(p, data, points),
+            (*bed, Parameter("eta", 0.98, (0.9, 1.0), slice(9, 12))),
         ),
         Physics(
             "loss that does not grow with mass",
             "a loss of energy that falls as 1/mass in relation, as of a tape under all blocks",
-            (*bed[0], "tape"), (*bed[1], 0.01), (*bed[2], (0.0, 0.2)), _tape,
+            (*bed, Parameter("tape", 0.01, (0.0, 0.2), slice(_TAPE, _TAPE + 1))),
         ),
         Physics(
-            "loss by group",
-            "an interface factor eta of its own for each group",
-            (*bed[0], *_by_group("eta")), (*bed[1], 0.98, 0.98, 0.98), (*bed[2], eta, eta, eta),
-            lambda p, data, points: _by_row(data, 1.0, *p[2:]) * _bed(p, data, points),
+            "loss by group", "an interface factor eta of its own for each group", (*bed, *_by_group("eta", *eta)[1:])
         ),
         Physics(
             "damping by group",
             "the damping ratio of the bed differs between the groups",
-            ("hardness", "damping Table 1", *_by_group("damping")), (100.0, 1.5, 1.5, 1.5, 1.5),
-            (hard[1], *(DAMPED,) * 4),
-            lambda p, data, points: bed_coefficients(data.slenderness, points, _by_row(data, *p[1:]), float(p[0])),
+            (hardness, *_by_group("damping", 1.5, DAMPED, _DAMPING)),
         ),
         Physics(
             "hardness by group",
             "the hardness of the bed, or the landing speed, differs between the groups",
-            ("damping", "hardness Table 1", *_by_group("hardness")), (1.5, 100.0, 100.0, 100.0, 100.0),
-            (zeta[1], *(HARDNESS,) * 4),
-            lambda p, data, points: bed_coefficients(data.slenderness, points, float(p[0]), _by_row(data, *p[1:])),
+            (damping, *_by_group("hardness", 100.0, HARDNESS, _HARDNESS)),
         ),
         Physics(
             "narrower base by group",
             "the base rests on a part of its width that differs between the groups",
-            (*bed[0], *_by_group("share")), (*bed[1], 0.95, 0.95, 0.95), (*bed[2], base, base, base),
-            lambda p, data, points: _bed(p, data, points, share=_by_row(data, 1.0, *p[2:])),
+            (*bed, *_by_group("share", *base)[1:]),
         ),
         Physics(
             "unevenness of one height",
             "millimetres of the same height under all blocks move the impulse by an amount over the width",
-            (*bed[0], "uneven"), (*bed[1], 0.05), (*bed[2], (-0.5, 0.5)),
-            lambda p, data, points: _bed(p, data, points, shift=p[2] / relative_width(data)),
+            (*bed, Parameter("uneven", 0.05, (-0.5, 0.5), slice(_UNEVEN, _UNEVEN + 1))),
         ),
-    )  # fmt: skip
+    )
 
 
-def _by_group(parameter: str) -> tuple[str, ...]:
-    return tuple(f"{parameter} {group}" for group in BLOCKS)
-
-
-def _bed(p: FloatArray, data: DataSet, points: int, **more: FloatArray) -> FloatArray:
-    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), **more)
-
-
-def _tape(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    light = np.where(np.isnan(data.mass), 0.0, 1.0 / np.where(np.isnan(data.mass), 1.0, data.mass))
-    return np.asarray(np.sqrt(np.maximum(1.0 - p[2] * light, 0.0)) * _bed(p, data, points))
-
-
-def _by_row(data: DataSet, *values: float) -> FloatArray:
-    """Return the value of each row's group."""
-    return np.array(values)[data.group_number]
+def _by_group(name: str, start: float, bounds: tuple[float, float], columns: slice) -> list[Parameter]:
+    groups = enumerate(("Table 1", *BLOCKS), columns.start)
+    return [Parameter(f"{name} {group}", start, bounds, slice(column, column + 1)) for column, group in groups]
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,73 +170,110 @@ class BedFit:
     @property
     def at_a_limit(self) -> tuple[str, ...]:
         """Parameters that the fit has pushed to the end of their range."""
-        pairs = zip(self.values.items(), self.physics.bounds, strict=True)
+        at = {each.name: (self.values[each.name], *each.bounds) for each in self.physics.parameters}
         return tuple(
-            name for (name, value), (low, high) in pairs if min(value - low, high - value) < 2e-3 * (high - low)
+            name for name, (value, low, high) in at.items() if min(value - low, high - value) < 2e-3 * (high - low)
         )
 
 
 def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[int] = POINTS) -> BedFit:
     """Fit one explanation with each of some numbers of contact points [-]."""
+    return bed_fits(data, (physics,), points)[0]
+
+
+def bed_fits(
+    data: DataSet | None = None, compared: Sequence[Physics] | None = None, points: Sequence[int] = POINTS
+) -> tuple[BedFit, ...]:
+    """Fit explanations, all if none are given, with each of some numbers of contact points [-]; least BIC first."""
     rows = data or all_measurements()
-    first = np.array([*physics.start, *_SCATTER[0]])
-    tried = [(*_most_likely(physics, rows, n, first, _FIRST), n) for n in points]
-    near, _, n = max(tried, key=lambda each: each[1])
-    # a simplex that has collapsed at a bound is started once more
-    near, _ = _most_likely(physics, rows, n, near, _POLISHED)
-    best, log_likelihood = _most_likely(physics, rows, n, near, _POLISHED)
-    mean = physics.predict(best[:-2], rows, n)
-    count = len(physics.parameters) + 3
+    searches = [
+        _Search(physics, number, np.array([*(each.start for each in physics.parameters), *_SCATTER[0]]))
+        for physics in compared or explanations()
+        for number in points
+    ]
+    found = _most_likely(searches, rows, _FIRST)
+    families = [found[first : first + len(points)] for first in range(0, len(found), len(points))]
+    best = [max(family, key=lambda search: search.log_likelihood) for family in families]
+    for _ in range(2):  # a simplex that has collapsed at a bound is started once more
+        best = _most_likely(best, rows, _POLISHED)
+    return tuple(sorted((_fit(search, rows) for search in best), key=lambda fit: fit.bic))
+
+
+def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
+    """Return the logarithm of the probability of each printed number by fits that have not seen it, (fits, rows)."""
+    rows = data or all_measurements()
+    searches = [
+        _Search(fit.physics, fit.points, np.array([*fit.values.values(), math.log(fit.floor), fit.slope]), unseen)
+        for fit in fits  # their points are kept
+        for unseen in range(len(rows))
+    ]
+    unseen = [search.log_likelihood_unseen for search in _most_likely(searches, rows, _AGAIN)]
+    return np.array(unseen).reshape(len(fits), len(rows))
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """Where a search for the most likely parameters of an explanation starts, or where it has ended."""
+
+    physics: Physics
+    points: int
+    at: FloatArray  # the parameters, and floor (its logarithm) and slope of the scatter
+    unseen: int | None = None  # row that takes no part
+    log_likelihood: float = math.nan
+    log_likelihood_unseen: float = math.nan  # of that row
+
+
+def _fit(search: _Search, data: DataSet) -> BedFit:
+    *values, log_floor, slope = search.at.tolist()
+    mean = search.physics.predict(values, data, search.points)
+    names = [each.name for each in search.physics.parameters]
     return BedFit(
-        physics, n, dict(zip(physics.parameters, best[:-2].tolist(), strict=True)),
-        math.exp(best[-2]), float(best[-1]), log_likelihood,
-        count * math.log(len(rows)) - 2.0 * log_likelihood, rmse(mean, rows.coefficient), mean,  # Eq. 138
+        search.physics, search.points, dict(zip(names, values, strict=True)),
+        math.exp(log_floor), slope, search.log_likelihood,
+        (len(values) + 3) * math.log(len(data)) - 2.0 * search.log_likelihood,  # Eq. 138
+        rmse(mean, data.coefficient), mean,
     )  # fmt: skip
 
 
-def bed_fits(data: DataSet | None = None) -> tuple[BedFit, ...]:
-    """Fit every explanation."""
-    return tuple(sorted((fit_bed(each, data) for each in explanations()), key=lambda fit: fit.bic))
+def _most_likely(searches: Sequence[_Search], data: DataSet, steps: int) -> list[_Search]:
+    """Return where searches end that all take their steps at once."""
+    sizes = np.array([search.at.size for search in searches])
+    width = int(sizes.max())
+    points = np.array([[search.points] for search in searches])
+    columns = np.array([[*each.physics.columns(width), each.at.size - 2, each.at.size - 1] for each in searches])
+    seen = np.array([np.delete(np.arange(len(data)), [] if (i := each.unseen) is None else i) for each in searches])
+    starts, low, span = np.zeros((3, len(searches), width))
+    for place, search in enumerate(searches):
+        limits = np.array([*(each.bounds for each in search.physics.parameters), *_SCATTER[1]])
+        low[place, : search.at.size], span[place, : search.at.size] = limits[:, 0], limits[:, 1] - limits[:, 0]
+        starts[place, : search.at.size] = np.clip(
+            (search.at - limits[:, 0]) / (limits[:, 1] - limits[:, 0]), 0.02, 0.98
+        )
 
+    def at(free: FloatArray, number: IntArray) -> FloatArray:
+        return np.asarray(low[number] + span[number] * np.clip(free, 0.0, 1.0))
 
-def left_out(fit: BedFit, data: DataSet | None = None) -> FloatArray:
-    """Return the logarithm of the probability of each printed number by a fit that has not seen it; points are kept."""
-    rows = data or all_measurements()
-    start = np.array([*fit.values.values(), math.log(fit.floor), fit.slope])
-    every = np.arange(len(rows))
-    scores = np.empty(len(rows))
-    for i in every.tolist():
-        seen, unseen = rows.rows((every != i).tolist()), rows.rows([i])
-        best, _ = _most_likely(fit.physics, seen, fit.points, start, _AGAIN)
-        scores[i] = _log_likelihood(fit.physics, unseen, fit.points, best)
-    return scores
+    def of_rows(free: FloatArray, number: IntArray) -> FloatArray:
+        both = np.concatenate([at(free, number), np.broadcast_to(_WITHOUT, (len(free), len(_WITHOUT)))], axis=1)
+        numbers = np.take_along_axis(both, columns[number], axis=1)
+        mean = coefficients(numbers[:, :-2], data, points[number])
+        sd = scatter(mean, each(math.exp, numbers[:, -2:-1]), numbers[:, -1:])
+        return interval_log_likelihood(data.low, data.high, mean, sd)
 
+    def misfit(free: FloatArray, number: IntArray) -> FloatArray:
+        likelihood = np.take_along_axis(of_rows(free, number), seen[number], axis=1).sum(axis=1)
+        return np.asarray(10.0 * np.abs(free - np.clip(free, 0.0, 1.0)).sum(axis=1) - likelihood)
 
-def _log_likelihood(physics: Physics, data: DataSet, points: int, at: FloatArray) -> float:
-    mean = physics.predict(at[:-2], data, points)
-    sd = scatter(mean, math.exp(float(at[-2])), float(at[-1]))
-    return float(interval_log_likelihood(data.low, data.high, mean, sd).sum())
-
-
-def _most_likely(
-    physics: Physics, data: DataSet, points: int, start: FloatArray, steps: int
-) -> tuple[FloatArray, float]:
-    from scipy.optimize import minimize
-
-    limits = np.array([*physics.bounds, *_SCATTER[1]])
-    low, span = limits[:, 0], limits[:, 1] - limits[:, 0]
-
-    def inside(free: FloatArray) -> FloatArray:
-        return np.asarray(low + span * np.clip(free, 0.0, 1.0))
-
-    def misfit(free: Any) -> float:
-        outside = np.abs(free - np.clip(free, 0.0, 1.0)).sum()
-        return -_log_likelihood(physics, data, points, inside(free)) + 10.0 * float(outside)
-
-    options: Any = {"xatol": 1e-5, "fatol": 1e-5, "maxfev": steps, "adaptive": True}
-    result: Any = minimize(misfit, np.clip((start - low) / span, 0.02, 0.98), method="Nelder-Mead", options=options)
-    best = inside(result.x)
-    return best, _log_likelihood(physics, data, points, best)
+    best = minimise_many(misfit, starts, sizes, tolerance=1e-5, evaluations=steps)
+    every = np.arange(len(searches))
+    found, rows = at(best, every), of_rows(best, every)
+    return [
+        replace(
+            search, at=found[i, : sizes[i]], log_likelihood=float(rows[i, seen[i]].sum()),
+            log_likelihood_unseen=float(rows[i, search.unseen]) if search.unseen is not None else math.nan,
+        )
+        for i, search in enumerate(searches)
+    ]  # fmt: skip
 
 
 UNRESOLVED = 2.0  # difference in BIC below which two explanations are not told apart
@@ -334,7 +382,7 @@ _WIDTHS = (
 def explanation() -> Explanation:
     """Compare the explanations on all 39 measurements, ranked by BIC, each with its left-out scores."""
     fits = bed_fits()
-    scores = {fit.physics.name: left_out(fit) for fit in fits}
+    scores = {fit.physics.name: scores for fit, scores in zip(fits, left_out(fits), strict=True)}
     return Explanation(tuple(_ranked(fit, scores, fits[0].bic) for fit in fits))
 
 

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.portable import each
 
 POINTS: Final = (2, 3, 5, 11, 41)  # numbers of contact points that were tabulated
@@ -65,6 +65,9 @@ def stated_error(points: int, damping: float, flatness: FloatArray | float) -> F
     return np.asarray(errors)[np.searchsorted(SQUATNESS, flatness, side="right") - 1]
 
 
+Bed = tuple[IntArray, FloatArray, FloatArray]  # cell of the table, and how far in it along hardness and damping
+
+
 @dataclass(frozen=True, eq=False)
 class BedTable:
     """Impulse positions kappa over the half base, from its middle (0) to the new foot (1)."""
@@ -75,27 +78,33 @@ class BedTable:
     hardness: FloatArray  # nodes of the dimensionless landing speed v sqrt(k / m) / g [-]
     positions: FloatArray  # kappa by point count, flatness, offset, damping and hardness [-]
 
-    def plane(self, points: int, damping: FloatArray | float, hardness: FloatArray | float) -> FloatArray:
-        """Return the positions of one bed, or of one a body."""
-        i, along = _between(self._logarithms[0], each(math.log, damping))
-        j, across = _between(self._logarithms[1], each(math.log, hardness))
-        beds = self.positions[POINTS.index(points)]
-        first = (1.0 - across) * beds[..., i, j] + across * beds[..., i, j + 1]
-        second = (1.0 - across) * beds[..., i + 1, j] + across * beds[..., i + 1, j + 1]
-        return np.asarray((1.0 - along) * first + along * second)
+    def bed(self, points: IntArray | int, damping: FloatArray | float, hardness: FloatArray | float) -> Bed:
+        """Return where beds are in the table, broadcast."""
+        (low, across), (lower, along) = map(
+            _between, self._logarithms, (each(math.log, hardness), each(math.log, damping))
+        )
+        cell = self.positions[0].size * np.searchsorted(POINTS, points) + lower * self.hardness.size + low
+        return cell, across, along
+
+    def position(self, bed: Bed, flatness: FloatArray, offset: FloatArray | float) -> FloatArray:
+        """Return the positions for bodies on beds, broadcast; those outside the table have the value at its edge."""
+        cell, across, along = bed
+        (j, aside), (i, up) = _between(self.offset, offset), _between(self.flatness, flatness)
+        cells = np.asarray(cell + (i * self.offset.size + j) * (self.damping.size * self.hardness.size))
+        found = self.positions.ravel()[self._corners.reshape(2, 2, 2, 2, *(1,) * cells.ndim) + cells]
+        for share in (across, along, aside, up):
+            found = (1.0 - share) * found[0] + share * found[1]
+        return np.asarray(found)
+
+    @cached_property
+    def _corners(self) -> IntArray:
+        """How far the corners of a cell are from its first: by hardness, damping, offset and flatness."""
+        strides = np.array(self.positions.strides[:0:-1]) // self.positions.itemsize
+        return np.tensordot(strides, np.indices((2, 2, 2, 2)), axes=1)
 
     @cached_property
     def _logarithms(self) -> tuple[FloatArray, FloatArray]:
-        return each(math.log, self.damping), each(math.log, self.hardness)
-
-    def position(self, plane: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
-        """Return the positions for bodies; those outside the table are given the value at its edge."""
-        i, across = _between(self.flatness, flatness)
-        j, along = _between(self.offset, offset)
-        own = (np.arange(plane.shape[2]),) if plane.ndim == 3 else ()
-        first = (1.0 - along) * plane[i, j, *own] + along * plane[i, j + 1, *own]
-        second = (1.0 - along) * plane[i + 1, j, *own] + along * plane[i + 1, j + 1, *own]
-        return np.asarray((1.0 - across) * first + across * second)
+        return each(math.log, self.hardness), each(math.log, self.damping)
 
 
 def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -75,7 +75,7 @@ class Calibrated(InertiaModel):
         return np.asarray(sum(means))  # Eq. 293
 
 
-def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
+def scatter(mean: FloatArray, floor: FloatArray | float, slope: FloatArray | float) -> FloatArray:
     """Return the standard deviation of a measured coefficient around its prediction, floor (1 - mean)^slope [-]."""
     return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
 

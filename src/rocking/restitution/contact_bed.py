@@ -171,8 +171,8 @@ class ContactBedModel(InertiaModel):
         gyration = geometry.base_gyration / half**2
         old, new = geometry.old_lever / half, geometry.new_lever / half
         table = bed_table()
-        plane = table.plane(self.points, float(self.damping), float(self.hardness))
-        arm = table.position(plane, 1.0 / (1.0 + gyration), old - 1.0) - (old - 1.0)
+        bed = table.bed(self.points, self.damping, self.hardness)
+        arm = table.position(bed, 1.0 / (1.0 + gyration), old - 1.0) - (old - 1.0)
         after = gyration + arm * new
         # the impulse of a plumb line far outside the table could lie behind it
         most = np.sqrt(geometry.old_gyration / geometry.new_gyration)
