@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,9 @@ from rocking.studies.sensitivity.restitutions import SampledRestitution
 
 _POINTS = 1025
 _GRID = 2001
+_STRIDE = 50  # of the points by which the part of the grid that is read is found
 _ROUNDS = 3
+_PIECE = 64
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -195,7 +198,10 @@ def restitution_distribution(
     outside = not all(low <= known.side(foot).slenderness_ratio <= high for foot in FEET)
     bounds = {foot: energy_bound(known, foot) for foot in FEET}
     feet = (onto,) if known.is_symmetric else FEET
-    truncated = {foot: _truncated(posterior, ImpactGeometry.of_body(known, foot), bounds[foot]) for foot in feet}
+    geometries = {foot: ImpactGeometry.of_body(known, foot) for foot in feet}
+    truncated = {
+        foot: _truncated(posterior, tuple(map(float, astuple(geometries[foot]))), bounds[foot]) for foot in feet
+    }
     for foot, (_, cut) in truncated.items():
         plausibility.warn(plausibility.of_truncation(cut, foot, bounds[foot]))
     both = {foot: truncated.get(foot, truncated[onto]) for foot in FEET}
@@ -203,12 +209,13 @@ def restitution_distribution(
     return RestitutionDistribution(tables, cuts, bounds, onto, outside)
 
 
-def _truncated(posterior: Calibration, geometry: ImpactGeometry, bound: float) -> tuple[FloatArray, float]:
+@lru_cache(maxsize=64)
+def _truncated(posterior: Calibration, geometry: tuple[float, ...], bound: float) -> tuple[FloatArray, float]:
     """Return the quantiles on condition that 0 <= r <= bound, and the probability of what is outside."""
     eta, k, s, gamma = posterior.samples.T
-    mean = np.clip(eta * shifted(geometry, k), 0.0, bound)
+    mean = np.clip(eta * shifted(ImpactGeometry(*map(np.asarray, geometry)), k), 0.0, bound)
     sd = scatter(mean, s, gamma)
-    low, high = _mixture(np.array([0.0, bound]), mean, sd)[0].tolist()
+    low, high = _below(np.array([0.0, bound]), mean, sd).tolist()
     return np.clip(_quantiles(mean, sd, low, high), 0.0, bound), 1.0 - (high - low)
 
 
@@ -219,22 +226,25 @@ def _quantiles(mean: FloatArray, sd: FloatArray, low: float, high: float) -> Flo
     levels[[0, -1]] = 0.25 / _POINTS, 1.0 - 0.25 / _POINTS
     levels = low + (high - low) * levels
     grid = np.linspace((mean - 8.0 * sd).min(), (mean + 8.0 * sd).max(), _GRID)
-    r = np.interp(levels, _mixture(grid, mean, sd)[0], grid)
+    ends = np.searchsorted(_below(grid[::_STRIDE], mean, sd), levels[[0, -1]]) * _STRIDE
+    used = grid[max(ends[0] - _STRIDE, 0) : ends[1] + 1]
+    r = np.interp(levels, _below(used, mean, sd), used)
     step = grid[1] - grid[0]
     for _ in range(_ROUNDS):
-        below, density = _mixture(r, mean, sd)
+        below, density = _below(r, mean, sd), _density(r, mean, sd)
         r = r - np.clip((below - levels) / np.maximum(density, 1e-300), -step, step)
     return np.maximum.accumulate(r)
 
 
-def _mixture(at: FloatArray, mean: FloatArray, sd: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return distribution and density of the mixture, in pieces that stay in the cache."""
+def _below(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
+    """Return the distribution of the mixture, in pieces that stay in the cache."""
     from scipy.special import ndtr
 
-    below, density = np.empty_like(at), np.empty_like(at)
-    for first in range(0, at.size, 64):
-        part = slice(first, first + 64)
-        z = (at[part, np.newaxis] - mean) / sd
-        below[part] = ndtr(z).mean(axis=1)  # Eq. 137
-        density[part] = (np.exp(-0.5 * z**2) / sd).mean(axis=1) / math.sqrt(2.0 * math.pi)
-    return below, density
+    pieces = np.split(at, range(_PIECE, at.size, _PIECE))
+    return np.concatenate([ndtr((piece[:, np.newaxis] - mean) / sd).mean(axis=1) for piece in pieces])  # Eq. 137
+
+
+def _density(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
+    """Return the density of the mixture, in pieces that stay in the cache."""
+    pieces = ((piece[:, np.newaxis] - mean) / sd for piece in np.split(at, range(_PIECE, at.size, _PIECE)))
+    return np.concatenate([(np.exp(-0.5 * z**2) / sd).mean(axis=1) for z in pieces]) / math.sqrt(2.0 * math.pi)

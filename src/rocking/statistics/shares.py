@@ -8,6 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.statistics.sobol import MOST, scrambled_sobol
 
 REPETITIONS = 1000  # bootstrap samples of an interval
 
@@ -37,16 +38,15 @@ class SaltelliDesign:
         if count & (count - 1):
             near = 1 << count.bit_length()
             raise InvalidValueError(f"count must be a power of two, such as {near // 2} or {near}, got {count}")
+        checks.whole("numbers that the inputs take", sum(self.inputs.values()), 0, MOST // 2)
 
     @property
     def points(self) -> FloatArray:
         """The two samples one after the other, then for each input the first sample with that input of the second."""
-        from scipy.stats.qmc import Sobol
-
         size = sum(self.inputs.values())
         if not size:
             return np.empty((2 * self.count, 0))
-        both = Sobol(2 * size, scramble=True, seed=self.seed).random(self.count)
+        both = scrambled_sobol(2 * size, self.count, self.seed)
         first, second = both[:, :size], both[:, size:]
         mixed, at = [], 0
         for width in self.inputs.values():

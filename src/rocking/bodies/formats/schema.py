@@ -17,7 +17,7 @@ UnitName = Literal["m", "cm", "mm", "ft", "in"]
 class StrictTable(BaseModel):
     """A table whose keys are all known; numbers are numbers, and finite."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True)
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)
 
     @model_validator(mode="before")
     @classmethod
