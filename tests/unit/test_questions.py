@@ -10,7 +10,7 @@ from rocking.motions import pulses
 from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
 from rocking.motions.synthetic import families
-from rocking.spec import construction
+from rocking.spec import bodies
 from rocking.spec.document import CampaignDocument, IdentificationDocument, ResponseDocument
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference, steps, targets
@@ -31,7 +31,7 @@ def test_the_keys_of_a_body_are_documented():
     """The table of [body], which no description makes, has every key that may stand beside a file or an angle."""
     page = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8")
     table = page.partition("### [body]")[2].partition("###")[0]
-    keys = {"file", *construction._BESIDE_FILE, *construction._OUTSIDE, "width", "height", *construction._OF_ANGLE}
+    keys = {"file", *bodies._BESIDE_FILE, *bodies._OUTSIDE, "width", "height", *bodies._OF_ANGLE}
     assert {key for key in keys if f"`{key}`" not in table} == set()
 
 
@@ -44,7 +44,7 @@ def test_the_files_on_the_page_are_questions():
     assert checked(CampaignDocument, study).map.x.count == 60
     assert checked(IdentificationDocument, measured).identify.tilt == [0.0, 0.001]
     for tables in (response, study, measured):
-        construction.any_body_of(tables["body"], None)
+        bodies.any_body_of(tables["body"], None)
     others = (ResponseDocument, study), (CampaignDocument, response), (IdentificationDocument, response)
     for kind, tables in others:
         with pytest.raises(InvalidValueError):

@@ -16,7 +16,8 @@ from rocking.bodies.formats.schema import BODIES, BodyFile, KnownTable, Positive
 from rocking.bodies.formats.words import blamed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
-from rocking.spec.construction import body_of, motion_of
+from rocking.spec.bodies import body_of
+from rocking.spec.construction import motion_of
 from rocking.spec.document import (
     OneMotionTable,
     ResponseTable,

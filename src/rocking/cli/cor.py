@@ -16,7 +16,7 @@ from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendati
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
-from rocking.spec.construction import body_moved
+from rocking.spec.bodies import body_moved
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
@@ -72,8 +72,6 @@ def cor(
     as_json: options.AsJson = False,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
-    from rocking.evidence import recommend as recommended
-
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
@@ -89,15 +87,21 @@ def cor(
             raise InvalidValueError(
                 f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
             )
-        found = recommended(subject, models=restitution) if recommend else None
+        found = _recommended(subject, restitution) if recommend else None
         answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
     else:
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
         impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=identities)
-        answer = PlaneAnswer(impact, length, recommended(subject, models=models) if recommend else None)
+        answer = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
     deliver(answer, exports, as_json=as_json)
+
+
+def _recommended(subject: Any, models: Any) -> Any:
+    from rocking.evidence import recommend
+
+    return recommend(subject, models=models)
 
 
 def _model(text: str) -> Any:

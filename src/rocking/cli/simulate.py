@@ -19,7 +19,8 @@ from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
-from rocking.spec.construction import any_body_of, motions_of
+from rocking.spec.bodies import any_body_of
+from rocking.spec.construction import motions_of
 from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.response import problem_of, response_problem

@@ -31,7 +31,7 @@ _WITHOUT = (math.nan,) * 8 + (1.0,) * 8 + (0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Parameter:
+class FittedNumber:
     """One fitted number of an explanation."""
 
     name: str  # name
@@ -46,7 +46,7 @@ class Physics:
 
     name: str  # short name
     sentence: str  # what it says
-    parameters: tuple[Parameter, ...]  # the fitted numbers, the number of points not among them
+    parameters: tuple[FittedNumber, ...]  # the fitted numbers, the number of points not among them
 
     def columns(self, behind: int) -> IntArray:
         """Return where each number of `coefficients` is: a parameter's number, or behind them those without effect."""
@@ -102,7 +102,7 @@ def relative_width(data: DataSet) -> FloatArray:
 
 def explanations() -> tuple[Physics, ...]:
     """Return the explanations that are compared."""
-    bed = Parameter("damping", 1.5, DAMPED, _DAMPING), Parameter("hardness", 100.0, HARDNESS, _HARDNESS)
+    bed = FittedNumber("damping", 1.5, DAMPED, _DAMPING), FittedNumber("hardness", 100.0, HARDNESS, _HARDNESS)
     damping, hardness = bed
     eta, base = (0.98, (0.9, 1.0), _FACTOR), (0.95, (0.5, 1.0), _SHARE)
     return (
@@ -110,12 +110,12 @@ def explanations() -> tuple[Physics, ...]:
         Physics(
             "loss beside the bed",
             "a factor eta for all blocks on tape (S, M, L), none for Table 1",
-            (*bed, Parameter("eta", 0.98, (0.9, 1.0), slice(9, 12))),
+            (*bed, FittedNumber("eta", 0.98, (0.9, 1.0), slice(9, 12))),
         ),
         Physics(
             "loss that does not grow with mass",
             "a loss of energy that falls as 1/mass in relation, as of a tape under all blocks",
-            (*bed, Parameter("tape", 0.01, (0.0, 0.2), slice(_TAPE, _TAPE + 1))),
+            (*bed, FittedNumber("tape", 0.01, (0.0, 0.2), slice(_TAPE, _TAPE + 1))),
         ),
         Physics(
             "loss by group", "an interface factor eta of its own for each group", (*bed, *_by_group("eta", *eta)[1:])
@@ -138,14 +138,14 @@ def explanations() -> tuple[Physics, ...]:
         Physics(
             "unevenness of one height",
             "millimetres of the same height under all blocks move the impulse by an amount over the width",
-            (*bed, Parameter("uneven", 0.05, (-0.5, 0.5), slice(_UNEVEN, _UNEVEN + 1))),
+            (*bed, FittedNumber("uneven", 0.05, (-0.5, 0.5), slice(_UNEVEN, _UNEVEN + 1))),
         ),
     )
 
 
-def _by_group(name: str, start: float, bounds: tuple[float, float], columns: slice) -> list[Parameter]:
+def _by_group(name: str, start: float, bounds: tuple[float, float], columns: slice) -> list[FittedNumber]:
     groups = enumerate(("Table 1", *BLOCKS), columns.start)
-    return [Parameter(f"{name} {group}", start, bounds, slice(column, column + 1)) for column, group in groups]
+    return [FittedNumber(f"{name} {group}", start, bounds, slice(column, column + 1)) for column, group in groups]
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +187,7 @@ def bed_fits(
     """Fit explanations, all if none are given, with each of some numbers of contact points [-]; least BIC first."""
     rows = data or all_measurements()
     searches = [
-        _Search(physics, number, np.array([*(each.start for each in physics.parameters), *_SCATTER[0]]))
+        _BedSearch(physics, number, np.array([*(each.start for each in physics.parameters), *_SCATTER[0]]))
         for physics in compared or explanations()
         for number in points
     ]
@@ -203,7 +203,7 @@ def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
     """Return the logarithm of the probability of each printed number by fits that have not seen it, (fits, rows)."""
     rows = data or all_measurements()
     searches = [
-        _Search(fit.physics, fit.points, np.array([*fit.values.values(), math.log(fit.floor), fit.slope]), unseen)
+        _BedSearch(fit.physics, fit.points, np.array([*fit.values.values(), math.log(fit.floor), fit.slope]), unseen)
         for fit in fits  # their points are kept
         for unseen in range(len(rows))
     ]
@@ -212,7 +212,7 @@ def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class _Search:
+class _BedSearch:
     """Where a search for the most likely parameters of an explanation starts, or where it has ended."""
 
     physics: Physics
@@ -223,7 +223,7 @@ class _Search:
     log_likelihood_unseen: float = math.nan  # of that row
 
 
-def _fit(search: _Search, data: DataSet) -> BedFit:
+def _fit(search: _BedSearch, data: DataSet) -> BedFit:
     *values, log_floor, slope = search.at.tolist()
     mean = search.physics.predict(values, data, search.points)
     names = [each.name for each in search.physics.parameters]
@@ -235,7 +235,7 @@ def _fit(search: _Search, data: DataSet) -> BedFit:
     )  # fmt: skip
 
 
-def _most_likely(searches: Sequence[_Search], data: DataSet, steps: int) -> list[_Search]:
+def _most_likely(searches: Sequence[_BedSearch], data: DataSet, steps: int) -> list[_BedSearch]:
     """Return where searches end that all take their steps at once."""
     sizes = np.array([search.at.size for search in searches])
     width = int(sizes.max())

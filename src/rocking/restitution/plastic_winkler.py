@@ -59,7 +59,7 @@ class PlasticWinkler(InertiaModel):
         """Return the coefficients of homogeneous rectangles; many of them from an interpolant."""
         place = np.log(slenderness)
         inside = np.abs(place) <= _REACH
-        if np.unique(slenderness).size <= _LARGEST_BATCH or not inside.all():
+        if len(set(slenderness.ravel().tolist())) <= _LARGEST_BATCH or not inside.all():
             return super().raw_of_slenderness(slenderness)
         return np.asarray(1.0 / (1.0 + np.exp(-_log_odds()(place))))
 
@@ -84,7 +84,7 @@ def _impact(kappa: float, back: float, edges: tuple[float, ...]) -> float:
 
 
 @lru_cache(maxsize=1)
-def _log_odds() -> np.polynomial.Chebyshev:
+def _log_odds() -> "np.polynomial.Chebyshev":
     # ln(r / (1 - r)) against ln(h/b) is smooth, and straight at both ends: r ~ (h/b)^2 and 1 - r ~ (h/b)^-2
     def odds(place: FloatArray) -> FloatArray:
         r = PlasticWinkler().of_geometry(ImpactGeometry.of_slenderness(np.exp(place)))

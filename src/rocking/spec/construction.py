@@ -1,20 +1,14 @@
-"""Bodies, motions and restitutions, made from the tables that describe them."""
+"""Motions and restitutions, made from the tables that describe them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking import checks
-from rocking.bodies import Block, Body, Section
-from rocking.bodies.formats import read_body
-from rocking.bodies.formats.body_file import body_from_tables
-from rocking.bodies.formats.reader import KNOWN
-from rocking.bodies.formats.words import suggestion
+from rocking.bodies import Body
 from rocking.bodies.solid import Solid
-from rocking.checks import length_unit
 from rocking.conventions import FEET
-from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.reader import read_motion
@@ -22,7 +16,7 @@ from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
-from rocking.spec.reading import InputFiles, located, tables_in
+from rocking.spec.reading import InputFiles, located
 from rocking.spec.record_sets import are_together, motions_of_set, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
@@ -42,8 +36,6 @@ MOST_IN_MEMORY = 100_000
 
 COMPLEMENTARITY = "complementarity"
 """Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
-
-_OUTSIDE = ("units", "name", "note")
 
 
 def restitutions_of(
@@ -129,102 +121,6 @@ def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[
         return law, label
     values = {foot: distribution.sample(table.count, seed, foot) for foot in FEET}
     return replace(type(law).of_sample(values, seed=seed), cut=law.cut), f"{table.count} values of the {label}"
-
-
-def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
-    """Return the plane body that a table describes."""
-    body = any_body_of(table, inputs)
-    if isinstance(body, Solid):
-        raise InvalidValueError("describes a body in space; a plane body is needed here")
-    return body
-
-
-def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
-    """Return the body that a table describes, plane or in space."""
-    if "file" in table:
-        return _body_in_file(table, inputs)
-    sizes, angle = {"width", "height"} & set(table), {"slenderness_angle", "semi_diagonal"} & set(table)
-    if angle and sizes:
-        raise InvalidValueError("give width and height, or slenderness_angle and semi_diagonal, not both")
-    if angle:
-        return _from_angle(table)
-    if sizes:
-        own = {key: value for key, value in table.items() if key not in _OUTSIDE}
-        table = {**{key: value for key, value in table.items() if key in _OUTSIDE}, "block": own}
-    tables = {key: value for key, value in table.items() if value is not None}
-    if inputs is not None:
-        _note_outlines(tables, ".", inputs)
-    try:
-        return body_from_tables(tables, None if inputs is None else inputs.folder)
-    except MissingExtraError:
-        raise
-    except RockingError as error:
-        raise InvalidValueError(str(error)) from error
-
-
-def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
-    """Return the body of a table; turned: it moves in space, where a plane body of known depth is one in space."""
-    body = any_body_of(table, inputs)
-    if not turned or isinstance(body, Solid):
-        return body
-    tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
-    inner = (each for each in tables.values() if isinstance(each, dict))
-    if not isinstance(body, (Block, Section)) or not any("depth" in each for each in (tables, *inner)):
-        raise InvalidValueError(
-            "a plane body has one horizontal motion, along x, and a vertical one, along z; a block or section whose "
-            "depth is given (--depth, or depth in its table) moves along y too, as a body in space, of which .glb "
-            "files are"
-        )
-    return Solid.from_section(body)
-
-
-_BESIDE_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_parts", "base_tolerance", *KNOWN)
-_OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
-
-
-def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
-    options = {key: value for key, value in table.items() if key != "file"}
-    if odd := sorted(set(options) - set(_BESIDE_FILE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60} beside file{suggestion(odd[0], _BESIDE_FILE)}")
-    if not isinstance(table["file"], str):
-        raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
-    if inputs is None:
-        raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
-    path = inputs.file(table["file"])
-    _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
-    length = length_unit(options.get("units") or "m")
-    for key in ("base_tolerance", "wall"):
-        if options.get(key) is not None:
-            options[key] *= length
-    if isinstance(options.get("centre"), list):
-        options["centre"] = [checks.number("centre", value, "m") * length for value in options["centre"]]
-    return read_body(path, **options)
-
-
-def _from_angle(table: dict[str, Any]) -> Body:
-    """Return a block by its slenderness angle [rad] and its semi-diagonal."""
-    if odd := sorted(set(table) - set(_OF_ANGLE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60}{suggestion(odd[0], sorted(_OF_ANGLE))}")
-    if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
-        raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
-    scale = length_unit(table["units"])
-    sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
-    options: dict[str, Any] = {key: table[key] for key in ("density", "mass", "moment_of_inertia") if key in table}
-    if "depth" in sizes:
-        options["depth"] = sizes["depth"] * scale
-    return Block.from_angle(table["slenderness_angle"], sizes["semi_diagonal"] * scale, **options)
-
-
-def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> None:
-    """Note the files of outlines that a body names; what is wrong with it is said when it is read."""
-    try:
-        regions = tables.get("section", {}).get("region", [])
-        names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]
-    except (AttributeError, TypeError):
-        return
-    for name in names:
-        if isinstance(name, str):
-            inputs.file((Path(folder) / name).as_posix())
 
 
 def motions_of(

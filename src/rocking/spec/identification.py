@@ -28,7 +28,8 @@ from rocking.exported import Exported
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS, TEXTS
 from rocking.identification.results import compared
-from rocking.spec.construction import body_of, motion_of
+from rocking.spec.bodies import body_of
+from rocking.spec.construction import motion_of
 from rocking.spec.reading import InputFiles, located
 from rocking.tables import Column, Table, text_array, to_csv
 from rocking.tables.table import written_whole

@@ -8,7 +8,8 @@ from rocking.bodies import Body, Solid
 from rocking.errors import InvalidValueError
 from rocking.prediction import Prediction, predict
 from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
-from rocking.spec.construction import any_body_of, components_of, motion_of, motions_of, restitutions_of
+from rocking.spec.bodies import any_body_of
+from rocking.spec.construction import components_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:

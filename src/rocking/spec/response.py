@@ -13,7 +13,8 @@ from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, sim
 from rocking.dynamics._simulate import together
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
-from rocking.spec.construction import body_moved, components_of, motion_of, restitutions_of
+from rocking.spec.bodies import body_moved
+from rocking.spec.construction import components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:

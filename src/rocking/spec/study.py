@@ -9,7 +9,8 @@ from rocking.bodies import Body
 from rocking.conventions import g
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.spec.construction import body_moved, motions_of, restitutions_of
+from rocking.spec.bodies import body_moved
+from rocking.spec.construction import motions_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet

@@ -15,7 +15,8 @@ from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction, Validation, predict, score
 from rocking.prediction._score import EVENTS, Outcomes, Trial, UntakenRow, column, is_outcomes
-from rocking.spec.construction import any_body_of, motion_of
+from rocking.spec.bodies import any_body_of
+from rocking.spec.construction import motion_of
 from rocking.spec.prediction import options_of
 from rocking.spec.reading import InputFiles, checked, located, tables_in
 
