@@ -1,9 +1,7 @@
 """The commands and their help; a command is imported when it is called, all of them for the list."""
 
-import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib import import_module
-from pathlib import Path
 
 import typer
 
@@ -11,49 +9,80 @@ from rocking.cli.completion import words_on_the_line
 from rocking.version import SOFTWARE
 
 _MODULES = {"models": "catalogues", "formats": "catalogues", "assess": "predict"}
-COMMANDS = (
-    "cor", "equilibria", "simulate", "predict", "assess", "validate", "identify", "map", "minimum", "spectrum",
-    "fragility", "inventory", "codes", "paper", "models", "motion", "motions", "convert", "formats", "serve",
-    "example",
-)  # fmt: skip
+COMMANDS = {
+    "cor": "Print the coefficient of restitution of a body under every model, with its interval and what it implies.",
+    "equilibria": (
+        "Print in which ways a solid can stand, how far its centre must rise to leave each, and how sure its base is."
+    ),
+    "simulate": (
+        "Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."
+    ),
+    "predict": (
+        "Print how likely a body is to rock, slide or overturn, what decides it, and whether that can be predicted."
+    ),
+    "assess": "Print whether a body stands, its margin to overturning, what governs, and what to do about it.",
+    "validate": "Print how good predictions of a folder's trials are, beside the plain curve that they must beat.",
+    "identify": "Print the coefficient of restitution that a measurement of rocking says, with its interval.",
+    "map": (
+        "Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."
+    ),
+    "minimum": "Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone.",
+    "spectrum": (
+        "Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."
+    ),
+    "fragility": "Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known.",
+    "inventory": "Print which objects of a list stay standing at a level of shaking, the worst first, in plain words.",
+    "codes": "Print what code methods say of bodies, how many that they call safe overturn, and how far off they are.",
+    "paper": "Recompute the paper: every table, figure, erratum and claim, and the league of all models.",
+    "models": "List the restitution models, in the plane and in space: reference, assumptions, domain, known defects.",
+    "motion": "Print what a record or a pulse is, its intensity measures and its response spectrum.",
+    "motions": (
+        "Print the intensity measures of many records and write them with RotD spectra; choose and scale to a target."
+    ),
+    "convert": (
+        'Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper".'
+    ),
+    "formats": (
+        "List the formats of ground-motion files: name, endings, whether they state unit and step, what to know."
+    ),
+    "serve": "Open the application: draw a body, drop a record, see it rock. Everything stays on this machine.",
+    "example": (
+        "Run an example in this folder: write its files, show the commands and what they answer; or list what there is."
+    ),
+}
+"""What each command does; the command itself is in the module of its name, imported when it is called."""
 
 
 def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     """Return the command line application; for the words of one call, the command they name, or a list."""
+    named = next(iter(arguments or words_on_the_line()), "")
     app = typer.Typer(
         name="rocking",
         help="Predict what an impact costs a rocking body, with the evidence beside every number.",
         no_args_is_help=True,
         pretty_exceptions_enable=False,
+        # plain text where the list alone is shown: frames around it would take twice the time to be imported
+        rich_markup_mode=None if arguments is not None and named[:1] in {"", "-"} else "rich",
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    named = next(iter(arguments or words_on_the_line()), "")
-    for name in COMMANDS:
-        module = _MODULES.get(name, name)
+    for name, summary in COMMANDS.items():
         if arguments is None or name == named:
-            app.command(name)(getattr(import_module(f"rocking.cli.{module}"), name))
+            command = getattr(import_module(f"rocking.cli.{_MODULES.get(name, name)}"), name)
+            app.command(name, help=summary)(command)
         elif named not in COMMANDS:
-            app.command(name)(_listed(module, name))
+            app.command(name, short_help=summary)(_nothing)
     if named not in COMMANDS:
         from rocking.cli.campaign import campaign
         from rocking.cli.evidence import evidence
 
-        app.add_typer(campaign, name="campaign")
-        app.add_typer(evidence, name="evidence")
+        for group in (campaign, evidence):
+            app.add_typer(group, short_help=group.info.help)
     return app
 
 
-def _listed(module: str, name: str) -> Callable[[], None]:
-    """Return what stands for a command in the list: its own first sentence, read without importing it."""
-    tree = ast.parse(Path(__file__).with_name(f"{module}.py").read_text("utf-8"))
-
-    def listed() -> None:
-        """Be replaced by the command itself."""
-
-    command = next(node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == name)
-    listed.__doc__ = ast.get_docstring(command)
-    return listed
+def _nothing() -> None:
+    """Stand for a command in the list."""
 
 
 def _version(wanted: bool) -> None:

@@ -21,7 +21,7 @@ def models(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """List the restitution models, in the plane and in space: reference, assumptions, domain, known defects."""
+    """Run `rocking models`."""
     from rocking import checks, restitution
     from rocking.errors import UnknownModelError
     from rocking.restitution.from_file import file_of, model_in_file
@@ -56,7 +56,7 @@ class _Models:
 
 
 def formats(as_json: AsJson = False) -> None:
-    """List the formats of ground-motion files: name, endings, whether they state unit and step, what to know."""
+    """Run `rocking formats`."""
     deliver(_Formats(), as_json=as_json)
 
 

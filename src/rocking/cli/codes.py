@@ -84,7 +84,7 @@ def codes(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print what code methods say of bodies, how many that they call safe overturn, and how far off they are."""
+    """Run `rocking codes`."""
     from rocking.cli.arguments import Arguments, as_typed
     from rocking.cli.study import TABLES
     from rocking.motions.intensity import measure as measure_of

@@ -71,7 +71,7 @@ def convert(
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Write a record in another format, corrected by --set "motion.process=mean; bandpass:low=0.1,high=25; taper"."""
+    """Run `rocking convert`."""
     from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
     from rocking.motions.motion import GroundMotion
     from rocking.spec.document import ComponentsTable, RecordDocument

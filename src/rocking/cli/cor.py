@@ -71,7 +71,7 @@ def cor(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
+    """Run `rocking cor`."""
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):

@@ -43,7 +43,7 @@ def equilibria(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print in which ways a solid can stand, how far its centre must rise to leave each, and how sure its base is."""
+    """Run `rocking equilibria`."""
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body")
     subject, _ = named_body(arguments, quiet=as_json)

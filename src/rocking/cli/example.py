@@ -24,7 +24,7 @@ def example(
     force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,
 ) -> None:
-    """Run an example in this folder: write its files, show the commands and what they answer; or list what there is."""
+    """Run `rocking example`."""
     known = examples.catalogue()
     if name is None or listed or as_json:
         chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}

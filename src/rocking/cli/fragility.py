@@ -105,7 +105,7 @@ def fragility(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
-    """Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
+    """Run `rocking fragility`."""
     from rocking import checks
     from rocking.cli.arguments import Arguments, as_typed, document_file, typed
     from rocking.cli.fragility_answer import FragilityAnswer

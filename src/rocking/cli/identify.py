@@ -56,7 +56,7 @@ def identify(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print the coefficient of restitution that a measurement of rocking says, with its interval."""
+    """Run `rocking identify`."""
     from rocking.cli.arguments import as_options, as_typed
     from rocking.spec.identification import IdentificationProblem
 

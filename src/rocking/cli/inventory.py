@@ -67,7 +67,7 @@ def inventory(
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print which objects of a list stay standing at a level of shaking, the worst first, in plain words."""
+    """Run `rocking inventory`."""
     from rocking.cli.arguments import document_file
     from rocking.cli.study import problem_in
 

@@ -48,7 +48,7 @@ def map(
     out: Annotated[list[str] | None, options.out(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
+    """Run `rocking map`."""
     from rocking.cli.arguments import Arguments, as_typed, document_file
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 

@@ -64,7 +64,7 @@ def minimum(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone."""
+    """Run `rocking minimum`."""
     from rocking.cli.arguments import Arguments, as_typed, document_file
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 

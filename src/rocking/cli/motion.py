@@ -67,7 +67,7 @@ def motion(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print what a record or a pulse is, its intensity measures and its response spectrum."""
+    """Run `rocking motion`."""
     from rocking.cli.arguments import Arguments, hinted
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.labels import fine_samples

@@ -69,7 +69,7 @@ def motions(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print the intensity measures of many records and write them with RotD spectra; choose and scale to a target."""
+    """Run `rocking motions`."""
     from rocking.cli.arguments import Arguments, as_typed, document_file, is_file, with_sets
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors

@@ -20,7 +20,7 @@ def paper(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print every number as JSON.")] = False,
 ) -> None:
-    """Recompute the paper: every table, figure, erratum and claim, and the league of all models."""
+    """Run `rocking paper`."""
     from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce
 

@@ -50,7 +50,7 @@ def predict(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print how likely a body is to rock, slide or overturn, what decides it, and whether that can be predicted."""
+    """Run `rocking predict`."""
     from rocking.cli.arguments import as_typed, document_file
     from rocking.spec.document import PredictionDocument
     from rocking.spec.prediction import PredictionProblem
@@ -175,7 +175,7 @@ def assess(
     out: Annotated[list[str] | None, options.out(REPORTED)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print whether a body stands, its margin to overturning, what governs, and what to do about it."""
+    """Run `rocking assess`."""
     from rocking.cli.arguments import as_typed, document_file, is_body
     from rocking.spec.document import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem

@@ -23,7 +23,7 @@ def serve(
     workers: Annotated[int | None, typer.Option(help="Processes for a study.", min=1, max=1024)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Open the application: draw a body, drop a record, see it rock. Everything stays on this machine."""
+    """Run `rocking serve`."""
     from rocking.app.settings import ServerSettings
     from rocking.evidence.store import data_folder
 

@@ -92,7 +92,7 @@ def simulate(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
+    """Run `rocking simulate`."""
     from rocking.cli.responses import answer_of
 
     exports = Exports.of(out, EXPORTS)

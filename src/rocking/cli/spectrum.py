@@ -40,7 +40,7 @@ def spectrum(
     out: Annotated[list[str] | None, options.out(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
+    """Run `rocking spectrum`."""
     from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 

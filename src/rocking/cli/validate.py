@@ -41,7 +41,7 @@ def validate(
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Print how good predictions of a folder's trials are, beside the plain curve that they must beat."""
+    """Run `rocking validate`."""
     from rocking.cli.arguments import as_typed
     from rocking.spec.validation import ValidationProblem, files_of
 

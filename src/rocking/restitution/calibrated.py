@@ -98,7 +98,7 @@ def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> Flo
 
 
 @lru_cache(maxsize=1)
-def _nodes() -> tuple[tuple[FloatArray, ...], ...]:
+def _nodes() -> tuple[tuple[Any, ...], ...]:
     """Return the positions of the impulse among the samples, each with its mean factor before and its share behind."""
     eta, k = kept(KEPT)["samples"][:, :2].T
     return tuple((eta[k == node].mean(), node, (k == node).mean()) for node in map(np.float64, sorted(set(k.tolist()))))
