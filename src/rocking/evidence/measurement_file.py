@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from rocking import plausibility
@@ -79,6 +79,8 @@ class Measurement(StrictTable):
     >>> row.ratio, [round(value, 4) for value in row.interval]
     (4.0, [0.93, 0.94, 0.95])
     """
+
+    model_config = ConfigDict(defer_build=False)  # users read its signature
 
     source: Word = Field(description="publication, or whoever measured it")
     licence: Word = Field(description="under what others may use it, such as CC BY 4.0")
