@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import g
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, common, library_of, module
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 COUNT = 10_000
@@ -101,7 +102,7 @@ class Fast:
     def __init__(self, batch: Histories, threads: int = 1, **options: Any) -> None:
         self.library = library_of(batch.segments())
         self.rows = batch.rows()
-        self.count, self.threads, self.settings = len(batch), threads, Settings(**options)
+        self.count, self.threads, self.settings = len(batch), threads, PlaneSettings(**options)
 
     def __call__(self) -> tuple[Arrays, dict[str, int]]:
         """Results and work."""

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine_batch import histories
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.rows import Rows
 
 RECORDS = 1000
 

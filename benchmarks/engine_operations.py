@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.engine_batch import STEP, Histories
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.plane.fast_engine import common
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 
 SOURCE = Path(__file__).with_name("operations.cpp")
 FLAGS = ("-std=c++17", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
@@ -70,9 +70,9 @@ def counted(batch: Histories, p: np.ndarray | None = None, rotation: np.ndarray 
     lengths = np.array([record.size for record in batch.records], np.int64)
     first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
     data = np.concatenate([*batch.records, np.zeros(64)])
-    given = common(Settings(), ConstantRestitution())
+    given = common(PlaneSettings(), ConstantRestitution())
     names = [name for name, _ in _Settings._fields_]
-    settings = _Settings(*({**given, "order": Settings().order, "to_the_ground": False}[name] for name in names))
+    settings = _Settings(*({**given, "order": PlaneSettings().order, "to_the_ground": False}[name] for name in names))
     outcome, counts = np.empty(len(batch), np.int8), np.empty(7, np.int64)
     columns = (batch.alpha, batch.p if p is None else p, batch.r, batch.scale)
     columns = (*columns, np.zeros(len(batch)) if rotation is None else rotation)

@@ -1,6 +1,7 @@
 """The size and shape of the code, measured from the code itself: lines, names, circles, arrows, doors, paths."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections import Counter, defaultdict
@@ -200,6 +201,34 @@ def upward(arrows: dict[str, set[str]]) -> list[tuple[str, str]]:
     ]
 
 
+CHOICE = re.compile(r"rocking\.dynamics\.(\w+\.)?mechanics(_base)?")  # modules that choose the mechanics
+
+
+def choices_of_mechanics(folder: Path) -> dict[str, list[str]]:
+    """Return where code outside the choice of mechanics asks for the body or the friction that decide it."""
+    found: dict[str, list[str]] = {"in_space()": [], "friction is None": [], "isinstance(..., Solid)": []}
+    for name, tree in trees(folder).items():
+        if CHOICE.fullmatch(name):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and _last_name(node.func) == "in_space":
+                found["in_space()"].append(f"{name}:{node.lineno}")
+            if isinstance(node, ast.Call) and _last_name(node.func) == "isinstance":
+                kinds = node.args[1].elts if isinstance(node.args[1], ast.Tuple) else [node.args[1]]
+                if "Solid" in map(_last_name, kinds):
+                    found["isinstance(..., Solid)"].append(f"{name}:{node.lineno}")
+            if (
+                isinstance(node, ast.Compare) and _last_name(node.left) == "friction"
+                and isinstance(node.comparators[0], ast.Constant) and node.comparators[0].value is None
+            ):  # fmt: skip
+                found["friction is None"].append(f"{name}:{node.lineno}")
+    return found
+
+
+def _last_name(node: ast.AST) -> str:
+    return str(getattr(node, "attr", getattr(node, "id", "")))
+
+
 def options() -> dict[str, list[str]]:
     """Return the options of each command, by its name."""
     import typer
@@ -252,7 +281,7 @@ def measures() -> list[Measure]:
     arrows = imports(SOURCE)
     twice = sorted(name for name, count in kinds.items() if count > 1)
     loops, up = circles(arrows), upward(arrows)
-    spoken = options()
+    spoken, asked = options(), choices_of_mechanics(SOURCE)
     distinct = {option for each in spoken.values() for option in each}
     tests = lines(TESTS)[0]
     files, inner = deep_imports(TESTS)
@@ -266,6 +295,7 @@ def measures() -> list[Measure]:
         (f"class names defined twice ({', '.join(twice) or 'none'})", len(twice), 0),
         ("circles, lazy ones too", len(loops), 0),
         ("arrows upward", len(up), 0),
+        *((f"outside the choice of mechanics: {what}", len(places), 0) for what, places in asked.items()),
         ("names in rk", len(rocking.__all__), 32),
         ("options of rocking simulate", len(spoken["simulate"]), 22),
         ("distinct options", len(distinct), 55),
@@ -285,6 +315,8 @@ def measures() -> list[Measure]:
     )
     for loop in loops:
         print("circle:", " ".join(loop))
+    for what, places in asked.items():
+        print(*(f"{what}: {place}" for place in places), sep="\n", end="\n" if places else "")
     for one, other in up:
         print(f"upward: {one} -> {other}")
     return table

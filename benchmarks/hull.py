@@ -21,8 +21,8 @@ from rocking.conventions import FloatArray, g
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround, frame
 from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.history import HullSettings
 from rocking.dynamics.hull.motion import standing
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.motions import GroundMotion
 
 BATCH = 50

@@ -14,7 +14,7 @@ from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.history import HullSettings
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 

@@ -24,7 +24,7 @@ from rocking.dynamics.contact.base import ContactState, Mode, PlaneBase
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import ContactResponse
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.identification import RotationSeries
 from rocking.identification.forced import answer, fit_forced
 from rocking.identification.forced_friction import with_sliding
@@ -150,7 +150,7 @@ def _slid(random: np.random.Generator) -> dict[str, Any] | None:
         motion = _synthetic(random)
     motion = _scaled(random, motion, real)
     floor, base = _floor(motion, truth["tilt"]), PlaneBase.of_body(real)
-    law, settings = GroundContact(truth["friction"]), Settings()
+    law, settings = GroundContact(truth["friction"]), PlaneSettings()
     engine = DrawnContact(base, floor.segments(), law, settings).draws_from(random, truth)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

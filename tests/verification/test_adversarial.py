@@ -17,8 +17,9 @@ from engines import built
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, PlaneSettings
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 CASES = 10_000 if os.environ.get("ROCKING_CAMPAIGN") else 1_000
@@ -191,7 +192,7 @@ KINDS: dict[str, Callable[[Maker], Case]] = {
 }  # fmt: skip
 
 
-def results(cases: list[Case], settings: Settings, name: str) -> dict[str, Any]:
+def results(cases: list[Case], settings: PlaneSettings, name: str) -> dict[str, Any]:
     batch = Batch([case.segments() for case in cases], ConstantRestitution(), settings, 1, name)
     table = {key: np.array([case.row[key] for case in cases]) for key in cases[0].row}
 
@@ -211,7 +212,7 @@ def moved(case: Case, random: np.random.Generator) -> Case:
     return replace(case, row=row, push=np.asarray(case.push) * jitter, lift=lift, step=step)
 
 
-def spread(case: Case, settings: Settings, tries: int = 12) -> tuple[bool, float]:
+def spread(case: Case, settings: PlaneSettings, tries: int = 12) -> tuple[bool, float]:
     """Whether the reference changes its mind about moved copies of a case, and by how much its peak moves."""
     random = np.random.default_rng(1)
     found = results([case, *(moved(case, random) for _ in range(tries))], settings, "reference")
@@ -219,7 +220,7 @@ def spread(case: Case, settings: Settings, tries: int = 12) -> tuple[bool, float
     return changes, float(np.abs(found["peak_rotation"] - found["peak_rotation"][0]).max())
 
 
-def shortened(cases: list[Case], settings: Settings, fast: dict[str, Any], slow: dict[str, Any]) -> int:
+def shortened(cases: list[Case], settings: PlaneSettings, fast: dict[str, Any], slow: dict[str, Any]) -> int:
     """Give cases that differ, and of which the fast engine itself says so, shorter steps; how many they were."""
     differ = np.any([fast[name] != slow[name] for name in DISCRETE], axis=0)
     differ |= np.abs(fast["peak_rotation"] - slow["peak_rotation"]) > 1e-8
@@ -231,7 +232,7 @@ def shortened(cases: list[Case], settings: Settings, fast: dict[str, Any], slow:
     return int(doubted.size)
 
 
-def disagreements(cases: list[Case], settings: Settings) -> tuple[list[str], int, int]:
+def disagreements(cases: list[Case], settings: PlaneSettings) -> tuple[list[str], int, int]:
     """What differs without excuse, in words, how many knife-edges there were, and how many needed shorter steps."""
     fast, slow = results(cases, settings, "fast"), results(cases, settings, "reference")
     doubted = shortened(cases, settings, fast, slow)
@@ -266,7 +267,7 @@ def test_adversarial_cases(kind: str, record_property: Callable[[str, object], N
         first = 1000 * list(KINDS).index(kind)
         numbers = range(first + number, first + math.ceil(CASES / len(KINDS)), len(SPEEDS_OF_REST))
         cases = [KINDS[kind](Maker(k)) for k in numbers]
-        found, on_edge, doubted = disagreements(cases, Settings(rest_speed=rest_speed, most_events=2_000))
+        found, on_edge, doubted = disagreements(cases, PlaneSettings(rest_speed=rest_speed, most_events=2_000))
         bad += [f"rest speed {rest_speed:g}, {line}" for line in found]
         total, edges, short = total + len(cases), edges + on_edge, short + doubted
     record_property("cases, knife-edges, with shorter steps, disagreements", (total, edges, short, len(bad)))
@@ -281,7 +282,7 @@ def test_a_wrong_engine_is_caught() -> None:
     """Negative control: a coefficient of restitution off by 1e-4 moves the peaks that follow an impact."""
     cases = [KINDS["strong"](Maker(number)) for number in range(60)]
     right, wrong, none = (
-        results([replace(c, row=c.row | {"r_right": r, "r_left": r}) for c in cases], Settings(), "fast")
+        results([replace(c, row=c.row | {"r_right": r, "r_left": r}) for c in cases], PlaneSettings(), "fast")
         for r in (0.9, 0.9001, 0.0)
     )
     # r does not matter to a peak before the first impact: with r = 0 it is the same one

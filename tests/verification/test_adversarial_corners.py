@@ -11,10 +11,11 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
@@ -26,7 +27,7 @@ def moved(name: str, push: Any, lift: Any = None, r: float = 0.9, **state: float
     """Results of one body under samples over g, as a batch returns them."""
     segments = Segments.between_samples(STEP, np.asarray(push) * g, None if lift is None else np.asarray(lift) * g)
     sides = {f"{key}_{side}": x for key, x in (("alpha", ALPHA), ("p", P), ("r", r)) for side in ("right", "left")}
-    found = Batch([segments], ConstantRestitution(), Settings(), 1, name).run(
+    found = Batch([segments], ConstantRestitution(), PlaneSettings(), 1, name).run(
         1, lambda a, b: Rows.of(1, **sides, **state)
     )
     return {key: values[0] for key, values in found[0].items()}
@@ -92,7 +93,7 @@ def test_a_peak_within_a_step(rotation: float, velocity: float, name: str) -> No
 def released(alpha: float, p: float, start: float, step: float, count: int, name: str) -> Trajectory:
     side = RockingSide(alpha, p, 1.0, 0.8)
     parameters = RockingParameters(side, side, ConstantRestitution(), "")
-    return run(parameters, Segments.still(step, count), Settings(), engine=name, rotation=start)
+    return run(parameters, Segments.still(step, count), PlaneSettings(), engine=name, rotation=start)
 
 
 def time_to_fall(alpha: float, p: float, start: float) -> float:

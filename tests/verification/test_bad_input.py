@@ -18,16 +18,18 @@ import pytest
 from engines import every_engine
 from waiting import HANG
 
-from rocking.dynamics import ConstantRestitution, Outcome, Settings, Status
-from rocking.dynamics.plane import batch, fast_engine
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, Outcome, PlaneSettings, Status
+from rocking.dynamics import rows as rows_module
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.rows import Rows
 from rocking.errors import RockingError
 from rocking.motions import Segments
 
 pytestmark = pytest.mark.verifies("damage", room="rocking in the plane")
 
 # how the mass is spread may be unknown
-ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))
+ROWS = tuple(name for name in rows_module.ROWS if not name.startswith("q_"))
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 INJECTIONS = 1_000
 PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 200}
@@ -54,9 +56,9 @@ def ordinary(count: int, seed: int) -> dict[str, Any]:
 
 
 def run(
-    values: dict[str, Any], motions: list[Segments], which: Any, name: str, settings: Settings | None = None
+    values: dict[str, Any], motions: list[Segments], which: Any, name: str, settings: PlaneSettings | None = None
 ) -> dict[str, Any]:
-    batch = Batch(motions, ConstantRestitution(), settings or Settings(most_events=2_000), 2, name)
+    batch = Batch(motions, ConstantRestitution(), settings or PlaneSettings(most_events=2_000), 2, name)
 
     def rows(first: int, last: int) -> Rows:
         part = slice(first, last)
@@ -193,7 +195,7 @@ def test_pathological_parameters(name: str, linear: bool) -> None:
     # p times the step above 1e5 has a test of its own, below
     long = np.fmax(values["p_right"], values["p_left"]) * [motions[k % 10].step for k in which] > 1e5
     which[long] = random.integers(0, 2, int(long.sum()))
-    settings = Settings(linear=linear, most_events=300, rest_speed=0.0 if linear else 0.01)
+    settings = PlaneSettings(linear=linear, most_events=300, rest_speed=0.0 if linear else 0.01)
     found = run(values, motions, which, name, settings)
     # the ranges, written once more
     valid = (which >= 0) & (which < len(motions)) & (np.abs(values["scale"]) <= 1e9)
@@ -226,9 +228,9 @@ def test_no_hang(case: str, name: str) -> None:
     motions, linear, odd = HANGS[case]
     row = {f"{key}_{side}": x for key, x in (("alpha", 0.2), ("p", 2.0), ("r", 0.5)) for side in ("right", "left")}
     code = (
-        "import numpy as np; from rocking.dynamics.plane.batch import Batch, Rows\n"
+        "import numpy as np; from rocking.dynamics.batch import Batch; from rocking.dynamics.rows import Rows\n"
         "from rocking.dynamics.settings import Settings; from rocking.motions.segments import Segments\n"
-        f"batch = Batch({motions}, settings=Settings(linear={linear}), engine={name!r})\n"
+        f"batch = Batch({motions}, settings=PlaneSettings(linear={linear}), engine={name!r})\n"
         f"batch.run(1, lambda a, b: Rows.of(1, **{row | odd | {'rotation': -0.05}}))"
     )
     subprocess.run([sys.executable, "-W", "ignore", "-c", code], check=True, timeout=HANG)

@@ -124,7 +124,7 @@ def test_the_value_is_named() -> None:
         rk.simulate(BODY, MOTION, 85.0)
     with pytest.raises(RockingError, match=r"got 1\.01.*create energy"):
         rk.simulate(BODY, MOTION, 1.01)
-    with pytest.raises(TypeError, match="unexpected keyword argument 'rest_sped'"):
+    with pytest.raises(RockingError, match=r"rest_sped does not apply to .*; options: .*rest_speed"):
         rk.simulate(BODY, MOTION, rest_sped=0.1)  # type: ignore[call-overload]
 
 

@@ -14,15 +14,17 @@ import rocking as rk
 from rocking.dynamics import (
     ConstantRestitution,
     ImpactLaw,
+    PlaneSettings,
     RandomRestitution,
     RockingParameters,
     RockingSide,
-    Settings,
     SpeedRestitution,
+    rows,
 )
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane import batch, fast_engine
-from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import run
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 pytestmark = [
@@ -51,9 +53,9 @@ class Table:
         return Rows.of(last - first, self.motion[part], self.key[part], **{k: v[part] for k, v in self.values.items()})
 
     def run(
-        self, law: ImpactLaw | None = None, settings: Settings | None = None, threads: int = 2, name: str = "fast"
+        self, law: ImpactLaw | None = None, settings: PlaneSettings | None = None, threads: int = 2, name: str = "fast"
     ) -> dict[str, Any]:
-        whole = Batch(self.motions, law or ConstantRestitution(), settings or Settings(), threads, name)
+        whole = Batch(self.motions, law or ConstantRestitution(), settings or PlaneSettings(), threads, name)
         return whole.run(self.motion.size, self.rows)[0]
 
 
@@ -90,7 +92,7 @@ def same_bits(one: dict[str, Any], other: dict[str, Any]) -> bool:
 @pytest.mark.parametrize("kind", KINDS)
 def test_threads_do_not_matter(kind: str, linear: bool) -> None:
     """1, 2, 4 and 8 threads give the same bits, and the table is worth it: it has all outcomes."""
-    table, settings = table_of(kind), Settings(linear=linear)
+    table, settings = table_of(kind), PlaneSettings(linear=linear)
     first = table.run(settings=settings, threads=1)
     assert set(first["outcome"].tolist()) == {0, 1, 2}
     assert all(same_bits(first, table.run(settings=settings, threads=threads)) for threads in (2, 4, 8))
@@ -131,7 +133,7 @@ def test_pieces_do_not_matter(piece: int, chunk: int, monkeypatch: pytest.Monkey
     table = table_of("vertical")
     law = RandomRestitution.normal(0.9, 0.05, seed=4)
     first = table.run(law)
-    monkeypatch.setattr(batch, "PIECE", piece)
+    monkeypatch.setattr(rows, "PIECE", piece)
     monkeypatch.setattr(batch, "_CHUNK", chunk)
     assert same_bits(first, table.run(law))
 
@@ -146,7 +148,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
         row = {name: float(values[k]) for name, values in table.values.items()}
         right, left = (RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left"))
         one = run(
-            RockingParameters(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], Settings(),
+            RockingParameters(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], PlaneSettings(),
             scale=row["scale"], rotation=row["rotation"], velocity=row["velocity"], engine="fast",
         )  # fmt: skip
         names = ["peak_rotation", "peak_time", "overturning_time", "impacts", "uplifts", "side"]
@@ -164,7 +166,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_instruction_sets(kind: str, linear: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Vectors of 8 and of 4 numbers give the same bits; without vectors peaks agree to 1e-10."""
-    table, settings, found = table_of(kind), Settings(linear=linear), {}
+    table, settings, found = table_of(kind), PlaneSettings(linear=linear), {}
     for name in fast_engine.instruction_sets():
         monkeypatch.setenv("ROCKING_ISA", name)
         found[name] = table.run(settings=settings)

@@ -13,8 +13,9 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.rows import Rows
 from rocking.errors import PureRockingWarning
 from rocking.outcome import contact_words
 

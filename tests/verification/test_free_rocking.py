@@ -17,7 +17,7 @@ from scipy.special import elliprf
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RockingParameters, Settings
+from rocking.dynamics import PlaneSettings, RockingParameters
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 from rocking.motions import Segments
@@ -102,7 +102,7 @@ def impacts_of(body, r, rotation, engine):
     times, _ = truth(parameters.right.slenderness_angle, p, r, abs(rotation))
     step = 0.15 / p if engine == "fast" else 0.8 / p  # the longest default step of the fast engine
     still = Segments.still(step, int(np.ceil(1.02 * times[-1] / step)) + 1)
-    found = run(parameters, still, Settings(rest_speed=1e-6), engine=engine, rotation=rotation)
+    found = run(parameters, still, PlaneSettings(rest_speed=1e-6), engine=engine, rotation=rotation)
     events = [e for e in found.events if e.kind is EventKind.IMPACT][:IMPACTS]
     return np.array([e.time for e in events]), np.array([e.before for e in events])
 
@@ -263,7 +263,7 @@ def threshold(overturns, low, high):
 def pushed(speed, engine, *, linear, stretches, r=0.9):
     parameters = RockingParameters.of_body(BLOCK, r, G)
     still = Segments.still(0.15 / P, stretches)
-    return run(parameters, still, Settings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
+    return run(parameters, still, PlaneSettings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
 
 
 @pytest.mark.verifies(

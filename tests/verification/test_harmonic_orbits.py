@@ -18,7 +18,7 @@ from scipy.optimize import minimize_scalar
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 
@@ -63,7 +63,7 @@ def parameters_of(r, left=None):
 def history(case, psi, x, v, cycles, engine, *, linear=True, left=None):
     amplitude, w, r = case
     segments = shaken(amplitude, w, psi, cycles)
-    settings = Settings(linear=linear, rest_speed=1e-9)
+    settings = PlaneSettings(linear=linear, rest_speed=1e-9)
     state = {"rotation": x * ALPHA, "velocity": v * P * ALPHA}
     return run(parameters_of(r, left), segments, settings, engine=engine, **state)
 
@@ -101,7 +101,7 @@ def orbit(case, tau):
 def turn(case, psi, v, engine):
     """Largest rotation before the next impact, between fine samples."""
     segments = shaken(case[0], case[1], psi, 0.5).refined(16)
-    found = run(parameters_of(case[2]), segments, Settings(linear=True), engine=engine, velocity=v * P * ALPHA)
+    found = run(parameters_of(case[2]), segments, PlaneSettings(linear=True), engine=engine, velocity=v * P * ALPHA)
     time = np.arange(found.rotation.size) * segments.step
     curve = CubicHermiteSpline(time, found.rotation / ALPHA, found.angular_velocity / ALPHA)
     turns = curve.derivative().roots(extrapolate=False)

@@ -8,8 +8,9 @@ import pytest
 from engines import built
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, PlaneSettings
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 pytestmark = [pytest.mark.verifies(room="rocking in the plane"), built]
@@ -21,7 +22,7 @@ def run(samples: np.ndarray, values: dict[str, Any], name: str = "fast", **setti
     """Results of bodies with both sides alike but where a side is named, under samples [m/s2]."""
     both = {f"{key}_{side}": values[key] for key in ("alpha", "p", "r") if key in values for side in ("right", "left")}
     given = {**both, **{key: value for key, value in values.items() if key not in ("alpha", "p", "r")}}
-    batch = Batch([Segments.between_samples(STEP, samples)], ConstantRestitution(), Settings(**settings), 1, name)
+    batch = Batch([Segments.between_samples(STEP, samples)], ConstantRestitution(), PlaneSettings(**settings), 1, name)
 
     def rows(first: int, last: int) -> Rows:
         part = {key: np.asarray(value)[first:last] for key, value in given.items()}

@@ -21,9 +21,10 @@ from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, 
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import ZERO, HullGround, added, applied, back, cross, dot, frame, length, scaled
 from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.history import HullEventKind, HullSettings
+from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, standing, step
 from rocking.dynamics.hull.restitution import place_of
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.motions import GroundMotion

@@ -16,8 +16,9 @@ from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, 
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, added, applied, back, cross, dot, frame, length, product, scaled
 from rocking.dynamics.hull.histories import hull_histories, results_of, start_of
-from rocking.dynamics.hull.history import HullHistory, HullSettings
+from rocking.dynamics.hull.history import HullHistory
 from rocking.dynamics.hull.motion import levelled, point_velocity, standing
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 

@@ -20,9 +20,10 @@ from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.histories import hull_histories, start_of
-from rocking.dynamics.hull.history import HullEventKind, HullSettings
+from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import State, energies, standing
 from rocking.dynamics.hull.restitution import place_of
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import PlausibilityWarning
 from rocking.motions import GroundMotion

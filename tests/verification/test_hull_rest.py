@@ -11,7 +11,7 @@ from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.history import HullSettings
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

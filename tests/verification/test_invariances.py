@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.equations import Trajectory
 from rocking.dynamics.plane.fast_engine import run
@@ -186,7 +186,7 @@ def histories(
     name: str, sides: tuple[RockingSide, RockingSide], motion: Segments, *, linear: bool = False, **state: Any
 ) -> Trajectory:
     parameters = RockingParameters(*sides, ConstantRestitution(), "")
-    return run(parameters, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
+    return run(parameters, motion, PlaneSettings(linear=linear, rest_speed=1e-6), engine=name, **state)
 
 
 @pytest.mark.verifies(against="another slenderness angle", within="1e-8 of theta / alpha", control="within")

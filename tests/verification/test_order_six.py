@@ -7,8 +7,9 @@ import pytest
 from engines import built
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, PlaneSettings
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.rows import Rows
 from rocking.motions import Segments
 
 pytestmark = [pytest.mark.verifies(room="rocking in the plane"), built]
@@ -16,7 +17,7 @@ pytestmark = [pytest.mark.verifies(room="rocking in the plane"), built]
 STEP, COUNT = 0.01, 300
 
 
-def errors(reach: float, strength: float, settings: Settings, seed: int = 3) -> np.ndarray:
+def errors(reach: float, strength: float, settings: PlaneSettings, seed: int = 3) -> np.ndarray:
     """Errors of peaks over alpha against steps of a thousandth; bodies of reach p dt, samples of up to `strength` g."""
     random = np.random.default_rng(seed)
     alpha, p = random.uniform(0.1, 0.5, COUNT), np.full(COUNT, reach / STEP)
@@ -28,10 +29,10 @@ def errors(reach: float, strength: float, settings: Settings, seed: int = 3) -> 
         both = {f"{name}_{side}": value for name, value in values.items() for side in ("right", "left")}
         return Rows.of(last - first, np.arange(first, last), scale=np.full(last - first, strength * g), **both)
 
-    def run(chosen: Settings) -> dict[str, np.ndarray]:
+    def run(chosen: PlaneSettings) -> dict[str, np.ndarray]:
         return Batch(motions, ConstantRestitution(), chosen, 1, "fast").run(COUNT, rows)[0]
 
-    found, truth = run(settings), run(Settings(longest_step=0.001))
+    found, truth = run(settings), run(PlaneSettings(longest_step=0.001))
     same = (found["outcome"] == 1) & (truth["outcome"] == 1) & (found["impacts"] == truth["impacts"])
     assert same.sum() > 50
     return (np.abs(found["peak_rotation"] - truth["peak_rotation"]) / alpha)[same]
@@ -45,7 +46,7 @@ def errors(reach: float, strength: float, settings: Settings, seed: int = 3) -> 
 )
 def test_the_order_that_is_taken_is_good_to_1e_8(reach: float, strength: float, agreement: Any) -> None:
     """Peaks are right to 1e-8 alpha whichever order is taken, up to 100 g."""
-    agreement(errors(reach, strength, Settings()).max(), 1e-8)
+    agreement(errors(reach, strength, PlaneSettings()).max(), 1e-8)
 
 
 @pytest.mark.verifies("negative control", "order 6 wherever its former rule took it")
@@ -53,7 +54,7 @@ def test_the_order_that_is_taken_is_good_to_1e_8(reach: float, strength: float, 
 def test_order_six_would_not_be(reach: float, strength: float) -> None:
     """The control: it was taken here as long as its rule looked at p dt sqrt(b / 2) < 0.0245 alone."""
     assert reach * np.sqrt(0.5 * strength) < 0.0245
-    assert errors(reach, strength, Settings(order=6)).max() > 1e-8
+    assert errors(reach, strength, PlaneSettings(order=6)).max() > 1e-8
 
 
 @pytest.mark.verifies(
@@ -65,7 +66,7 @@ def test_what_order_six_leaves_out_grows_as_stated() -> None:
     An error of the velocity grows for as long as the flight lasts, which is longer the further the body is thrown:
     while that is short against 1 / p, up to a power of each is added. The lower bounds are what the rule needs.
     """
-    six = Settings(order=6)
+    six = PlaneSettings(order=6)
     by_reach = [np.median(errors(reach, 10.0, six)) for reach in (0.005, 0.02)]
     by_strength = [np.median(errors(0.01, strength, six)) for strength in (3.0, 12.0)]
     assert 4.8 < np.log(by_reach[1] / by_reach[0]) / np.log(4.0) < 6.2

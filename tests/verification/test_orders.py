@@ -14,11 +14,12 @@ import pytest
 from scipy.optimize import brentq
 
 from rocking import conventions
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments
 from rocking.outcome import Outcome
@@ -74,7 +75,7 @@ class Histories:
             if strongest(motion) > 2.0:
                 continue
             parameters = RockingParameters(RIGHT, LEFT, ConstantRestitution(), "")
-            settings = Settings(linear=linear, tolerance=1e-16)
+            settings = PlaneSettings(linear=linear, tolerance=1e-16)
             # shorter stretches, so that the oracle takes steps of at most p h = 1/4
             found = Reference(parameters, motion.refined(4), settings, to_the_ground=False).run(0.0, velocity)
             over = found.outcome is Outcome.OVERTURNED
@@ -95,7 +96,7 @@ class Histories:
             alpha_right=RIGHT.slenderness_angle, alpha_left=LEFT.slenderness_angle, p_right=RIGHT.frequency_parameter,
             p_left=LEFT.frequency_parameter, r_right=RIGHT.coefficient, r_left=LEFT.coefficient,
         )  # fmt: skip
-        settings = Settings(order=order, longest_step=step, linear=self.linear)
+        settings = PlaneSettings(order=order, longest_step=step, linear=self.linear)
         batch = Batch(self.motions, settings=settings, threads=1, engine="fast")
         found, _ = batch.run(count, lambda a, b: rows)
         over = found["outcome"] == Outcome.OVERTURNED.code
@@ -184,7 +185,7 @@ def test_order_against_the_closed_form(agreement):
     parameters = RockingParameters(side, side, ConstantRestitution(), "")
     errors = []
     for step in LINEAR_STEPS:
-        settings = Settings(linear=True, longest_step=step)
+        settings = PlaneSettings(linear=True, longest_step=step)
         found = []
         for speed in SPEEDS:
             still = Segments.still(1.0, 30)
@@ -260,7 +261,7 @@ def test_a_peak_between_two_turns_in_a_step_is_seen(length, low, high, engine):
     side = RockingSide(0.2, 1.0, 1.0, 0.3)
     ground = Segments.between_samples(length, 0.2 * conventions.g * np.array([low, high]))
     found = run(
-        RockingParameters(side, side, ConstantRestitution(), ""), ground, Settings(linear=True), engine=engine,
+        RockingParameters(side, side, ConstantRestitution(), ""), ground, PlaneSettings(linear=True), engine=engine,
         rotation=0.2 * start, velocity=0.2 * down,
     )  # fmt: skip
     assert peak > start

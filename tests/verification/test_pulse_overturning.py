@@ -19,9 +19,10 @@ from scipy.optimize import brentq
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import PlaneSettings
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.equations import EventKind
+from rocking.dynamics.rows import Rows
 from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
@@ -57,7 +58,7 @@ def outcomes(pulse, scales, r, engine, *, alpha=ALPHA, linear=True, after=0.0):
     rows = Rows.of(
         count, alpha_right=alpha, alpha_left=alpha, p_right=P, p_left=P, r_right=r, r_left=r, scale=np.asarray(scales)
     )
-    found, _ = Batch([segments], settings=Settings(linear=linear), threads=1, engine=engine).run(
+    found, _ = Batch([segments], settings=PlaneSettings(linear=linear), threads=1, engine=engine).run(
         count, lambda a, b: rows
     )
     return found

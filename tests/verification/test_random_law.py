@@ -8,7 +8,7 @@ import pytest
 from engines import every_engine
 from scipy import stats
 
-from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import PlaneSettings, RandomRestitution, RockingParameters, RockingSide
 from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
@@ -160,7 +160,7 @@ def test_of_a_sample() -> None:
 def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float, float] = (1.0, 1.0)) -> Any:
     """Coefficients that an engine used, impact by impact, on a body let go on ground at rest."""
     right, left = (RockingSide(0.2, 3.0, 1.0, r) for r in sides)
-    settings = Settings(rest_speed=1e-7, most_events=10_000)
+    settings = PlaneSettings(rest_speed=1e-7, most_events=10_000)
     found = run(
         RockingParameters(right, left, law, ""),
         Segments.still(0.05, 400),

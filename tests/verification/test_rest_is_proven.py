@@ -5,7 +5,7 @@ import pytest
 from engines import every_engine
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
 from rocking.dynamics.plane import fast_engine, reference
 from rocking.dynamics.plane.equations import EventKind
 from rocking.motions import Segments
@@ -29,7 +29,7 @@ def case(number):
 
 def run(name, number, rest_speed):
     parameters, segments = case(number)
-    settings = Settings(rest_speed=rest_speed)
+    settings = PlaneSettings(rest_speed=rest_speed)
     return fast_engine.run(parameters, segments, settings, engine=name)
 
 

@@ -12,7 +12,7 @@ from scipy import optimize, stats
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RandomRestitution, RockingParameters, Settings
+from rocking.dynamics import PlaneSettings, RandomRestitution, RockingParameters
 from rocking.outcome import Outcome
 from rocking.studies import (
     HistoryTable,
@@ -77,7 +77,7 @@ def drawn(count, law, pieces=1):
     values = {f"{name}_{foot}": value for name, value in names.items() for foot in ("right", "left")}
     amplitude = LOWER[3][0] * conventions.g * side.slenderness_angle
     pulse = rk.pulses.sine(amplitude, 2.0 * np.pi / (3.0 * side.frequency_parameter))
-    table = HistoryTable(MotionList(pulse), np.zeros(count, np.int64), values, settings=Settings(linear=True))
+    table = HistoryTable(MotionList(pulse), np.zeros(count, np.int64), values, settings=PlaneSettings(linear=True))
     edges = np.linspace(0, count, pieces + 1).astype(int)
     made = SampledHistories.of(table, law)
     return np.concatenate([made.run(int(a), int(b))["outcome"] for a, b in pairwise(edges)])

@@ -32,7 +32,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 from rocking.motions import Segments
@@ -132,7 +132,7 @@ def block_impacts(name: str, alpha: float, p: float, r: float, rotation: float) 
     side = RockingSide(alpha, p, 0.75 * g / p**2, r)
     still = Segments.still(0.5 / p, 80)
     # the default steps of the fast engine are good to 1e-7 only
-    options = Settings(longest_step=0.03, rest_speed=1e-9)
+    options = PlaneSettings(longest_step=0.03, rest_speed=1e-9)
     found = run(
         RockingParameters(side, side, ConstantRestitution(), ""), still, options, engine=name, rotation=rotation
     )

@@ -13,7 +13,7 @@ from random_cases import components, solid
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import Settings
+from rocking.dynamics import SpaceBatchSettings
 from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine, rolling
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.fast_engine import steps_of
@@ -148,7 +148,7 @@ def test_energy_and_vertical_momentum_about_a_vertex_stay():
     """Free motion about a vertex up to the first impact: energy to 1e-12, vertical momentum to ten times that."""
     start, fine = (
         SpatialStart(0.2, 0.7, angular_velocity=(0.0, 0.0, 0.5)),
-        Settings(longest_step=0.05, mechanics="space, many"),
+        SpaceBatchSettings(longest_step=0.05),
     )
     course = steps_of(TOWER, ground_of(), 3.0, start=start, settings=fine)
     until = int(np.flatnonzero(course["kind"] == 1)[0])
@@ -237,7 +237,7 @@ def test_turning_body_and_motion_together_turns_the_result(turned):
 def test_a_tighter_tolerance_changes_little():
     """Peaks at tolerances 1e-11 and 1e-15 agree to 1e-8 up to the first impacts; the attitude stays a rotation."""
     start, ground = SpatialStart(0.2, 0.7, angular_velocity=(0.1, 0.0, 0.5)), ground_of()
-    tight = [Settings(tolerance=tolerance, mechanics="space, many") for tolerance in (1e-11, 1e-15)]
+    tight = [SpaceBatchSettings(tolerance=tolerance) for tolerance in (1e-11, 1e-15)]
     runs = [steps_of(TOWER, ground, 2.0, start=start, settings=given) for given in tight]
     hits = [run[run["kind"] == 1]["time"][:3] for run in runs]
     np.testing.assert_allclose(hits[0], hits[1], rtol=0.0, atol=1e-8)

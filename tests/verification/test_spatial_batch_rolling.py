@@ -10,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import Settings
+from rocking.dynamics import SpaceBatchSettings
 from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.fast_engine import steps_of
@@ -32,9 +32,7 @@ def _tilts(theta, rate, spin, duration=2.0):
     axis = np.array([math.sin(theta), 0.0, math.cos(theta)])
     velocity = rate * np.array([0.0, 0.0, 1.0]) + (spin - rate * math.cos(theta)) * axis
     start = SpatialStart(theta, angular_velocity=tuple(velocity.tolist()))
-    course = steps_of(
-        CYLINDER, ground_of(), duration, start=start, settings=Settings(gravity=G, mechanics="space, many")
-    )
+    course = steps_of(CYLINDER, ground_of(), duration, start=start, settings=SpaceBatchSettings(gravity=G))
     return np.arccos(course["rotation"][:, 2, 2][course["time"] < duration])
 
 
@@ -124,9 +122,7 @@ def test_ked_on_a_rim_is_that_of_the_plane():
 def test_a_round_base_that_is_pushed_comes_to_rest(share):
     """Pushed by a share of what tips it, it lies still after as many impacts as in the reference engine."""
     push = rk.GroundMotion(np.full(101, share * G * RADIUS / HEIGHT), 0.01)
-    batch = batch_in_space(
-        [CYLINDER], [push], [0.2], start=SpatialStart(0.02), settings=Settings(gravity=G, mechanics="space, many")
-    )
+    batch = batch_in_space([CYLINDER], [push], [0.2], start=SpatialStart(0.02), settings=SpaceBatchSettings(gravity=G))
     slow = rk.simulate(CYLINDER, push, 0.2, start=SpatialStart(0.02), gravity=G)
     assert slow.impacts.size > 3
     assert batch.values["impacts"].item() == slow.impacts.size

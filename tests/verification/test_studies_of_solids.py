@@ -11,11 +11,13 @@ import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.conventions import g
-from rocking.dynamics import RockingParameters, Settings, SpatialBody, SpatialStart
+from rocking.dynamics import HullSettings, SpatialBody, SpatialStart
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.hull.restitution import RestitutionOnHull
+from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.settings import NEVER_SLIDES, settings_of
+from rocking.dynamics.rows import Rows
+from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED, Outcome, Status
 from rocking.studies import MotionList, Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
@@ -154,9 +156,9 @@ def test_a_bad_row_touches_no_other(engine):
     [
         ({"friction": -0.1}, "friction must be in"),
         ({"friction": 2e6}, "friction must be"),
-        ({"friction": 0.3, "bounce": 0.2}, "bounce is nothing for"),
-        ({"friction": 0.3, "order": 6}, "order is no setting of space with friction"),
-        ({"friction": 0.3, "linear": True}, "linear equations are no setting of space with friction"),
+        ({"friction": 0.3, "bounce": 0.2}, "bounce does not apply to a body in space with friction"),
+        ({"friction": 0.3, "order": 6}, "order does not apply to a body in space with friction"),
+        ({"friction": 0.3, "linear": True}, "linear does not apply to a body in space with friction"),
         ({"friction": 0.3, "restitution": "horizontal-momentum-3d"}, "must be 'housner-3d', 'ked-3d' or a coefficient"),
         ({"friction": 0.3, "restitution": 1.2}, "restitution must be in"),
     ],
@@ -301,8 +303,8 @@ def test_fragilities():
 @pytest.mark.verifies("damage")
 def test_a_bad_row_of_a_study_touches_no_other():
     """A row with NaN or infinity in one number is refused by itself, in any number of threads the same bits."""
-    settings = settings_of(g, {"friction": 0.4}, STATUE)
-    parameters = RockingParameters.of_body(STATUE, "housner", g, friction=0.4)
+    settings = study_settings(STATUE, {"friction": 0.4})
+    parameters = mechanics_of(settings).parameters(STATUE, "housner", settings)
     sides = {name: float(values[0]) for name, values in sides_of([parameters]).items()}
     values = {name: np.full(40, value) for name, value in sides.items()}
     values |= {"scale": np.linspace(0.5, 3.0, 40), "friction": np.full(40, 0.4)}
@@ -326,9 +328,9 @@ def test_the_name_of_histories_knows_the_body():
     """Studies that differ in the shape alone, the model or the friction have other names."""
     names = set()
     for body, model, mu in [(STATUE, "ked", 0.5), (SHORT, "ked", 0.5), (STATUE, "housner", 0.5), (STATUE, "ked", 0.6)]:
-        parameters = RockingParameters.of_body(body, model, g, friction=mu)
+        settings = HullSettings(gravity=g, friction=mu)
+        parameters = mechanics_of(settings).parameters(body, model, settings)
         sides = {name: np.array([[0.4]]) for name in sides_of([parameters])}
-        settings = Settings(friction=mu, mechanics="space with friction")
         names.add(Product(MotionList([BOTH]), sides, np.ones(1), law=parameters.law, settings=settings).key())
     assert len(names) == 4
     assert isinstance(parameters.law, RestitutionOnHull)

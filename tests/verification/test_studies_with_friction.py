@@ -9,9 +9,11 @@ from random_cases import noise_motion, section
 import rocking as rk
 from rocking.cli import main
 from rocking.conventions import g
-from rocking.dynamics import RandomRestitution, RockingParameters, Settings
+from rocking.dynamics import ContactSettings, RandomRestitution, RockingParameters
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.studies import MotionList, Product, minimum_overturning_acceleration, overturning_map, rocking_spectrum
@@ -104,7 +106,7 @@ def test_rows_that_start_turned():
     motion = noise_motion(2, 400, 0.01, 2.0)
     rotation, velocity = [0.05, -0.04, 0.0], [0.1, 0.2, -0.3]
     rows = Rows.of(3, rotation=rotation, velocity=velocity, **{k: v[0] for k, v in sides_of([parameters]).items()})
-    found, _ = Batch([motion.segments()], settings=Settings(friction=0.35)).run(3, rows.part)
+    found, _ = Batch([motion.segments()], settings=ContactSettings(friction=0.35)).run(3, rows.part)
     for k in range(3):
         one = rk.simulate(BODY, motion, "ked", rotation=rotation[k], angular_velocity=velocity[k], friction=0.35)
         assert found["outcome"][k] == one.outcome.code
@@ -157,7 +159,7 @@ def test_the_name_of_histories_knows_the_friction():
     }
     ways = [{}, {"friction": 0.5}, {"friction": 0.6}, {"friction": 0.5, "bounce": 0.3},
             {"friction": 0.5, "bounce": 0.3, "bounce_law": "stronge"}]  # fmt: skip
-    several = [Product(MotionList([PULSE]), sides, np.array([1.6]), settings=Settings(**way)) for way in ways]
+    several = [Product(MotionList([PULSE]), sides, np.array([1.6]), settings=study_settings(None, way)) for way in ways]
     assert len({each.key() for each in several}) == len(ways)
     peaks = [abs(results_of(each)["peak_rotation"][0]) for each in several[:4]]
     assert len(set(peaks)) > 1
@@ -170,9 +172,9 @@ def test_the_name_of_histories_knows_the_friction():
         ({"friction": 2e6}, "friction must be in"),
         ({"friction": 0.3, "bounce": 1.0}, "bounce must be"),
         ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
-        ({"bounce": 0.3}, "bounce and bounce_law go with friction"),
-        ({"friction": 0.3, "linear": True}, "linear equations are no setting of contact"),
-        ({"friction": 0.3, "order": 6}, "order is no setting of contact"),
+        ({"bounce": 0.3}, "bounce does not apply to a body without friction="),
+        ({"friction": 0.3, "linear": True}, "linear does not apply to a plane body with friction"),
+        ({"friction": 0.3, "order": 6}, "order does not apply to a plane body with friction"),
         ({"friction": 0.3, "engine": "reference"}, "studies with friction run on the compiled engine"),
         ({"friction": 0.3, "restitution": RandomRestitution.normal(0.8, 0.02, seed=1)}, "one coefficient"),
     ],
@@ -216,7 +218,7 @@ def test_poisoned_rows():
     names = [*(name for name in sides if name[0] in "apqr"), "scale", "rotation", "velocity"]
     values = {name: np.full(60, sides.get(name, 0.0)) for name in [*sides, "rotation", "velocity"]}
     values |= {"scale": np.linspace(0.5, 2.0, 60), "friction": np.full(60, 0.4)}
-    batch = Batch([PULSE.segments()], settings=Settings(friction=0.3))
+    batch = Batch([PULSE.segments()], settings=ContactSettings(friction=0.3))
     clean, _ = batch.run(60, Rows.of(60, **values).part)
     ill = np.arange(1, 60, 3)
     for k, row in enumerate(ill):

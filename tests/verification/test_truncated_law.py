@@ -14,12 +14,13 @@ from scipy import stats
 
 import rocking as rk
 from rocking.conventions import FEET, Foot, percent
-from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics import PlaneSettings, RandomRestitution, RockingParameters, RockingSide
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.impact_laws import uniform
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import Calibration, calibrate, restitution_distribution
 from rocking.evidence.likelihood import scatter
@@ -280,7 +281,7 @@ def results(law: Any, name: str, values: dict[str, Any]) -> Any:
     def rows(first: int, last: int) -> Rows:
         return Rows.of(last - first, 0, np.arange(first, last), **{k: v[first:last] for k, v in values.items()})
 
-    return Batch([ground], law, Settings(), 1, name).run(count, rows)[0]
+    return Batch([ground], law, PlaneSettings(), 1, name).run(count, rows)[0]
 
 
 TWO = {"left": [0.6, 0.7, 1.0], "right": [0.8, 0.9, 0.95]}
@@ -309,7 +310,7 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
     """The n-th impact lands on a side with the quantile of that side at its share of the n-th number, to the bit."""
     law = RandomRestitution(TWO, 9)
     right, left = RockingSide(0.2, 3.0, 1.0, 0.95, share=0.4), RockingSide(0.25, 3.3, 1.0, 0.9, share=0.7)
-    parameters, options = RockingParameters(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
+    parameters, options = RockingParameters(right, left, law, ""), PlaneSettings(rest_speed=1e-7, most_events=10_000)
     found = run(parameters, Segments.still(0.05, 400), options, engine=name, stream=4, rotation=0.1)
     impacts = [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
     assert len(impacts) > 10

@@ -12,16 +12,15 @@ from rocking.assessment.answer import BodyAssessment, ModelMargin, StandingSolid
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import StablePose
 from rocking.conventions import FEET, FloatArray, IntArray
-from rocking.dynamics._simulate import components_of
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
 from rocking.evidence import restitution_distribution
-from rocking.motions.components import Components, rotated, with_vertical
+from rocking.motions.components import Components, components_of, rotated, with_vertical
 from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import predict
 from rocking.prediction.mechanics import FRICTION, Uncertain, parts, several
-from rocking.prediction.space import SpaceMechanics
+from rocking.prediction.space import SampledInSpace
 from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.methods import BodySides, Shaking
@@ -64,7 +63,7 @@ class SolidHistories:
         for each in self.given:
             parts(each)  # refuses what is none
         told = {"friction": friction, "base": 0.0, "centre": 1.0, "restitution": 0.0}
-        self._mechanics, self._options = SpaceMechanics(solid, self.given, told, options["gravity"]), options
+        self._mechanics, self._options = SampledInSpace(solid, self.given, told, options["gravity"]), options
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()
         self._edges, self._outward = pose.edge_distances, _outward(pose)
         fixed = float(azimuth) if isinstance(azimuth, (int, float)) else None
@@ -163,7 +162,7 @@ class SolidHistories:
         return replace(known, falls_towards=own, slides=slid)
 
     def _run(
-        self, mechanics: SpaceMechanics, level: float, rows: IntArray, factors: FloatArray
+        self, mechanics: SampledInSpace, level: float, rows: IntArray, factors: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return whether each row overturns, how far it slides and in which direction it falls."""
         way, motion = np.divmod(rows, len(self.motions))

@@ -10,17 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from rocking.bodies.solid import Solid, box
 from rocking.campaigns import disk
 from rocking.campaigns.chunks import DEFAULT_CHUNK, FORMAT, REFERENCE_CHUNK, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.restitution import RestitutionOnHull
-from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.mechanics import mechanics_of
+from rocking.dynamics.mechanics_base import Mechanics
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.histories import Histories
@@ -36,13 +35,12 @@ _SHOWN = 5
 def engine_of(histories: Histories) -> str:
     """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
     engine = fast_engine.chosen(histories.engine, histories.law)
-    mechanics = dict.fromkeys(each.settings.mechanics for each in histories.parts)
+    mechanics = dict.fromkeys(mechanics_of(each.settings) for each in histories.parts)
     return f"{engine}, {'-'.join(_fingerprint(engine, _isa(engine, each), each) for each in mechanics)}"
 
 
-def _isa(engine: str, mechanics: str) -> str:
-    """Return the instruction set of which the last digits are: only rocking alone has several."""
-    return fast_engine.instruction_set() if engine == "fast" and mechanics == "rocking" else ""
+def _isa(engine: str, mechanics: Mechanics) -> str:
+    return mechanics.instruction_set() if engine == "fast" else ""
 
 
 def kind_of(name: str) -> str:
@@ -51,11 +49,11 @@ def kind_of(name: str) -> str:
 
 
 @cache
-def _fingerprint(engine: str, instruction_set: str, mechanics: str = "rocking") -> str:
+def _fingerprint(engine: str, instruction_set: str, mechanics: Mechanics) -> str:
     """Hash the results of a few histories; the instruction set is what the cache tells engines apart by."""
     digest = hashlib.sha256()
     count = _EACH if engine == "fast" else _OF_REFERENCE
-    for motions, law, settings in (each for each in _batches() if each[2].mechanics == mechanics):
+    for motions, law, settings in mechanics.samples(*_motions()):
         rows = _rows(count, mechanics)
         results = Batch(motions, law, settings, 1, engine).run(count, rows.part)[0]
         for name, kind in RESULTS.items():
@@ -63,8 +61,8 @@ def _fingerprint(engine: str, instruction_set: str, mechanics: str = "rocking") 
     return digest.hexdigest()[:16]
 
 
-def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
-    """Pulses and records, with and without a vertical part, all laws, both kinds of equations, all orders."""
+def _motions() -> tuple[list[Segments], list[Segments], list[Segments]]:
+    """Return pulses, and records without and with a vertical part."""
     # waves of parabolas: four stretches up, four down; of fractions that every machine has to the last bit
     bump = np.array([0.0, 4.0, -4.0, 0.5, -0.5, 0.0, 0.25, -0.25])
     waves = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * bump
@@ -76,18 +74,7 @@ def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
         ]
         for vertical in (False, True)
     ]
-    quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
-    by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
-    on_hull = RestitutionOnHull(body=Solid(box(0.5, 0.75, 1.5)), model="housner-3d", frequency=2.0, gravity=9.8125)
-    return [
-        (pulses, RandomRestitution(quantiles, 7), Settings(gravity=9.8125)),
-        (flat, ConstantRestitution(), Settings(gravity=9.8125, order=6)),
-        (upright, by_speed, Settings(gravity=9.8125)),
-        (pulses, by_speed, Settings(gravity=9.8125, linear=True)),
-        (pulses, ConstantRestitution(), Settings(gravity=9.8125, friction=0.3125)),
-        (upright, ConstantRestitution(), Settings(gravity=9.8125, friction=0.75, bounce=0.25)),
-        (flat, on_hull, Settings(gravity=9.8125, friction=0.5, mechanics="space with friction")),
-    ]
+    return pulses, flat, upright
 
 
 def _noise(factor: int, size: float) -> FloatArray:
@@ -96,8 +83,8 @@ def _noise(factor: int, size: float) -> FloatArray:
     return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
 
 
-def _rows(count: int, mechanics: str) -> Rows:
-    """Bodies from squat to slender, one of which no engine can take; with contact of one height and one I_C."""
+def _rows(count: int, mechanics: Mechanics) -> Rows:
+    """Return bodies from squat to slender, one of which no engine can take."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {
@@ -107,11 +94,7 @@ def _rows(count: int, mechanics: str) -> Rows:
         "share_right": 1.0 - k / 64.0, "share_left": 0.5 + k / 64.0,
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
-    if mechanics == "space with friction":
-        values["rotation"] = np.zeros(k.size)
-    if mechanics == "contact":
-        values |= {f"{name}_left": values[f"{name}_right"] for name in ("alpha", "p", "q")}
-    return Rows.of(count, k % 4, k, **values)
+    return Rows.of(count, k % 4, k, **mechanics.sample_rows(values))
 
 
 @dataclass(frozen=True)

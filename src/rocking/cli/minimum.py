@@ -1,6 +1,5 @@
 """`rocking minimum`: every acceleration at which a body begins or ceases to overturn under a motion."""
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -149,7 +148,7 @@ class MinimumAnswer:
         page.line(f"motion:       {problem.motions[0].name}, scaled")
         page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
         page.line(f"restitution:  {self.label}")
-        slides = (problem.settings.friction or math.inf) * problem.settings.gravity
+        slides = problem.settings.friction * problem.settings.gravity
         first = "lifts it:     " if lifts < slides else "slides from:  "
         page.line(f"{first}{_g(min(lifts, slides))}, {in_unit(min(lifts, slides), unit, '.6g')}")
         page.line()

@@ -29,9 +29,9 @@ def answer_of(problem: ResponseProblem, length: str, acceleration: str, *, liste
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
-    if problem.mechanics != "rocking":
-        kinds: dict[str, Any] = {"space": SpaceAnswer, "space with friction": HullAnswer, "contact": ContactAnswer}
-        return kinds[problem.mechanics](problem, response, length)
+    if not problem.mechanics.is_compared:
+        kinds: dict[str, Any] = {"space": SpaceAnswer, "hull": HullAnswer, "contact": ContactAnswer}
+        return kinds[problem.mechanics.name](problem, response, length)
     rivals = dict(list(problem.restitutions.items())[1:])
     if not listed:
         from rocking.evidence._coefficient_table import default_models

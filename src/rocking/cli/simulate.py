@@ -116,7 +116,7 @@ def simulate(
         problem = _problem(arguments, in_space)
     if problem.free is not None:
         _check_share(problem.balance_angle, problem.free, "response.free" if file else "--free")
-    if in_space and problem.mechanics != "space with friction":
+    if in_space and problem.mechanics.name != "hull":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     with bar("history", quiet=as_json):
         answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)

@@ -135,9 +135,10 @@ def source_lines(motions: Sequence[MotionSummary]) -> list[tuple[str, str]]:
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
     """Return what is printed of ground on which bodies may slide and hop: its friction, unless that is varied."""
-    if settings.friction is None:
+    stated = settings.stated
+    if "friction" not in stated:
         return []
-    bounce = f"; bounce {settings.bounce:g} ({settings.bounce_law})" if settings.bounce else ""
+    bounce = f"; bounce {stated['bounce']:g} ({stated['bounce_law']})" if stated.get("bounce") else ""
     friction = "varied" if varied else f"{settings.friction:g}"
     moves = "slide, hop" if settings.friction < NEVER_SLIDES else "hop"
     return [("contact", f"friction {friction}{bounce}: it may {moves} and fly")]
@@ -159,20 +160,21 @@ def body_lines(body: Any, settings: Settings, length: str = "m", *, varied: bool
     ]
 
 
+_GROUND = {"friction", "bounce", "bounce_law"}
+
+
 def subject_facts(problem: StudyProblem) -> dict[str, Any]:
     """Return the body and the motion of a study of one of each as plain values for JSON."""
     body, motion = problem.bodies[0], problem.motions[0]
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
     kind = "pulse" if isinstance(leading(motion), Pulse) else "record"
     table = problem.document.map
-    ground = [] if problem.settings.friction is None else ["friction"]
-    if ground and isinstance(body, Body):
-        ground += ["bounce", "bounce_law"]
-    if ground and table is not None and "friction" in {table.x.axis, table.y.axis}:
-        del ground[0]
+    stated = problem.settings.stated
+    varied: set[str] = set() if table is None else {table.x.axis, table.y.axis}
+    ground = {name: value for name, value in stated.items() if name in _GROUND - varied}
     return {
         "body": repr(body),
-        **{name: getattr(problem.settings, name) for name in ground},
+        **ground,
         "assumed": list(getattr(body, "assumed", ())),
         "motion": {"kind": kind, **MotionSummary.of(motion).as_dict(), **facts, "warnings": list(motion.doubts)},
     }

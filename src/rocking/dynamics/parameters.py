@@ -10,7 +10,6 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
-from rocking.dynamics.settings import in_space
 from rocking.errors import InvalidValueError
 from rocking.restitution._implied import energy_bound
 from rocking.restitution.registry import BOUND_ROUNDING, energy_refusal
@@ -144,23 +143,21 @@ class RockingParameters:
         return side.coefficient * factor
 
     @classmethod
-    def of_body(
-        cls, body: Any, restitution: Any, gravity: float, *, friction: float | None = None
-    ) -> "RockingParameters":
+    def of_body(cls, body: Any, restitution: Any, gravity: float, *, may_be_none: bool = False) -> "RockingParameters":
         """Return a body with its coefficients of restitution.
 
         Parameters
         ----------
-        body : Body, Solid or SpatialBody
-            The body; in space with the least slenderness angle of its base.
+        body : Body
+            The body.
         restitution : str, RestitutionModel, float, pair of float, mapping or ImpactLaw
             A model or its name; one coefficient; one for landing left and one for landing right, as
             ``{"left": .., "right": ..}``; or a law for what changes from impact to impact.
         gravity : float
             Acceleration of gravity [m/s2].
-        friction : float, optional
-            With it the body may slide and hop, and the restitution may be None: no coefficient is imposed, impacts
-            are plastic by complementarity, or as `bounce` says [-].
+        may_be_none : bool
+            Whether the restitution may be None, as that of a body that may slide and hop: no coefficient is imposed,
+            impacts are plastic by complementarity, or as `bounce` says.
 
         Returns
         -------
@@ -173,15 +170,11 @@ class RockingParameters:
             If it is no body, or a coefficient is negative, not finite, or would create energy.
         """
         if not isinstance(body, Body):
-            if in_space(body):
-                return cls._in_space(body, restitution, gravity)
-            raise InvalidValueError(
-                f"body must be a Block, Section, MassPoints or Solid, got {checks.given('body', body)}"
-            )
+            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {checks.given('body', body)}")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[Foot, float]
-        if friction is not None and is_none(base):
+        if may_be_none and is_none(base):
             coefficients, label = dict.fromkeys(FEET, UNIMPOSED), COMPLEMENTARITY
         else:
             coefficients, label = coefficients_of(base, body)
@@ -200,15 +193,6 @@ class RockingParameters:
                 share,
             )
         return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
-
-    @classmethod
-    def _in_space(cls, body: Any, restitution: Any, gravity: float) -> "RockingParameters":
-        from rocking.dynamics.hull.restitution import RestitutionOnHull
-
-        law = RestitutionOnHull.of(body, restitution, gravity)
-        r = UNIMPOSED if isinstance(law.model, str) else law.model
-        side = RockingSide(law.slenderness_angle, law.frequency, law.size, r)
-        return cls(side, side, law, law.label)
 
 
 def is_none(restitution: Any) -> bool:

@@ -15,8 +15,9 @@ from rocking.conventions import FEET, Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
-from rocking.dynamics.settings import SHORTEST_STEP, Settings
+from rocking.dynamics.settings import SHORTEST_STEP
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
@@ -50,7 +51,7 @@ class Response(ResponseBase):
         The motion; None for free rocking.
     parameters : RockingParameters
         The body as the equations see it, with its coefficients of restitution.
-    settings : Settings
+    settings : PlaneSettings
         How it was integrated.
     segments : Segments
         The motion as it was integrated, rest of the ground after it included [m/s2].
@@ -65,7 +66,7 @@ class Response(ResponseBase):
     body: Body
     motion: Motion | None
     parameters: RockingParameters
-    settings: Settings
+    settings: PlaneSettings
     segments: Segments
     scale: float
     stream: int
@@ -153,6 +154,7 @@ class Response(ResponseBase):
         """
         from rocking.dynamics.contact.base import Start
         from rocking.dynamics.contact.response import response_with_contact
+        from rocking.dynamics.contact.settings import ContactSettings
 
         parameters, run = self.parameters, self.trajectory
         if parameters.law.kind:
@@ -162,8 +164,8 @@ class Response(ResponseBase):
             with warnings.catch_warnings():  # what was asked has been doubted
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 found = response_with_contact(
-                    self.body, self.motion, mu, {f: getattr(parameters, f).coefficient for f in FEET},
-                    Settings(self.settings.gravity, mechanics="contact"), start=start, scale=self.scale,
+                    self.body, self.motion, {f: getattr(parameters, f).coefficient for f in FEET},
+                    ContactSettings(self.settings.gravity, friction=mu), start=start, scale=self.scale,
                     duration=self.segments.count * self.segments.step,
                 )  # fmt: skip
             if found.outcome is not Outcome.FAILED:
@@ -416,17 +418,16 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     body: Body,
     motion: Motion | None,
     restitution: Any,
-    settings: Settings,
+    settings: PlaneSettings,
     *,
-    rotation: float = 0.0,
-    angular_velocity: float = 0.0,
+    start: tuple[float, float] = (0.0, 0.0),
     scale: float = 1.0,
     duration: float | None = None,
     engine: str = "auto",
     stream: int = 0,
 ) -> Response:
     """Return how a plane body rocks without sliding or flying; on ground at rest without a motion."""
-    # rotation, angular_velocity: theta [rad] and theta' [rad/s] at the start; duration: how long to follow the body
+    # start: theta [rad] and theta' [rad/s]; duration: how long to follow the body
     # [s]; if not given, the motion and 15 / p after it, and where the body then still rocks until it rests, at most 300
     # / p after the motion; on ground at rest until it rests or lies, at most 300 / p
     scale = checks.within("scale", scale, -1e6, 1e6)
@@ -434,7 +435,7 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
     frequencies = parameters.right.frequency_parameter, parameters.left.frequency_parameter
     slow, quick = min(frequencies), max(frequencies)
-    rotation, velocity = start_within(parameters, rotation, angular_velocity)
+    rotation, velocity = start_within(parameters, *start)
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
     length = usual if duration is None else checks.positive("duration", duration, "s")
     stream = checks.whole("stream", stream)

@@ -167,7 +167,7 @@ class ResponseBase(Exported):
             "software": SOFTWARE, "engine": self.engine, "outcome": self.outcome.name, "status": self.status.name,
             "still_rocking": self.still_rocking, "summary": self.summary,
         }  # fmt: skip
-        settings = {f"setting_{name}": value for name, value in self.settings.stated.items()}
+        settings = {f"setting_{name}": value for name, value in self.settings.integration.items()}
         beside = {row: Table(row, columns(values)) for row, values in self._beside.items()}
         return Table("time", columns(self._samples), ended | self._facts | settings, beside, no_unit="-")
 

@@ -11,7 +11,7 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import InvalidValueError
 from rocking.identification import forced_friction, forced_start
 from rocking.identification.forced_model import (
@@ -206,7 +206,7 @@ def _forced(found: ForcedPosterior, friction: IntervalEstimate) -> ForcedRocking
 def _foreseen(problem: Forced, x: FloatArray) -> float:
     """Return until when a motion that begins at rest is told by r, though it differed by a ten-thousandth [s]."""
     body = problem.known.body
-    parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), Settings().gravity)
+    parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), PlaneSettings().gravity)
     sides = {}
     for foot, sign in (("right", 1.0), ("left", -1.0)):
         alpha, p, _ = problem.sides(sign, x[WIDTH], x[HEIGHT], x[TILT])
@@ -218,6 +218,6 @@ def _foreseen(problem: Forced, x: FloatArray) -> float:
     for factor in (1.0, 1.0 - _DIFFERENCE):
         both = {foot: replace(side, coefficient=side.coefficient * factor) for foot, side in sides.items()}
         made = RockingParameters(both["right"], both["left"], ConstantRestitution(), "")
-        rotations.append(np.nan_to_num(run(made, segments, Settings()).rotation, nan=0.5 * math.pi))
+        rotations.append(np.nan_to_num(run(made, segments, PlaneSettings()).rotation, nan=0.5 * math.pi))
     apart = np.flatnonzero(np.abs(rotations[0] - rotations[1]) > _CLOSE * np.abs(rotations[0]).max())
     return float(segments.step * apart[0]) if apart.size else math.nan

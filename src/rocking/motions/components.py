@@ -1,7 +1,7 @@
 """Components of one motion: joined, turned into other directions, and the largest over all of them."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,11 @@ import numpy as np
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion, checked_level, checked_motion
+from rocking.motions.pulse import Motion, Pulse
+
+Component = GroundMotion | Pulse | None
+AnyMotion = Motion | Mapping[str, Motion] | tuple[Component, ...]
+"""A motion along x, or components by direction, or in the order x, y, z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +81,66 @@ class Components:
 def leading(motion: Any) -> Any:
     """Return the motion that axes and measures speak of: itself, or the leading one of several components."""
     return motion.leading if isinstance(motion, Components) else motion
+
+
+_HOW = 'a GroundMotion, a pulse, or {"x": ..., "y": ..., "z": ...} of these'
+
+
+def components_of(motion: Any) -> tuple[Component, Component, Component]:
+    """Return the components of a motion, of a mapping from x, y and z, or of a tuple in that order.
+
+    The vertical part of a record along x is its z.
+
+    >>> [part is None for part in components_of({"z": GroundMotion([0.0, 1.0], 0.1)})]
+    [True, True, False]
+    """
+    if isinstance(motion, Components):
+        motion = motion.parts
+    if isinstance(motion, Mapping):
+        unknown = [name for name in motion if name not in ("x", "y", "z")]
+        if unknown:
+            raise InvalidValueError(f"a component of the motion is x, y or z, got {unknown[0]!r:.60}")
+        motion = tuple(motion.get(name) for name in "xyz")
+    parts = motion if isinstance(motion, (tuple, list)) else (motion,)
+    if len(parts) > 3:
+        raise InvalidValueError(f"a motion has at most three components, x, y and z, got {len(parts)}")
+    for part in parts:
+        if not isinstance(part, (GroundMotion, Pulse)) and part is not None:
+            raise InvalidValueError(f"motion must be {_HOW}, got {checks.given('motion', part)}")
+    if all(part is None for part in parts):
+        raise InvalidValueError(f"motion must be {_HOW}, got none; free_rocking lets a body go on ground at rest")
+    x, y, z = (*parts, None, None)[:3]
+    if isinstance(x, GroundMotion) and x.vertical is not None:
+        if z is not None:
+            raise InvalidValueError("the vertical motion is given twice: by the vertical part of x, and by z")
+        z = x.changed("its vertical part", acceleration=x.vertical, vertical=None)
+        x = x.changed("its horizontal part", vertical=None)
+    return checked_level(x), checked_level(y), z
+
+
+def together(motion: Any, *, plane: bool = False) -> Any:
+    """Return a motion of one component as it is, of several as one of a study: in a plane along x, with its z."""
+    if not isinstance(motion, (Mapping, tuple, Components)):
+        return checked_level(motion)
+    if plane:
+        return in_plane(motion)
+    return motion if isinstance(motion, Components) else Components(*components_of(motion))
+
+
+def in_plane(motion: Any) -> GroundMotion | Pulse:
+    """Return the motion of a plane body: along x, and z as its vertical part."""
+    if isinstance(motion, (GroundMotion, Pulse)):
+        return checked_level(motion)  # type: ignore[no-any-return]
+    x, y, z = components_of(motion)
+    if y is not None:
+        raise InvalidValueError("a plane body moves along x and z, got y too; Solid.from_section makes it a solid")
+    if z is None and x is not None:
+        return x
+    if not isinstance(z, GroundMotion) or isinstance(x, Pulse):
+        raise InvalidValueError("vertical motion of a plane body is a record beside another: two GroundMotion, please")
+    if x is None:
+        x = z.changed("no horizontal motion", acceleration=0.0 * z.acceleration, metadata={})
+    return with_vertical(x, z)
 
 
 ANGLES = np.radians(np.arange(180.0))  # directions for RotD: every degree over half a turn

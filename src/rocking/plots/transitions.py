@@ -9,8 +9,8 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray, g
+from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.outcome import UNCOUNTED
@@ -116,7 +116,7 @@ def transitions_picture(
         raise InvalidValueError(f"found must be of minimum_overturning_acceleration, got {type(found).__name__}")
     count = int(checks.within("points", points, 2, _MOST_POINTS))
     threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
-    question = Question(body, motion, restitution, settings_of(gravity, settings, body), threads, engine)
+    question = Question(body, motion, restitution, study_settings(body, settings, gravity), threads, engine)
     place = _places(found, count)
     peaks, modes = _curve(question, place)
     figure, (axes,) = new_figure(SINGLE, _HEIGHT)

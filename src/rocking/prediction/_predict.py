@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.motions.summary import summaries_of
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
-from rocking.prediction.mechanics import MEASURED, Mechanics, several
+from rocking.prediction.mechanics import MEASURED, SampledBodies, several
 from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
@@ -172,22 +172,22 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
 
 def _mechanics(
     body: Any, motions: Any, given: Mapping[str, Any], gravity: float, bounce: float, bounce_law: str
-) -> Mechanics:
+) -> SampledBodies:
     """Return what a body is on its engine."""
     if isinstance(body, Solid):
-        from rocking.prediction.space import SpaceMechanics
+        from rocking.prediction.space import SampledInSpace
 
         if bounce:
             raise InvalidValueError(f"bounce is of plane bodies: in space corners do not bounce, got {bounce:g}")
-        return SpaceMechanics(body, motions, given, gravity)
+        return SampledInSpace(body, motions, given, gravity)
     checks.of_kind("body", body, Body, "a Block, Section, MassPoints or Solid")
-    from rocking.prediction.plane import PlaneMechanics, whole_settings
+    from rocking.prediction.plane import SampledInPlane, whole_settings
 
-    return PlaneMechanics(body, motions, given, whole_settings(gravity, bounce, bounce_law))
+    return SampledInPlane(body, motions, given, whole_settings(gravity, bounce, bounce_law))
 
 
 def _counted(
-    mechanics: Mechanics,
+    mechanics: SampledBodies,
     points: FloatArray,
     least: float,
     threads: int | None,
@@ -234,7 +234,7 @@ def _chance(happened: FloatArray, seed: int) -> Chance:
     return Chance(value, low, high, between, *wide, each, ends[:, 0], ends[:, 1])
 
 
-def _ends(mechanics: Mechanics, points: FloatArray, falls: FloatArray) -> dict[str, EndsOfRange]:
+def _ends(mechanics: SampledBodies, points: FloatArray, falls: FloatArray) -> dict[str, EndsOfRange]:
     """Return the probability of overturning in the lowest and the highest fifth of each input's draws."""
     values, found, at = mechanics.values(points), {}, 0
     for name, width in mechanics.widths.items():

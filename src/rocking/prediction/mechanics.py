@@ -9,9 +9,8 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
-from rocking.dynamics._simulate import components_of
 from rocking.errors import InvalidValueError
-from rocking.motions.components import Components
+from rocking.motions.components import Components, components_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import GROUND, support_of
@@ -142,7 +141,7 @@ class Endings:
     direction: FloatArray | None = None  # of a body in space, in which it leant when it fell, from x to y [rad]
 
 
-class Mechanics(ABC):
+class SampledBodies(ABC):
     """A body on an engine: what is drawn for it from the unit cube, and what becomes of it."""
 
     widths_of: Mapping[str, int] = {}  # how many numbers an input takes, if not one

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
 from rocking.dynamics.contact.batch import RowsWithContact
+from rocking.dynamics.contact.settings import ContactSettings
+from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import coefficients_of
-from rocking.dynamics.settings import Settings, thread_count
+from rocking.dynamics.rows import Rows
+from rocking.dynamics.settings import thread_count
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate_hierarchy, restitution_distribution
 from rocking.motions.components import rotated, with_vertical
@@ -25,7 +27,7 @@ from rocking.prediction.mechanics import (
     FRICTION_WHY,
     MEASURED,
     Endings,
-    Mechanics,
+    SampledBodies,
     Uncertain,
     parts,
 )
@@ -51,12 +53,12 @@ _WHY = {
 }
 
 
-class PlaneMechanics(Mechanics):
+class SampledInPlane(SampledBodies):
     """A plane body that may slide, hop and fly."""
 
     widths_of, why, never_sampled = {"base": 2}, _WHY, NOT_SAMPLED
 
-    def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: Settings) -> None:
+    def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: ContactSettings) -> None:
         super().__init__(motions, given)
         self.body, self._settings = body, settings
         if not self._turns and given.get("azimuth") is not None:
@@ -129,7 +131,8 @@ class PlaneMechanics(Mechanics):
             rows[f"p_{foot}"] = np.sqrt(self._settings.gravity * np.sqrt(square) / inertia)  # Eq. 26
             rows[f"q_{foot}"] = square / inertia  # Eq. 27
             rows[f"r_{foot}"] = coefficients[:, k]
-        found = RowsWithContact(segments, self._settings, "auto").run(rows, number, thread_count(threads))
+        runner = RowsWithContact(segments, ConstantRestitution(), self._settings, "auto")
+        found, _ = runner.run(Rows.of(len(draws), number, **rows), thread_count(threads))
         failed = np.asarray(found["outcome"]) == Outcome.FAILED.code
         rose = np.isfinite(found["first_uplift"]) | (found["peak_rotation"] != 0.0)
         return Endings(
@@ -177,6 +180,6 @@ def _whole(along: Any, upright: Any) -> Any:
     return along if upright is None else with_vertical(along, upright)
 
 
-def whole_settings(gravity: float, bounce: float, bounce_law: str) -> Settings:
+def whole_settings(gravity: float, bounce: float, bounce_law: str) -> ContactSettings:
     """Return how to integrate with friction, which every body has its own of."""
-    return Settings(gravity=gravity, friction=0.5, bounce=checks.number("bounce", bounce), bounce_law=bounce_law)
+    return ContactSettings(gravity=gravity, friction=0.5, bounce=bounce, bounce_law=bounce_law)

@@ -12,9 +12,9 @@ from rocking.conventions import FloatArray, percent
 from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.histories import HullRows, numbers_of_rows
-from rocking.dynamics.hull.history import HullSettings
 from rocking.dynamics.hull.motion import standing
 from rocking.dynamics.hull.restitution import FixedPosition
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.settings import thread_count
 from rocking.dynamics.space.attitude import product, turn
 from rocking.dynamics.space.ground import ground_of
@@ -30,7 +30,7 @@ from rocking.prediction.mechanics import (
     FRICTION_WHY,
     MEASURED,
     Endings,
-    Mechanics,
+    SampledBodies,
     Uncertain,
     parts,
 )
@@ -63,7 +63,7 @@ _LAWS = {
 }  # fmt: skip
 
 
-class SpaceMechanics(Mechanics):
+class SampledInSpace(SampledBodies):
     """A body in space that may slide, hop, fly and fall onto another side."""
 
     why, never_sampled = _WHY, NOT_SAMPLED
@@ -91,7 +91,7 @@ class SpaceMechanics(Mechanics):
         })  # fmt: skip
         self._set_restitution(given.get("restitution"))
 
-    def with_restitution(self, told: Any) -> "SpaceMechanics":
+    def with_restitution(self, told: Any) -> "SampledInSpace":
         """Return the same with other impacts."""
         other = copy(self)
         other.inputs = {name: each for name, each in self.inputs.items() if name != "restitution"}

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import FEET
+from rocking.dynamics.mechanics import chosen_for
+from rocking.dynamics.mechanics_base import Mechanics
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
@@ -44,22 +46,22 @@ def restitutions_of(
     bodies: Sequence[Body | Solid] = (),
     inputs: InputFiles | None = None,
     *,
-    friction: float | None = None,
+    mechanics: Mechanics | None = None,
 ) -> dict[str, Any]:
     """Return models, coefficients, pairs by side or laws by their label; with friction a word may stand for none."""
-    in_space = any(isinstance(body, Solid) for body in bodies)
+    moves = mechanics or chosen_for(bodies, None)
     with located("restitution"):
-        if in_space and (table.distribution is not None or table.left is not None):
+        if not moves.in_plane and (table.distribution is not None or table.left is not None):
             raise InvalidValueError("a body in space takes model, models, value or values")
         pairs: list[tuple[str, Any]] = []
         for text in table.models or ([table.model] if table.model else []):
-            if text == COMPLEMENTARITY and friction is not None:
+            if text == COMPLEMENTARITY and moves.may_be_unimposed:
                 pairs.append((text, None))
                 continue
             try:
                 pairs.append((text, float(text)))
             except ValueError:
-                law = text if in_space else _model(text, inputs)
+                law = _model(text, inputs) if moves.in_plane else text
                 pairs.append((law if isinstance(law, str) else law.label, law))
         pairs += [
             (f"{value!r}", value) for value in [*([] if table.value is None else [table.value]), *(table.values or [])]

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
-from rocking.dynamics import Settings
+from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
 from rocking.spec import document
 from rocking.spec.fields import JobTable, Values
 from rocking.studies.inventory import Thresholds
@@ -220,8 +220,8 @@ def _usual(value: Any) -> str:
 
 def _usual_setting(key: str) -> str:
     """Return the usual value of a setting: one, or that of rocking, with friction and in space."""
-    ways = {"rocking": "", "contact": " with friction", "space": " in space"}
-    values = {words: getattr(Settings(mechanics=mechanics), key) for mechanics, words in ways.items()}
+    ways = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in space"}
+    values = {words: settings().stated.get(key) for settings, words in ways.items() if key != "friction"}
     if len({*values.values()}) == 1:
         return _usual(values[""])
     return ", ".join(_usual(value) + words for words, value in values.items() if value is not None)

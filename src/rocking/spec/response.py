@@ -7,26 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.bodies.solid import Solid
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, simulate
-from rocking.dynamics._simulate import together
+from rocking.dynamics.mechanics import chosen, mechanics_of
+from rocking.dynamics.mechanics_base import Mechanics
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
+from rocking.motions.components import together
 from rocking.spec.bodies import body_moved
 from rocking.spec.construction import components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables
-
-_MECHANICS = {
-    "rocking": "pure rocking",
-    "contact": "sliding and hopping",
-    "space": "a body in space",
-    "space with friction": "a body in space with friction",
-}
-
 
 _PLANE_ONLY = {"bounce", "bounce_law", "assumed_friction"}
 
@@ -38,11 +32,8 @@ class ResponseProblem:
     body: Any  # a plane body, or a `Solid`
     motion: Any  # not scaled; by axis for a body in space, None for free rocking
     restitutions: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})  # by label, as `simulate` takes them
-    settings: Settings = field(default_factory=Settings)  # how to integrate
+    settings: Settings = field(default_factory=PlaneSettings)  # how it moves, and how to integrate
     engine: str = "auto"
-    friction: float | None = None  # coefficient of friction with which the body slides and hops [-]
-    bounce: float = 0.0  # coefficient of normal restitution, with friction [-]
-    bounce_law: str = "newton"  # what it is the ratio of
     assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
     free: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
     start_height: float = 0.0  # of the lowest point above the ground, with friction [m]
@@ -51,9 +42,7 @@ class ResponseProblem:
 
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
-        for name in ("friction", "assumed_friction"):
-            if getattr(self, name) is not None:
-                plausibility.warn(plausibility.of_friction(checks.positive("friction", getattr(self, name))))
+        plausibility.warn(plausibility.of_friction(checks.positive("friction", self.assumed_friction)))
         if self.free is not None:
             checks.number("free", self.free)
         if self.motion is not None and self.free is not None:
@@ -69,9 +58,9 @@ class ResponseProblem:
             )
 
     @property
-    def mechanics(self) -> str:
-        """How it moves: rocking, contact or space."""
-        return "rocking" if self.friction is None and isinstance(self.body, Body) else self.settings.mechanics
+    def mechanics(self) -> Mechanics:
+        """How it moves."""
+        return mechanics_of(self.settings)
 
     @property
     def balance_angle(self) -> float:
@@ -113,10 +102,8 @@ class ResponseProblem:
         """Return the response with one restitution, the first if none is given."""
         law = next(iter(self.restitutions.values())) if restitution is ... else restitution
         options: dict[str, Any] = dict(self.settings.stated)
-        if self.mechanics == "rocking":
+        if "engine" in self.mechanics.options:
             options["engine"] = self.engine
-        if self.mechanics == "contact":
-            options |= {"friction": self.friction, "bounce": self.bounce, "bounce_law": self.bounce_law}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.free is not None or self.dropped:
@@ -131,30 +118,24 @@ def problem_of(
 ) -> ResponseProblem:
     """Return the problem of tables with its body and motion made; scale, if given, in place of the tables' own."""
     table, start = getattr(tables, "motion", None), tables.response
-    mechanics = "rocking" if start.friction is None else "contact"
-    if isinstance(body, Solid):
-        mechanics = "space" if start.friction is None else "space with friction"
-        _refuse(f"{_MECHANICS[mechanics]} has an engine of its own", start, _PLANE_ONLY)
-    if mechanics != "rocking":
-        _refuse(
-            f"{_MECHANICS[mechanics]} has one engine, with the full equations", tables.settings, {"linear", "engine"}
-        )
+    mechanics = chosen(body, start.friction)
+    if not mechanics.in_plane:
+        _refuse(f"{mechanics.title} has an engine of its own", start, _PLANE_ONLY)
+    if not mechanics.is_compared:
+        _refuse(f"{mechanics.title} has one engine, with the full equations", tables.settings, {"linear", "engine"})
+    ground = start.model_dump(include={"friction", "bounce", "bounce_law"}, exclude_none=True)
     with located("settings"):
-        friction = start.friction if mechanics == "space with friction" else None
-        settings = Settings(mechanics=mechanics, friction=friction, **tables.settings.stated())
-    restitutions = restitutions_of(tables.restitution, 0, [body], inputs, friction=start.friction)
-    if mechanics != "rocking" and len(restitutions) > 1:
+        settings, _ = mechanics.split(tables.settings.stated() | ground, mechanics.settings, frozenset())
+    restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)
+    if not mechanics.is_compared and len(restitutions) > 1:
         names = ", ".join(restitutions)
-        raise InvalidValueError(f"restitution: {_MECHANICS[mechanics]} is computed with one, got {names}")
+        raise InvalidValueError(f"restitution: {mechanics.title} is computed with one, got {names}")
     return ResponseProblem(
         body,
         motion,
         restitutions,
         settings,
         engine=tables.settings.engine,
-        friction=start.friction,
-        bounce=start.bounce or 0.0,
-        bounce_law=start.bounce_law or "newton",
         assumed_friction=start.assumed_friction,
         free=start.free,
         start_height=start.start_height or 0.0,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
 from rocking.conventions import g
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.mechanics import mechanics_of, study_settings
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.spec.bodies import body_moved
 from rocking.spec.construction import motions_of, restitutions_of
@@ -54,11 +55,11 @@ class StudyProblem:
             kinds = {isinstance(body, Body) for body in bodies}
             if len(kinds) > 1:
                 raise InvalidValueError("bodies of a study are all plane or all in space")
-            settings = settings_of(stated.pop("gravity", g), stated, next(iter(bodies), None))
+            settings = study_settings(next(iter(bodies), None), stated, stated.pop("gravity", g))
         plane = document.spectrum is not None or kinds == {True}
         motions = motions_of(document.motions, inputs, paired=kinds == {False}, plane=plane)
-        seed, friction = document.campaign.seed, settings.friction
-        restitutions = restitutions_of(document.restitution, seed, bodies, inputs, friction=friction)
+        seed, mechanics = document.campaign.seed, mechanics_of(settings)
+        restitutions = restitutions_of(document.restitution, seed, bodies, inputs, mechanics=mechanics)
         return cls(document, bodies, motions, restitutions, settings, inputs)
 
     @property
@@ -229,7 +230,7 @@ def _inventory(problem: StudyProblem, options: dict[str, Any]) -> Any:
     settings, motions = problem.settings, hazard(options["progress"])
     return assess(
         objects, motions, restitution=restitution, thresholds=limits, gravity=settings.gravity,
-        friction=settings.friction, threads=options["threads"],
+        friction=settings.stated.get("friction"), threads=options["threads"],
     )  # fmt: skip
 
 

@@ -9,8 +9,9 @@ from rocking import checks, conventions
 from rocking.bodies import Block
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words, flags
@@ -83,7 +84,7 @@ def rocking_spectrum(
     xarray = extra("xarray", "rocking_spectrum")
     scale = checks.within("scale", options.pop("scale", 1.0), -1e6, 1e6)
     engine = options.pop("engine", "auto")
-    settings = settings_of(gravity, options)
+    settings = study_settings(None, options, gravity)
     angles = _row("slenderness_angles", slenderness_angles, "rad")
     times = _row("periods", periods, "s")
     sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180

@@ -9,8 +9,8 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.studies.axis import Axis, axis_of, friction_beside, varied_name
@@ -40,7 +40,7 @@ class Plane:
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
         options |= friction_beside(axes, options.get("friction"))
-        settings = settings_of(options.pop("gravity", conventions.g), options, body)
+        settings = study_settings(body, options, options.pop("gravity", conventions.g))
         return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:

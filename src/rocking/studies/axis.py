@@ -173,7 +173,7 @@ def _check_law(axis: Axis, question: Question) -> None:
 
 
 def _check_friction(_: Axis, question: Question) -> None:
-    if question.settings.friction is None:
+    if "friction" not in question.settings.stated:
         raise InvalidValueError("friction is an axis of bodies that may slide: their settings need a friction")
 
 

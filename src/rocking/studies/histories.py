@@ -12,10 +12,12 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.plane.batch import PIECE, ROWS, SIDES_UNTOLD, Batch, Rows
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
+from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.rows import PIECE, ROWS, SIDES_UNTOLD, Rows
 from rocking.dynamics.settings import Settings, check_progress
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -51,7 +53,7 @@ class Histories(ABC):
 
     motions: MotionSet
     law: ImpactLaw = field(default_factory=ConstantRestitution, kw_only=True)
-    settings: Settings = field(default_factory=Settings, kw_only=True)
+    settings: Settings = field(default_factory=PlaneSettings, kw_only=True)
     engine: str = field(default="auto", kw_only=True)
 
     @property

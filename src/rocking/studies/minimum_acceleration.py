@@ -11,9 +11,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
@@ -152,7 +153,7 @@ class Cases:
         lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
         uplift, record = lifts.min(axis=0), isinstance(motion, GroundMotion)
         # other components may lift a body in space before the one that is scaled does
-        light = settings.mechanics == "space with friction" or getattr(motion, "vertical", None) is not None
+        light = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None
         low, high = (_FROM_VERTICAL if light else _FROM) * uplift, _TO * lifts.max(axis=0)
         if lowest is not None:
             low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
@@ -335,7 +336,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     if not isinstance(several, Sequence) or not several:
         raise InvalidValueError(f"bodies must be a sequence of at least one body, got {bodies!r:.60}")
     engine = settings.pop("engine", "auto")
-    question = Question(bodies[0], motion, restitution, settings_of(gravity, settings, bodies[0]), threads, engine)
+    question = Question(bodies[0], motion, restitution, study_settings(bodies[0], settings, gravity), threads, engine)
     effort = Effort(points, levels, tolerance)
     sides = sides_of([question.parameters_of(b) for b in bodies])
     cases = Cases.of(question.motion, sides, question.settings, lowest, highest)

@@ -7,10 +7,9 @@ from functools import cached_property
 from typing import Any
 
 from rocking import checks
-from rocking.dynamics._simulate import together
 from rocking.dynamics.content import full_name
 from rocking.errors import InvalidValueError
-from rocking.motions.components import Components, leading
+from rocking.motions.components import Components, leading, together
 from rocking.motions.intensity import measure
 from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import scaled_to

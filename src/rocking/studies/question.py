@@ -11,16 +11,17 @@ import numpy as np
 from rocking import checks, quantities
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
-from rocking.dynamics._simulate import together
-from rocking.dynamics.contact.batch import FAST
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.parameters import RockingParameters, sides_of
-from rocking.dynamics.plane.batch import Batch, Rows
-from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
+from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.rows import Rows
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
-from rocking.motions.components import Components
+from rocking.motions.components import Components, together
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import provenance_of
@@ -39,7 +40,7 @@ class Question:
     body: Any  # a plane body, or one in space
     motion: Any  # of a body in space components by axis too, as for `simulate`
     restitution: Any = "ked"  # as for `simulate`
-    settings: Settings = field(default_factory=Settings)  # how to integrate
+    settings: Settings = field(default_factory=PlaneSettings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
     engine: str = "auto"  # which engine
 
@@ -65,7 +66,7 @@ class Question:
 
     def parameters_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
-        return RockingParameters.of_body(body, self.restitution, self.settings.gravity, friction=self.settings.friction)
+        return mechanics_of(self.settings).parameters(body, self.restitution, self.settings)
 
     def run(
         self,
@@ -101,7 +102,7 @@ class Question:
         motion = self.motion
         return {
             "software": SOFTWARE,
-            "engine": engine_words(self.settings, fast=bool(work)),
+            "engine": mechanics_of(self.settings).engine_of_study(fast=bool(work)),
             "body": repr(self.body),
             "motion": motion.name,
             "motion_provenance": "; ".join(provenance_of(motion)),
@@ -189,15 +190,6 @@ def quickened(values: Mapping[str, FloatArray], stretch: FloatArray) -> dict[str
     all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
     """
     return {name: row * stretch if name in _RATES else row for name, row in values.items()}  # Eq. 179
-
-
-def engine_words(settings: Settings, *, fast: bool) -> str:
-    """Return which engine computes a study, in words."""
-    if settings.mechanics == "space with friction":
-        return "fast (Dormand-Prince with complementarity, compiled)"
-    if settings.friction is not None:
-        return FAST
-    return f"fast ({instruction_set()})" if fast else "reference"
 
 
 def reference_side(body: Body) -> str:

@@ -12,7 +12,7 @@ from rocking import plausibility
 from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray, Foot, IntArray
 from rocking.dynamics.parameters import RockingParameters, coefficients_of, sides_of
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import GeometryError, InvalidValueError, PlausibilityWarning
 from rocking.motions.intensity import measure as measure_of
 from rocking.motions.motion import GroundMotion
@@ -371,7 +371,7 @@ def overturns(
                     rows.append(RockingParameters.of_body(one, own, gravity))
                     owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
-    histories = Product(MotionList(motions), sides, margin * SHARES, settings=Settings(gravity=gravity))
+    histories = Product(MotionList(motions), sides, margin * SHARES, settings=PlaneSettings(gravity=gravity))
     fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows), SHARES.size) == 1.0
     found = np.zeros(len(bodies), bool)
     np.logical_or.at(found, np.array(owner), fell.any(axis=(0, 2)))

@@ -5,8 +5,9 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignMismatchError
 from rocking.campaigns import identity as fingerprint
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.mechanics import MECHANICS
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.batch import Batch
 
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
@@ -42,11 +43,12 @@ def test_another_instruction_set_is_refused(tmp_path, work, monkeypatch):
 def test_sample_has_all_outcomes():
     """No uplift, rocking, overturning and refusal are among the histories, under every law, order and equation."""
     outcomes = []
-    for motions, law, settings in fingerprint._batches():
-        rows = fingerprint._rows(16, settings.mechanics)
-        results = Batch(motions, law, settings, 1, "fast").run(16, rows.part)[0]
-        outcomes.append(set(results["outcome"].tolist()))
-        assert results["impacts"].max() > 2
+    for mechanics in MECHANICS:
+        rows = fingerprint._rows(16, mechanics)
+        for motions, law, settings in mechanics.samples(*fingerprint._motions()):
+            results = Batch(motions, law, settings, 1, "fast").run(16, rows.part)[0]
+            outcomes.append(set(results["outcome"].tolist()))
+            assert results["impacts"].max() > 2
     sliding = [{0, 2, 3, 4, 5}, {0, 1, 2, 3, 5}]
     assert outcomes == [*[{0, 1, 2, 3}] * 4, *sliding, {0, 1, 2, 3, 5}]
 
@@ -54,8 +56,8 @@ def test_sample_has_all_outcomes():
 @pytest.mark.parametrize("chosen", ["fast", "reference"])
 def test_one_bit_is_seen(chosen, monkeypatch):
     """Negative control: the last bit of one number of one history gives another fingerprint."""
-    before = fingerprint._fingerprint.__wrapped__(chosen, "")
-    assert before == fingerprint._fingerprint.__wrapped__(chosen, "")
+    before = fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0])
+    assert before == fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0])
     run = Batch.run
 
     def nudged(self, *arguments):
@@ -64,4 +66,4 @@ def test_one_bit_is_seen(chosen, monkeypatch):
         return results, work
 
     monkeypatch.setattr(Batch, "run", nudged)
-    assert fingerprint._fingerprint.__wrapped__(chosen, "") != before
+    assert fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0]) != before

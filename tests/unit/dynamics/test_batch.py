@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from engines import built, every_engine
 
-from rocking.dynamics import Outcome, Settings, Status
-from rocking.dynamics.plane.batch import ROWS, Batch, Rows, valid_row
+from rocking.dynamics import Outcome, PlaneSettings, Status
+from rocking.dynamics.batch import Batch
+from rocking.dynamics.plane.batch import valid_row
 from rocking.dynamics.plane.fast_engine import RESULTS, library_of
+from rocking.dynamics.rows import ROWS, Rows
 from rocking.dynamics.settings import processors
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments, pulses
@@ -28,7 +30,7 @@ def run(name: str, count: int = 9, motion: Any = 0, motions: Any = (MOTION,), **
     def rows(first: int, last: int) -> Rows:
         return Rows.of(last - first, motion, **values)
 
-    return Batch(motions, settings=Settings(most_events=500), threads=2, engine=name).run(count, rows)[0]
+    return Batch(motions, settings=PlaneSettings(most_events=500), threads=2, engine=name).run(count, rows)[0]
 
 
 def same(one: dict[str, Any], other: dict[str, Any], where: Any = slice(None)) -> bool:
@@ -137,7 +139,7 @@ def test_too_many_impacts(name: str) -> None:
     """A history of more impacts than allowed is stopped with its own status, and has no outcome."""
     still = Segments.still(0.05, 400)
     rotation = np.where(np.arange(3) == 1, 0.1, 0.0)
-    batch = Batch([still], settings=Settings(most_events=4), engine=name)
+    batch = Batch([still], settings=PlaneSettings(most_events=4), engine=name)
     found, _ = batch.run(3, lambda first, last: Rows.of(last - first, **{**GOOD, "rotation": rotation}))
     assert found["status"].tolist() == [Status.GOOD.code, Status.TOO_MANY_EVENTS.code, Status.GOOD.code]
     assert (found["outcome"][1], found["impacts"][1]) == (Outcome.FAILED.code, 4)
@@ -150,13 +152,13 @@ def test_pieces_and_progress(name: str, monkeypatch: pytest.MonkeyPatch) -> None
     whole = run(name)
     asked: list[tuple[int, int]] = []
     done: list[int] = []
-    monkeypatch.setattr("rocking.dynamics.plane.batch.PIECE", 4)
+    monkeypatch.setattr("rocking.dynamics.rows.PIECE", 4)
 
     def rows(first: int, last: int) -> Rows:
         asked.append((first, last))
         return Rows.of(last - first, **{**GOOD, "scale": SCALES[first:last]})
 
-    found, work = Batch([MOTION], settings=Settings(most_events=500), engine=name).run(9, rows, done.append)
+    found, work = Batch([MOTION], settings=PlaneSettings(most_events=500), engine=name).run(9, rows, done.append)
     assert asked == [(0, 4), (4, 8), (8, 9)]
     assert done == [4, 4, 1]
     assert same(found, whole)

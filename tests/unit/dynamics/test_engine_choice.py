@@ -10,9 +10,10 @@ import pytest
 from engines import built
 
 import rocking as rk
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane import fast_engine
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)

@@ -308,5 +308,8 @@ def test_starts_of_one_history_and_of_many_have_the_same_words() -> None:
     with pytest.raises(rk.errors.InvalidValueError, match="without friction= a start has"):
         rk.simulate(STATUE, MOTIONS[0], 0.9, start=rk.dynamics.Start(horizontal_velocity=0.1))
     box = rk.dynamics.SpatialBody.box(0.5, 0.5, 2.0)
-    with pytest.raises(rk.errors.InvalidValueError, match="rotation is nothing for bodies in space, whose start"):
+    with pytest.raises(
+        rk.errors.InvalidValueError,
+        match=r"rotation does not apply to a body in space without friction, got .*; options: duration, engine",
+    ):
         rk.simulate_many(box, MOTIONS[0], "housner", rotation=[0.1, 0.2])

@@ -116,7 +116,7 @@ def test_a_history_without_a_result_is_neither():
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"friction": 0.3, "twin": True}, "twin is nothing for bodies with friction"),
+        ({"friction": 0.3, "twin": True}, "twin does not apply to a plane body with friction"),
         ({"friction": 0.3, "threads": 0}, "threads must be a whole number"),
         ({"friction": 0.3, "engine": "quick"}, "engine must be one of"),
         ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
@@ -126,8 +126,8 @@ def test_a_history_without_a_result_is_neither():
         ({"friction": []}, "friction must be"),
         ({"friction": 0.3, "start": 0.1}, r"start must be a Start\(...\)"),
         ({"friction": 0.3, "progress": 3}, "progress must be a function"),
-        ({"bounce": 0.5}, "bounce is nothing for bodies without friction="),
-        ({"duration": 3.0}, "duration is nothing for bodies without friction="),
+        ({"bounce": 0.5}, "bounce does not apply to a body without friction="),
+        ({"duration": 3.0}, "duration does not apply to a body without friction="),
     ],
 )
 def test_what_is_refused(options, says):

@@ -10,10 +10,11 @@ from numpy.polynomial import Polynomial
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Outcome, RockingParameters, RockingSide, Settings
-from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics import ConstantRestitution, Outcome, PlaneSettings, RockingParameters, RockingSide
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.rows import Rows
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
 from rocking.errors import InvalidValueError
 from rocking.motions import Segments
@@ -28,7 +29,7 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 def run(segments: Segments, rotation: float = 0.0, velocity: float = 0.0, **settings: Any) -> Trajectory:
     side = RockingSide(ALPHA, 1.0, 1.0, 0.3)
     body = RockingParameters(side, side, ConstantRestitution(), "")
-    return Reference(body, segments, Settings(linear=True, **settings)).run(rotation, velocity)
+    return Reference(body, segments, PlaneSettings(linear=True, **settings)).run(rotation, velocity)
 
 
 def followed(x: Polynomial, rest: int = 9) -> Trajectory:

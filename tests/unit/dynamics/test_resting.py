@@ -9,7 +9,14 @@ from engines import every_engine
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Outcome, RockingParameters, RockingSide, Settings, SpeedRestitution
+from rocking.dynamics import (
+    ConstantRestitution,
+    Outcome,
+    PlaneSettings,
+    RockingParameters,
+    RockingSide,
+    SpeedRestitution,
+)
 from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
@@ -216,7 +223,7 @@ def test_beyond_balance_it_returns_where_a_push_to_come_is_strong_enough(
     acceleration = g * push * sign * np.array([0.0, 0.0, *[1.0] * 100, 0.0])
     segments = Segments.between_samples(0.02, acceleration, None)
     start = {"rotation": sign * (UNEVEN.side(sign).slenderness_angle + 0.05), "velocity": sign * 1e-3}
-    settings = Settings(linear=linear)
+    settings = PlaneSettings(linear=linear)
     history = (
         run(UNEVEN, segments, settings, **start)
         if name == "fast"

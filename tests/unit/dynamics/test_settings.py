@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import Settings
-from rocking.dynamics.settings import settings_of
+from rocking.dynamics import PlaneSettings
+from rocking.dynamics.mechanics import study_settings
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
 from rocking.outcome import Outcome, Status
@@ -30,12 +30,11 @@ RANGES: dict[str, Any] = {
 @pytest.mark.parametrize("name", RANGES)
 @pytest.mark.parametrize("value", NO_NUMBERS)
 def test_no_numbers(name: str, value: Any) -> None:
-    """What is not one finite number is refused under its name; None stands for the usual value."""
+    """What is not one finite number is refused under its name; as an option of a study None is the default."""
     if value is None and name != "gravity":
-        assert Settings(**{name: None}) == Settings()
-        return
+        assert study_settings(None, {name: None}) == PlaneSettings()
     with pytest.raises(InvalidValueError, match=f"{name} must be"):
-        Settings(**{name: value})
+        PlaneSettings(**{name: value})
 
 
 @pytest.mark.parametrize("name", RANGES)
@@ -46,24 +45,24 @@ def test_ranges(name: str) -> None:
     for value in outside:
         changed = {name: value}
         with pytest.raises(InvalidValueError, match=f"{name} must be in {allowed}, got"):
-            Settings(**changed)
+            PlaneSettings(**changed)
     for value in inside:
         changed = {name: value}
-        assert getattr(Settings(**changed), name) == value
+        assert getattr(PlaneSettings(**changed), name) == value
 
 
 @pytest.mark.parametrize("value", [0, -1, 1.0, 2.5, True, None, "5", math.nan, math.inf, [1]])
 def test_most_events(value: Any) -> None:
     """The number of impacts is a whole one from 1."""
     with pytest.raises(InvalidValueError, match=r"most_events must be a whole number >= 1, got"):
-        Settings(most_events=value)
+        PlaneSettings(most_events=value)
 
 
 @pytest.mark.parametrize("value", [0, 1, None, "yes", 0.0, [True]])
 def test_linear(value: Any) -> None:
     """The choice of equations is True or False, not something that resembles them."""
     with pytest.raises(InvalidValueError, match="linear must be True or False, got"):
-        Settings(linear=value)
+        PlaneSettings(linear=value)
 
 
 @pytest.mark.parametrize(
@@ -72,26 +71,26 @@ def test_linear(value: Any) -> None:
 def test_order(value: Any) -> None:
     """Orders that were not compiled, floats that equal one and rows are refused, with those that were."""
     with pytest.raises(InvalidValueError, match=r"order must be one of \(4, 6, 8\), got"):
-        Settings(order=value)
+        PlaneSettings(order=value)
 
 
 def test_options_of_a_call() -> None:
     """Options become fields; gravity is standard gravity unless said; unknown ones are refused with the known."""
-    made = settings_of(9.81, {"linear": True, "order": 6})
+    made: Any = study_settings(None, {"linear": True, "order": 6}, 9.81)
     assert (made.gravity, made.linear, made.order) == (9.81, True, 6)
-    assert Settings().gravity == 9.80665
+    assert PlaneSettings().gravity == 9.80665
     with pytest.raises(
-        InvalidValueError, match=r"no option named 'tol'; there are bounce, bounce_law, friction, gravity, linear"
+        InvalidValueError, match=r"no option named 'tol'; there are bounce, bounce_law, friction, linear, longest_step"
     ):
-        settings_of(9.81, {"tol": 1e-9})
+        study_settings(None, {"tol": 1e-9}, 9.81)
 
 
 def test_frozen_and_equal() -> None:
     """Settings cannot be changed, and equal ones are equal."""
-    made = Settings(order=4)
+    made = PlaneSettings(order=4)
     with pytest.raises(AttributeError):
         made.order = 8  # type: ignore[misc]
-    assert made == Settings(order=4) != Settings(order=6)
+    assert made == PlaneSettings(order=4) != PlaneSettings(order=6)
 
 
 ENGINES = Path(__file__).parents[3] / "engine"

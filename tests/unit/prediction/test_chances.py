@@ -9,7 +9,7 @@ from scipy.stats import beta, binom, norm
 import rocking as rk
 from rocking.prediction._predict import _chance, _growth
 from rocking.prediction.mechanics import Uncertain
-from rocking.prediction.plane import PlaneMechanics, whole_settings
+from rocking.prediction.plane import SampledInPlane, whole_settings
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -79,7 +79,7 @@ def test_no_restitution_creates_energy():
     left, right = (about_centre + 650.0 * (lever**2 + 0.9**2) for lever in (0.52, 0.28))
     known = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
     settings = whole_settings(rk.conventions.g, 0.0, "newton")
-    what = PlaneMechanics(body, rk.pulses.sine(4.2, 0.8), {**known, "restitution": 1.0}, settings)
+    what = SampledInPlane(body, rk.pulses.sine(4.2, 0.8), {**known, "restitution": 1.0}, settings)
     found = what._coefficients(np.array([0.5]), np.array([[0.52, 0.28]]), np.array([0.9]))
     assert left > 1.05 * right
     # onto the left foot the body turns about the right foot before
@@ -140,7 +140,7 @@ KNOWN = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
 
 
 def mechanics(body, **given):
-    return PlaneMechanics(
+    return SampledInPlane(
         body, rk.pulses.sine(4.2, 0.8), {**KNOWN, **given}, whole_settings(rk.conventions.g, 0.0, "newton")
     )
 

@@ -14,7 +14,7 @@ from rocking.errors import RockingError
 from rocking.prediction import Prediction, predict
 from rocking.prediction._predict import _chance
 from rocking.prediction.mechanics import Uncertain
-from rocking.prediction.plane import PlaneMechanics, whole_settings
+from rocking.prediction.plane import SampledInPlane, whole_settings
 from rocking.statistics import share_interval
 from rocking.studies import SyntheticSet
 
@@ -26,7 +26,7 @@ KNOWN = {"restitution": 0.9, "friction": 0.6, "base": 0.0, "centre": 1.0, "polar
 
 
 def mechanics(body, motions, **given):
-    return PlaneMechanics(body, motions, {**KNOWN, **given}, whole_settings(rk.conventions.g, 0.0, "newton"))
+    return SampledInPlane(body, motions, {**KNOWN, **given}, whole_settings(rk.conventions.g, 0.0, "newton"))
 
 
 def peaks(what, draws=None, motion=0):

@@ -15,7 +15,7 @@ from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.space import SpatialStart
 from rocking.errors import RockingError
 from rocking.prediction import predict
-from rocking.prediction.space import SpaceMechanics
+from rocking.prediction.space import SampledInSpace
 
 pytestmark = pytest.mark.verifies(room="studies")
 KNOWN = {"restitution": "housner-3d", "friction": 0.6, "base": 0.0, "centre": 1.0, "azimuth": 0.0}
@@ -40,7 +40,7 @@ def shaking(scale=1.0):
 
 
 def mechanics(solid, **given):
-    return SpaceMechanics(solid, shaking(1.5), {**KNOWN, **given}, rk.conventions.g)
+    return SampledInSpace(solid, shaking(1.5), {**KNOWN, **given}, rk.conventions.g)
 
 
 def alone(body, law, friction, azimuth, scale=1.5):
@@ -86,9 +86,9 @@ def test_azimuth_turns_the_body():
     """A quarter turn of the body is a quarter turn of the motion the other way."""
     solid, motion = stone(), shaking(1.5)
     turned = {"x": motion["y"], "y": motion["x"].scaled(-1.0), "z": motion["z"]}
-    one = SpaceMechanics(solid, motion, {**KNOWN, "azimuth": 0.5 * math.pi}, rk.conventions.g)
-    two = SpaceMechanics(solid, turned, KNOWN, rk.conventions.g)
-    wrong = SpaceMechanics(solid, motion, KNOWN, rk.conventions.g)
+    one = SampledInSpace(solid, motion, {**KNOWN, "azimuth": 0.5 * math.pi}, rk.conventions.g)
+    two = SampledInSpace(solid, turned, KNOWN, rk.conventions.g)
+    wrong = SampledInSpace(solid, motion, KNOWN, rk.conventions.g)
     peaks = [each.run(np.empty((1, 0)), 0, np.ones(1), 1).peak[0] for each in (one, two, wrong)]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-4)  # chaotic growth of rounding
     assert abs(peaks[2] / peaks[0] - 1.0) > 0.01
@@ -148,7 +148,7 @@ def test_a_prediction_of_a_solid():
 @pytest.mark.verifies("behaviour")
 def test_a_body_put_down_at_a_slant_stands_where_it_settles():
     """A block given on one of its long sides is a low block."""
-    lying = SpaceMechanics(Solid(Part(box(2.0, 0.5, 0.5), 1000.0)), shaking(), KNOWN, rk.conventions.g)
+    lying = SampledInSpace(Solid(Part(box(2.0, 0.5, 0.5), 1000.0)), shaking(), KNOWN, rk.conventions.g)
     assert lying.pose.height == pytest.approx(0.25, abs=1e-12)
 
 
@@ -168,7 +168,7 @@ def test_a_body_given_at_a_slant_has_the_impacts_of_its_base():
         "upright": Solid(Part(shape, 2500.0)),
         "on stated points": Solid(Part(shape, 2500.0), base=stated),
     }.items():
-        what = SpaceMechanics(solid, pulse, given, rk.conventions.g)
+        what = SampledInSpace(solid, pulse, given, rk.conventions.g)
         peaks[name] = what.run(np.empty((1, 0)), 0, np.ones(1), 1).peak[0]
     assert peaks["slanted"] == pytest.approx(peaks["upright"], rel=1e-6)
     # negative control: impacts as if the body stood on those points are others
@@ -204,7 +204,7 @@ def test_a_body_wider_than_its_base_is_measured_as_its_section():
         Part(box(b - a, 1.5, d - c), density, translation=(0.5 * (a + b), 0.0, c))
         for (a, b, c, d), density in shapes.items()
     ]
-    found = SpaceMechanics(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
+    found = SampledInSpace(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
     r = restitution_distribution(section, onto="left").tables["left"]  # the nearer one
     assert found.inputs["restitution"].words.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import ImpactLaw, RandomRestitution, Settings
+from rocking.dynamics import ImpactLaw, PlaneSettings, RandomRestitution
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.restitution import model
@@ -175,8 +175,8 @@ def test_key_names_the_content():
         product(MotionList([Sines()[k] for k in (0, 1, 2, 3, 3)])),
         product(law=law),
         product(law=RandomRestitution.normal(0.9, 0.05, seed=4)),
-        Product(base.motions, base.sides, base.scales, settings=Settings(linear=True)),
-        Product(base.motions, base.sides, base.scales, settings=Settings(gravity=9.81)),
+        Product(base.motions, base.sides, base.scales, settings=PlaneSettings(linear=True)),
+        Product(base.motions, base.sides, base.scales, settings=PlaneSettings(gravity=9.81)),
         Product(base.motions, base.sides, base.scales, engine="reference"),
     ]
     others += [product(law=law) for law in (Worn(0.99), Worn(0.98), Worn(np.array([0.5, 0.49])), Battered(0.99))]
@@ -217,12 +217,14 @@ def test_contents_that_are_not_plain_are_refused():
 def test_numbers_of_settings_are_of_one_kind():
     """9 and 9.0, or numbers of another library, are the same settings with the same key."""
     base = product()
-    one = replace(base, settings=Settings(gravity=9, order=np.int64(8), most_events=np.int32(500)))
-    two = replace(base, settings=Settings(gravity=9.0, order=8, most_events=500))
+    one = replace(base, settings=PlaneSettings(gravity=9, order=np.int64(8), most_events=np.int32(500)))
+    two = replace(base, settings=PlaneSettings(gravity=9.0, order=8, most_events=500))
     assert one.key() == two.key()
     assert type(one.settings.gravity) is float
-    narrow = replace(base, settings=Settings(gravity=np.float32(9.8), longest_step=np.float16(0.125)))
-    assert narrow.key() == replace(base, settings=Settings(gravity=float(np.float32(9.8)), longest_step=0.125)).key()
+    narrow = replace(base, settings=PlaneSettings(gravity=np.float32(9.8), longest_step=np.float16(0.125)))
+    assert (
+        narrow.key() == replace(base, settings=PlaneSettings(gravity=float(np.float32(9.8)), longest_step=0.125)).key()
+    )
 
 
 def test_arrays_are_not_shared_with_the_caller():

@@ -207,7 +207,7 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
     # ``difference_rad`` is of the peak rotations of the study and of the response here, which take other steps to the
     # same accuracy
     cell: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
-    if study.job.problem.settings.friction is not None:
+    if "friction" in study.job.problem.settings.stated:
         return cell | {
             "note": "with friction the page has the study's numbers alone; ask `rocking simulate --friction`"
         }

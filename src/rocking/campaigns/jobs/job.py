@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.campaigns.identity import software
+from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.plane import fast_engine
 from rocking.motions.summary import summaries_of
 from rocking.restitution import RestitutionModel
 from rocking.spec.reading import document_of, located, read_text
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import engine_words
 
 if TYPE_CHECKING:
     from rocking.campaigns.jobs.study import Study
@@ -148,7 +148,9 @@ class Job:
             "restitution": [_model(label, restitution) for label, restitution in problem.restitutions.items()],
             "settings": problem.settings.stated,
             "engine": "; ".join(
-                dict.fromkeys(engine_words(each.settings, fast=engine == "fast") for each in histories.parts)
+                dict.fromkeys(
+                    mechanics_of(each.settings).engine_of_study(fast=engine == "fast") for each in histories.parts
+                )
             ),
             "seeds": {
                 "campaign": campaign.seed,

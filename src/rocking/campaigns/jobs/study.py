@@ -9,9 +9,10 @@ import numpy as np
 
 from rocking.campaigns.ledger import HistoryRange
 from rocking.conventions import IntArray
+from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import hash_of
-from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError
 from rocking.outcome import flags
 from rocking.quantities import HISTORY

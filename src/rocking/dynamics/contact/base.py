@@ -186,6 +186,16 @@ class Start:
         return not (self.horizontal_velocity or self.height or self.vertical_velocity)
 
 
+def rocking_start(start: Start) -> tuple[float, float]:
+    """Return theta [rad] and theta' [rad/s] of a start; one that lifts or pushes the body along is refused."""
+    if not start.rocks_alone:
+        raise InvalidValueError(
+            "without friction= a start has rotation and angular_velocity alone, since the body neither slides nor "
+            f"flies, got {start!r}"
+        )
+    return start.rotation, start.angular_velocity
+
+
 def starts_of(start: Any, rotation: Any = 0.0, angular_velocity: Any = 0.0) -> list[Start] | None:
     """Return the starts of plane bodies, from `start` or from numbers or rows of them; None where none is stated."""
     stated = np.ndim(rotation) or np.ndim(angular_velocity) or rotation != 0.0 or angular_velocity != 0.0

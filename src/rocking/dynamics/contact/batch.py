@@ -3,18 +3,17 @@
 import math
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, IntArray
+from rocking.dynamics.combined import dataset_of, label_of, plane_inputs
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
-from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.response import (
     AFTER,
     FINE,
@@ -24,19 +23,20 @@ from rocking.dynamics.contact.response import (
     length_of,
     response_with_contact,
 )
+from rocking.dynamics.contact.settings import ContactSettings
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.mechanics_base import Combinations
 from rocking.dynamics.parameters import UNIMPOSED
-from rocking.dynamics.settings import (
-    BOUNCE_LAWS,
-    CompiledEngine,
-    Settings,
-    check_progress,
-    thread_count,
-)
+from rocking.dynamics.rows import Rows
+from rocking.dynamics.settings import BOUNCE_LAWS, CompiledEngine, check_progress, checked_friction, thread_count
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
+from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, of_results, overturned
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NUMBERS = (
     "inertia", "height", "left", "right", "friction", "bounce", "imposed_left", "imposed_right", "scale", "end",
@@ -76,15 +76,15 @@ def run_compiled(
     library: Any,
     values: dict[str, Any],
     motion: Any,
-    bounce_law: str,
     touching: Any,
     *,
-    settings: Settings,
+    settings: ContactSettings,
     threads: int,
 ) -> dict[str, np.ndarray]:
     """Return results by name of histories of `NUMBERS`; motion: their numbers."""
     # touching: 1 for the left foot plus 2 for the right
-    columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, BOUNCE_LAWS.index(bounce_law), touching)
+    bounce_law = BOUNCE_LAWS.index(settings.bounce_law)
+    columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, bounce_law, touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
     results, counts = _COMPILED.room(len(numbers))
@@ -98,10 +98,15 @@ def run_compiled(
 class RowsWithContact:
     """Motions as the compiled engine with friction keeps them, and histories under them as rows of a study."""
 
-    def __init__(self, motions: Sequence[Segments], settings: Settings, engine: str) -> None:
+    def __init__(self, motions: Sequence[Segments], law: ImpactLaw, settings: ContactSettings, engine: str) -> None:
         if engine == "reference":
             raise InvalidValueError(
                 'studies with friction run on the compiled engine; engine="reference" is for simulate and simulate_many'
+            )
+        if not isinstance(law, ConstantRestitution):
+            raise InvalidValueError(
+                "with friction a history has one coefficient of restitution, or one that is drawn once for it, got "
+                f"{type(law).__name__}"
             )
         self.motions, self.settings = motions, settings
 
@@ -110,10 +115,11 @@ class RowsWithContact:
         """Motions as the compiled engine keeps them."""
         return library_of(self.motions)
 
-    def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
-        """Return the results of some rows by the names that studies know; NaN for what this mechanics has not."""
-        # values: the keys of `ROWS`; a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that
-        # of the settings; rows of another r below zero, or not finite, are refused by themselves
+    def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
+        """Return the results of a piece by the names that studies know, and the steps taken."""
+        # a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that of the settings; rows of
+        # another r below zero, or not finite, are refused by themselves
+        values, motion = piece.values, piece.motion
         right, left = _side(values, "right", self.settings), _side(values, "left", self.settings)
         same = np.isclose(right["height"], left["height"], rtol=1e-6) & np.isclose(
             right["inertia"], left["inertia"], rtol=1e-6
@@ -121,8 +127,7 @@ class RowsWithContact:
         coefficients = np.array([values[f"r_{foot}"] for foot in FEET])
         known = np.all(((coefficients >= 0.0) & (coefficients <= 100.0)) | (coefficients == UNIMPOSED), axis=0)
         size = np.maximum(right["size"], left["size"])
-        usual = np.nan if self.settings.friction is None else self.settings.friction
-        friction = np.where(np.isnan(values["friction"]), usual, values["friction"])
+        friction = np.where(np.isnan(values["friction"]), self.settings.friction, values["friction"])
         table: dict[str, Any] = {
             "inertia": np.where(same & known, right["inertia"], np.nan), "height": right["height"],
             "left": left["half_width"], "right": right["half_width"],
@@ -133,13 +138,9 @@ class RowsWithContact:
         touching = np.full(motion.size, 3)
         if values["rotation"].any() or values["velocity"].any():
             touching = _start(table, values["rotation"], values["velocity"])
-        found = run_compiled(
-            self.library, table, motion, self.settings.bounce_law, touching, settings=self.settings, threads=threads
-        )
-        return found | {
-            "friction_demand": found["friction_usage"] * friction,
-            "truncation": np.full(motion.size, np.nan), "least_force": np.full(motion.size, np.nan),
-        }  # fmt: skip
+        found = run_compiled(self.library, table, motion, touching, settings=self.settings, threads=threads)
+        demand = {"friction_demand": found["friction_usage"] * friction}
+        return found | demand, {"steps": int(found["steps"].sum())}
 
     def _ends(self, motion: np.ndarray, size: FloatArray) -> FloatArray:
         """When the histories end [s]."""
@@ -160,7 +161,7 @@ def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
         return np.asarray(np.maximum(1.0, np.ceil(length / step - 1e-9)) * step)
 
 
-def _side(values: dict[str, FloatArray], foot: str, settings: Settings) -> dict[str, FloatArray]:
+def _side(values: dict[str, FloatArray], foot: str, settings: ContactSettings) -> dict[str, FloatArray]:
     """Return what alpha, p and q say of a side: R, h, b [m], and I_C / m [m2]."""
     alpha, p, q = (values[f"{name}_{foot}"] for name in ("alpha", "p", "q"))
     with np.errstate(all="ignore"):  # a row that is no body is refused by itself
@@ -193,45 +194,50 @@ PIECE = 1 << 14
 """Histories that are handed to the fast engine at a time."""
 
 
-def many_with_contact(  # noqa: PLR0913 - what the front door hands on
-    bodies: Sequence[Body],
-    motions: Sequence[GroundMotion | Pulse],
-    scales: FloatArray,
-    restitutions: Sequence[Any],
-    friction: FloatArray,
-    settings: Settings,
-    *,
-    bounce: float = 0.0,
-    bounce_law: str = "newton",
-    starts: Sequence[Start] = (Start(),),
-    duration: float | None = None,
-    engine: str = "auto",
-    threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> tuple[dict[str, np.ndarray], str]:
-    """Return the results of every combination, the last axis (starts) running fastest, and which engine ran."""
-    check_progress(progress)
-    taken = thread_count(threads)
-    for mu in friction:
-        plausibility.warn(plausibility.of_friction(checks.within("friction", float(mu), 0.0, 1e6)))
-    if chosen(engine) == "fast":
+def many_with_contact(given: Combinations, settings: ContactSettings) -> "xr.Dataset":
+    """Return the results of every combination of plane bodies."""
+    bodies, motions, scales, starts = plane_inputs(given)
+    check_progress(given.progress)
+    threads, restitutions = thread_count(given.threads), given.restitutions
+    for mu in given.frictions[1:].tolist():
+        checked_friction("friction", mu)
+    if chosen(given.engine) == "fast":
         imposed = [[imposed_on(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
-        law = GroundContact(0.0, checks.number("bounce", bounce), None, bounce_law)
         bases = [PlaneBase.of_body(body) for body in bodies]
-        table = _Table(bases, motions, scales, np.array(imposed), friction, law, starts, duration, settings)
-        return table.run(taken, progress), FAST
+        table = _Table(
+            bases, motions, scales, np.array(imposed), given.frictions, starts or [Start()], given.duration, settings
+        )
+        results, ran = table.run(threads, given.progress), FAST
+    else:
+        results, ran = _one_by_one(given, bodies, motions, scales, starts or [Start()], settings), REFERENCE
+    labels = list(map(label_of, restitutions))
+    return dataset_of(
+        bodies, motions, {"scale": scales, "restitution": labels, "friction": given.frictions, "start": starts},
+        results, settings,
+        {
+            "engine": ran, "bounce": settings.bounce, "bounce_law": settings.bounce_law,
+            "duration_s": np.nan if given.duration is None else given.duration,
+        },
+    )  # fmt: skip
+
+
+def _one_by_one(
+    given: Combinations, bodies: list[Body], motions: list[Motion], scales: FloatArray, starts: Sequence[Start],
+    settings: ContactSettings,
+) -> dict[str, np.ndarray]:  # fmt: skip
     rows = []
-    for body, motion, scale, restitution, mu, start in product(bodies, motions, scales, restitutions, friction, starts):
+    every = product(bodies, motions, scales.tolist(), given.restitutions, given.frictions.tolist(), starts)
+    for body, motion, scale, restitution, mu, start in every:
         with warnings.catch_warnings():  # said once, before
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(
-                body, motion, float(mu), restitution, settings, bounce=bounce, bounce_law=bounce_law,
-                start=start, scale=float(scale), duration=duration,
+                body, motion, restitution, replace(settings, friction=mu), start=start, scale=scale,
+                duration=given.duration,
             )  # fmt: skip
         rows.append(_row_of(response))
-        if progress is not None:
-            progress(1)
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}, REFERENCE
+        if given.progress is not None:
+            given.progress(1)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 @dataclass(frozen=True)
@@ -243,10 +249,9 @@ class _Table:
     scales: FloatArray
     imposed: FloatArray  # of each body and restitution, landing left and right [-]
     friction: FloatArray
-    law: GroundContact
     starts: Sequence[Start]
     duration: float | None
-    settings: Settings
+    settings: ContactSettings
 
     def run(self, threads: int, progress: Callable[[int], None] | None) -> dict[str, np.ndarray]:
         """Return the columns of `_row_of`, computed piece by piece."""
@@ -266,7 +271,7 @@ class _Table:
             last = min(first + PIECE, count)
             body, motion, scale, choice, mu, start = np.unravel_index(np.arange(first, last), shape)
             values: dict[str, Any] = dict(zip(NUMBERS[:4], np.array(numbers)[body].T, strict=True))
-            values |= {"friction": self.friction[mu], "bounce": self.law.bounce, "scale": self.scales[scale]}
+            values |= {"friction": self.friction[mu], "bounce": self.settings.bounce, "scale": self.scales[scale]}
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
             values |= dict(zip(NUMBERS[10:], state[body, start].T, strict=True))
             values = {name: np.broadcast_to(column, body.shape) for name, column in values.items()}
@@ -295,9 +300,7 @@ class _Table:
 
         def computed(rows: IntArray, end: FloatArray) -> dict[str, np.ndarray]:
             own = {name: column[rows] for name, column in values.items()} | {"end": end[rows]}
-            return run_compiled(
-                library, own, motion[rows], self.law.bounce_law, feet[rows], settings=self.settings, threads=threads
-            )
+            return run_compiled(library, own, motion[rows], feet[rows], settings=self.settings, threads=threads)
 
         results = computed(np.arange(motion.size), ends[0])
         rows = np.flatnonzero(~(values["imposed_left"] * values["imposed_right"] >= 1.0))  # NaN: no coefficient
@@ -315,6 +318,7 @@ class _Table:
 
 _COUNTED = ("impacts", "still_rocking", "impacts_replaced", "shocks")
 _MEASURED = ("peak_rotation", "sliding_distance", "residual_displacement", "friction_usage")
+COLUMNS = ("outcome", "status", "side", "overturned", "overturning_time", *_MEASURED, *_COUNTED)
 
 
 def _columns(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -31,7 +31,7 @@ from rocking.dynamics.contact.impact_resolution import (
     strike_with,
 )
 from rocking.dynamics.contact.mode_series import GroundSeries, ModeSeries, mode_series, value
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.contact.settings import ContactSettings
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
 from rocking.outcome import Status
@@ -51,7 +51,7 @@ class ContactEngine:
         base: PlaneBase,
         segments: Segments,
         law: GroundContact,
-        settings: Settings,
+        settings: ContactSettings,
         scale: float = 1.0,
     ) -> None:
         vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 from typing import NamedTuple
 
-from rocking import checks, plausibility
+from rocking import checks
 from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, ContactState, PlaneBase, along, away, kept, kinetic
 from rocking.dynamics.settings import BOUNCE_LAWS
 from rocking.outcome import Status
@@ -49,7 +49,6 @@ class GroundContact:
         hint = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
         checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)
         object.__setattr__(self, "bounce_law", checks.one_of("bounce_law", self.bounce_law, BOUNCE_LAWS))
-        plausibility.warn(plausibility.of_friction(self.friction))
 
     @property
     def is_lossless(self) -> bool:

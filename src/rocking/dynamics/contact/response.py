@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks, conventions, plausibility
+from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
 from rocking.dynamics.contact.impact_resolution import GroundContact
+from rocking.dynamics.contact.settings import ContactSettings
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, is_none
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -85,8 +85,8 @@ class ContactResponse(ResponseBase):
         The body as the equations see it.
     law : ContactLaw
         Friction and restitution.
-    settings : Settings
-        How it was integrated.
+    settings : ContactSettings
+        How it was integrated, and the ground.
     segments : Segments
         The motion as it was integrated [m/s2].
     scale : float
@@ -99,7 +99,7 @@ class ContactResponse(ResponseBase):
     motion: GroundMotion | Pulse | None
     base: PlaneBase
     law: GroundContact
-    settings: Settings
+    settings: ContactSettings
     segments: Segments
     scale: float
     trajectory: History
@@ -300,15 +300,12 @@ LONGER = 30.0, 60.0, 120.0, 240.0, 300.0
 """The same where the body still rocks at the end of the one before."""
 
 
-def response_with_contact(  # noqa: PLR0913 - what the front door hands on
+def response_with_contact(
     body: Body,
     motion: GroundMotion | Pulse | None,
-    friction: float,
     restitution: Any,
-    settings: Settings,
+    settings: ContactSettings,
     *,
-    bounce: float = 0.0,
-    bounce_law: str = "newton",
     start: Start,
     scale: float = 1.0,
     duration: float | None = None,
@@ -319,10 +316,7 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     # 300 sqrt(R / g)
     base = PlaneBase.of_body(body)
     law = GroundContact(
-        friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
-        checks.number("bounce", bounce),
-        imposed_on(body, restitution, settings),
-        bounce_law,
+        settings.friction, settings.bounce, imposed_on(body, restitution, settings), settings.bounce_law
     )
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, base, settings.gravity, duration)
@@ -345,7 +339,7 @@ def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     return ContactResponse(body, motion, base, law, settings, segments, scale, history)
 
 
-def imposed_on(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
+def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple[float, float] | None:
     """Return the coefficients that a restitution imposes, landing left and right; None where it imposes none."""
     if is_none(restitution):
         return None

@@ -2,24 +2,24 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from rocking import plausibility
-from rocking.conventions import FEET, FloatArray
+from rocking.conventions import FEET
 from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround
 from rocking.dynamics.hull.histories import HullRows, hull_histories, numbers_of
-from rocking.dynamics.hull.response import settings_on_hull
 from rocking.dynamics.hull.restitution import RestitutionOnHull, law_on_hull
+from rocking.dynamics.hull.settings import HullSettings
+from rocking.dynamics.mechanics_base import Combinations, listed, row_of
 from rocking.dynamics.parameters import UNIMPOSED
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.rows import Rows
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.batch import SpatialBatch, made_or_refused, provenance_of
+from rocking.dynamics.space.batch import SpatialBatch, made_or_refused, motions_in_space, provenance_of
 from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
@@ -30,22 +30,13 @@ RENAMED = {"held": "contacts_held", "replaced": "landings_replaced"}
 """Results whose names in the engine mean something else in `rocking.quantities`."""
 
 
-def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
-    bodies: Sequence[Any],
-    motions: Sequence[Any],
-    scales: FloatArray,
-    restitutions: Sequence[Any],
-    frictions: FloatArray,
-    starts: Sequence[SpatialStart | None],
-    settings: Settings,
-    duration: float | None = None,
-    engine: str = "auto",
-    threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
-) -> SpatialBatch:
-    """Return the outcome of every combination; motions are tuples of components, None for ground at rest."""
+def many_on_hulls(given: Combinations, settings: HullSettings) -> SpatialBatch:
+    """Return the outcome of every combination; the motions of which are those of `motions_in_space`."""
+    bodies, motions, scales = listed(given.bodies), motions_in_space(given.motions), row_of("scale", given.scales)
+    frictions, duration = given.frictions, given.duration
+    starts = [None] if given.start is None else listed(given.start)
     made, refused = made_or_refused(HullBody.of, bodies)
-    if not made or not motions or not restitutions or not starts:
+    if not made or not motions or not given.restitutions or not starts:
         raise InvalidValueError("bodies, motions, restitution and start must be at least one each, got none")
     if (frictions < 0.0).any():
         raise InvalidValueError(f"friction must be in [0, 1e+06], got {frictions.min():g}")
@@ -53,7 +44,7 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
     shaken = [tuple(part for part in motion or () if part is not None) for motion in motions]
     for parts in shaken:
         plausibility.warn(plausibility.of_scaled(parts, scales))
-    laws = [law_on_hull(each) for each in restitutions]
+    laws = [law_on_hull(each) for each in given.restitutions]
     grounds = [
         HullGround.placed(ground_of(*motion or (), until=until), np.eye(3), (math.inf, math.inf), settings.gravity)
         for motion in motions
@@ -61,7 +52,7 @@ def batch_on_hulls(  # noqa: PLR0913, PLR0917 - what the front door hands on
     leaning = [start or SpatialStart() for start in starts]
     found = hull_histories(
         made, grounds, laws, frictions, scales, leaning, horizon=duration or 0.0,
-        settings=settings_on_hull(settings), engine=engine, threads=threads, progress=progress,
+        settings=settings, engine=given.engine, threads=given.threads, progress=given.progress,
     )  # fmt: skip
     # hull_histories has its own order: body, motion, scale, restitution, friction, start
     values = {RENAMED.get(name, name): array for name, array in found.values.items()}
@@ -81,23 +72,21 @@ class RowsOnHull:
     """Motions of a study, and histories of one body under them as rows: the runner behind every study of solids."""
 
     def __init__(
-        self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: Settings, engine: str
+        self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: HullSettings, engine: str
     ) -> None:
-        self.law, self.gravity = law, settings.gravity
-        assert settings.friction is not None
-        self.friction = settings.friction
+        self.law, self.gravity, self.friction = law, settings.gravity, settings.friction
         grounds = [_ground(motion) for motion in motions]
         which = histories.chosen(engine)
         ked = law.model == "ked-3d"
-        self.rows = HullRows([law.on_hull], grounds, settings_on_hull(settings), which, ked=ked)
+        self.rows = HullRows([law.on_hull], grounds, settings, which, ked=ked)
 
-    def run(self, values: dict[str, FloatArray], motion: np.ndarray, threads: int) -> dict[str, np.ndarray]:
-        """Return the results of some rows by the names that studies know; NaN for what this mechanics has not.
+    def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
+        """Return the results of a piece by the names that studies know, and the steps taken.
 
         A body of c times the size moves as the one at hand does under gravity and ground accelerations over c, in the
         same time; p says c.
         """
-        law, count = self.law, motion.size
+        law, values, motion, count = self.law, piece.values, piece.motion, len(piece)
         if values["rotation"].any() or values["velocity"].any():
             raise InvalidValueError("rows of a body in space start upright and at rest")
         with np.errstate(all="ignore"):  # a row that is no body is refused by itself
@@ -116,15 +105,13 @@ class RowsOnHull:
         base = np.full(count, law.on_hull.base)
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes, base]).astype(np.int64)
         found = self.rows.run(numbers, choices, threads)
-        fell, unknown = found["outcome"] == Outcome.OVERTURNED.code, np.full(count, np.nan)
-        names = ("outcome", "status", "uplifts", "still_rocking", "steps", "overturning_time", "peak_time",
-                 "first_uplift")  # fmt: skip
+        fell = found["outcome"] == Outcome.OVERTURNED.code
+        names = ("outcome", "status", "uplifts", "still_rocking", "overturning_time", "peak_time", "first_uplift")
         return {name: found[name] for name in names} | {
             "peak_rotation": np.where(fell, 0.5 * math.pi, found["peak_tilt"]), "peak_velocity": found["peak_spin"],
             "impacts": np.where(fell, UNCOUNTED, found["impacts"]),
             "side": np.where(fell, np.where(np.cos(found["direction"]) < 0.0, -1, 1), 0),
-            "truncation": unknown, "least_force": unknown, "friction_demand": unknown,
-        }  # fmt: skip
+        }, {"steps": int(found["steps"].sum())}  # fmt: skip
 
 
 def _ground(motion: Segments | Components) -> SpatialGround:

@@ -25,7 +25,7 @@ from rocking.dynamics.hull.ground import (
     scaled,
     unit,
 )
-from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory
 from rocking.dynamics.hull.motion import (
     HullMode,
     State,
@@ -40,6 +40,7 @@ from rocking.dynamics.hull.motion import (
     valued,
 )
 from rocking.dynamics.hull.restitution import law_of, nearest, place_of
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
 _SLIDES = 1e-4  # speed over sqrt(g size) below which a vertex still slides as it started, if not below twice a stop

@@ -14,9 +14,10 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.contact_problem import HullContact
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
-from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory
 from rocking.dynamics.hull.motion import State
 from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, spread_of
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.settings import CompiledEngine, check_progress, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.batch import DIMENSIONS, SpatialBatch
@@ -43,6 +44,7 @@ _COMPILED = CompiledEngine(
     ("outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking"),
 )  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
+COLUMNS = _COMPILED.columns
 
 
 def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], *, ked: bool) -> Any:

@@ -64,12 +64,3 @@ class HullHistory:
         """Largest angle from the pose at the beginning [rad]."""
         least = self.least_cosine
         return math.atan2(math.sqrt(max((1.0 - least) * (1.0 + least), 0.0)), least)
-
-
-@dataclass(frozen=True)
-class HullSettings:
-    """How to integrate; see `Settings`."""
-
-    tolerance: float = 1e-12  # bound on the local error of a step, over size, radian and their rates [-]
-    rest_speed: float = 1e-5  # over sqrt(g size); its square is the energy over m g size at which a body comes to rest
-    most_events: int = 100_000

@@ -13,10 +13,10 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, unit
 from rocking.dynamics.hull.histories import ENGINES, chosen, start_of, traced
-from rocking.dynamics.hull.history import HullEventKind, HullHistory, HullSettings
+from rocking.dynamics.hull.history import HullEventKind, HullHistory
 from rocking.dynamics.hull.restitution import law_on_hull
+from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.response_base import ResponseBase, motion_provenance
-from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import Component, ground_of
@@ -37,16 +37,11 @@ HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after"
 _AXES = ("x", "y", "z")
 
 
-def settings_on_hull(settings: Settings) -> HullSettings:
-    """Return settings as the hull engine takes them."""
-    return HullSettings(settings.tolerance, settings.rest_speed, settings.most_events)
-
-
 def response_on_hull(
     body: Any,
     components: tuple[Component, Component, Component],
     restitution: Any,
-    settings: Settings,
+    settings: HullSettings,
     *,
     start: SpatialStart,
     engine: str = "auto",
@@ -64,16 +59,17 @@ def response_on_hull(
     motion = ground_of(*components, until=until, scale=scale)
     plausibility.warn(plausibility.of_scaled(shaken, scale))
     ground = HullGround.placed(motion, np.eye(3), (math.inf, math.inf), settings.gravity)
-    assert settings.friction is not None
     steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
     step = min(steps, default=FINE / math.sqrt(settings.gravity / made.size))
     if duration is not None:
         samples(step, duration)  # too many are refused before they are computed
-    given, horizon, used = settings_on_hull(settings), 0.0 if duration is None else duration, chosen(engine)
+    horizon, used = 0.0 if duration is None else duration, chosen(engine)
     if used == "fast":
-        found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=given)
+        found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=settings)
     else:
-        found = HullEngine(made, ground, law, settings.friction, given).run(start_of(made, start), horizon, made.base)
+        found = HullEngine(made, ground, law, settings.friction, settings).run(
+            start_of(made, start), horizon, made.base
+        )
     end = min(until, found.time[-1])
     time = samples(step, end)
     return HullResponse(made, ground, str(law), settings, time, found, end, components, scale, ENGINES[used])
@@ -103,7 +99,7 @@ class HullResponse(ResponseBase):
         The motion as it was integrated [m/s2].
     restitution : str
         Law of restitution, or its coefficient.
-    settings : Settings
+    settings : HullSettings
         How it was integrated, and with which friction.
     time : ndarray
         Times of the samples, until it rests after the motion, or to the duration [s].
@@ -122,7 +118,7 @@ class HullResponse(ResponseBase):
     body: HullBody
     ground: HullGround
     restitution: str
-    settings: Settings
+    settings: HullSettings
     time: FloatArray
     trajectory: HullHistory
     end: float

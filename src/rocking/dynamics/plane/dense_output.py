@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.equations import EventKind, Trajectory
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.taylor import series, shifted, slope, value
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -47,7 +47,12 @@ class DenseOutput:
 
     @classmethod
     def of(
-        cls, trajectory: Trajectory, segments: Segments, parameters: RockingParameters, settings: Settings, scale: float
+        cls,
+        trajectory: Trajectory,
+        segments: Segments,
+        parameters: RockingParameters,
+        settings: PlaneSettings,
+        scale: float,
     ) -> "DenseOutput":
         time, before, after = _nodes(trajectory, segments.step)
         added = _inner_states(trajectory, segments, parameters, settings, scale, time, before, after)
@@ -115,7 +120,7 @@ class DenseOutput:
             axis=1,
         )
 
-    def work(self, settings: Settings) -> FloatArray:
+    def work(self, settings: PlaneSettings) -> FloatArray:
         """Return the work of the ground in each interval per unit mass [J/kg]."""
         # in the frame of the ground the inertia forces -m a_x and -m a_z act; the slender-linear terms correspond
         rotation, velocity = self.evaluated(_POINTS)
@@ -168,7 +173,7 @@ def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
     trajectory: Trajectory,
     segments: Segments,
     parameters: RockingParameters,
-    settings: Settings,
+    settings: PlaneSettings,
     scale: float,
     time: FloatArray,
     before: FloatArray,

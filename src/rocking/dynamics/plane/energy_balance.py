@@ -10,7 +10,7 @@ from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.dense_output import DenseOutput
 from rocking.dynamics.plane.equations import EventKind, Trajectory
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,7 +40,7 @@ class ResponseEnergy:
         return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
-def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
+def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: PlaneSettings) -> ResponseEnergy:
     """Return the energy of a response at the samples, from time zero, and at a fall after the last of them [s]."""
     place = dense_output.places(time[1:])
     both_ends = energies(dense_output, mass, settings)
@@ -48,7 +48,7 @@ def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings
 
 
 def energies(
-    dense_output: DenseOutput, mass: float, settings: Settings
+    dense_output: DenseOutput, mass: float, settings: PlaneSettings
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the energy at both ends of the intervals, as `ResponseEnergy` has it [J] (shape (n, 2))."""
     unit = (mass * settings.gravity * dense_output.semi_diagonal)[:, None]
@@ -115,7 +115,7 @@ class GroundForces:
 
 
 def contact_of(
-    trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: Settings
+    trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: PlaneSettings
 ) -> GroundForces:
     """Return the forces of the ground at the samples of a response, and at a fall after the last of them [s]."""
     f_x, f_z, demand = forces(dense_output, settings.gravity)

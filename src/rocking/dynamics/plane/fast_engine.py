@@ -11,7 +11,8 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.equations import Event, EventKind, Trajectory
-from rocking.dynamics.settings import ENGINES, CompiledEngine, Settings
+from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.settings import ENGINES, CompiledEngine
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
@@ -130,7 +131,7 @@ def empty_results(count: int) -> Arrays:
     }
 
 
-def common(settings: Settings, law: ImpactLaw) -> Arrays:
+def common(settings: PlaneSettings, law: ImpactLaw) -> Arrays:
     """Return the arguments that all calls of the fast engine share."""
     return {
         "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
@@ -146,7 +147,7 @@ _OUTCOMES, _STATUSES = list(Outcome), list(Status)
 def run(
     parameters: RockingParameters,
     segments: Segments,
-    settings: Settings,
+    settings: PlaneSettings,
     *,
     engine: str = "auto",
     scale: float = 1.0,
@@ -191,7 +192,7 @@ def run(
     return Trajectory(rotations, velocities, events, engine=f"fast (Taylor, order {order}, {kernels})", **results)
 
 
-def _takes_order_six(parameters: RockingParameters, segments: Segments, settings: Settings, scale: float) -> bool:
+def _takes_order_six(parameters: RockingParameters, segments: Segments, settings: PlaneSettings, scale: float) -> bool:
     """Whether the samples of a record are so close that the engine follows it with order 6."""
     if segments.degree != 1 or settings.linear:
         return False

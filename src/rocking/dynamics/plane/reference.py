@@ -14,7 +14,7 @@ from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.equations import Event, EventKind, Trajectory
 from rocking.dynamics.plane.event_functions import NOTHING, Push, RestoringMoments, comes_to_rest
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slope, turning_points, value
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -36,7 +36,7 @@ class Reference:
         self,
         parameters: RockingParameters,
         segments: Segments,
-        settings: Settings,
+        settings: PlaneSettings,
         *,
         scale: float = 1.0,
         stream: int = 0,

@@ -11,8 +11,9 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.mechanics_base import Combinations, listed
 from rocking.dynamics.response_base import motion_provenance
-from rocking.dynamics.settings import Settings, check_progress
+from rocking.dynamics.settings import check_progress
 from rocking.dynamics.space import fast_engine
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
@@ -20,8 +21,10 @@ from rocking.dynamics.space.fast_engine import Bodies, Progress, Results, RowTab
 from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.dynamics.space.impact_laws import law_of
 from rocking.dynamics.space.reference import SpatialReference
+from rocking.dynamics.space.settings import SpaceBatchSettings, SpaceSettings
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError, RockingError, extra
+from rocking.motions.components import components_of
 from rocking.outcome import ContactMode, Outcome, Status, of_results, overturned
 from rocking.quantities import attributes
 from rocking.version import SOFTWARE
@@ -94,13 +97,27 @@ class SpatialBatch:
         return dataset
 
 
+def many_in_space(given: Combinations, settings: SpaceBatchSettings) -> SpatialBatch:
+    """Return the outcome of every combination."""
+    return batch_in_space(
+        listed(given.bodies), motions_in_space(given.motions), given.restitutions, given.scales,
+        None if given.start is None else listed(given.start), settings, given.duration, given.engine, given.threads,
+        given.progress,
+    )  # fmt: skip
+
+
+def motions_in_space(motions: Any) -> list[Any]:
+    """Return the components of motions of bodies in space, None for ground at rest."""
+    return [None if motion is None else components_of(motion) for motion in listed(motions)]
+
+
 def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     bodies: Any,
     motions: Any = None,
     restitution: Any = "housner-3d",
     scales: Any = 1.0,
     start: SpatialStart | Sequence[SpatialStart] | None = None,
-    settings: Settings | None = None,
+    settings: SpaceBatchSettings | None = None,
     duration: float | None = None,
     engine: str = "auto",
     threads: int | None = None,
@@ -108,7 +125,7 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
 ) -> SpatialBatch:
     """Return the outcome of every combination; motions: tuples of components."""
     # the reference engine is thousands of times slower
-    settings = settings or Settings(mechanics="space, many")
+    settings = settings or SpaceBatchSettings()
     listed = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
     several, refused = made_or_refused(SpatialBody.of, listed)
     if not several:
@@ -184,13 +201,11 @@ def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGr
 
 
 def _run_reference(
-    bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, settings: Settings, progress: Progress
+    bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, settings: SpaceBatchSettings, progress: Progress
 ) -> tuple[Results, str]:
     """Return the results of all rows by the reference engine."""
     results, counts = fast_engine.room(len(table))
-    own = Settings(
-        settings.gravity, rest_speed=settings.rest_speed, most_events=settings.most_events, mechanics="space"
-    )
+    own = SpaceSettings(settings.gravity, settings.most_events, settings.rest_speed)
     for k in range(len(table)):
         (numbers,), ((body, motion, _),) = table.piece(k, k + 1)
         law = table.laws[int(np.unravel_index(k, table.shape)[3])]
@@ -201,7 +216,7 @@ def _run_reference(
 
 
 def _one(
-    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: Settings
+    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpaceSettings
 ) -> tuple[FloatArray, list[int]]:
     refused = fast_engine.room(1)[0][0], [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
     if body is None or not (np.abs(row) <= 1e9).all():

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.settings import CompiledEngine, Settings, thread_count
+from rocking.dynamics.settings import CompiledEngine, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
+from rocking.dynamics.space.settings import SpaceBatchSettings
 from rocking.errors import InvalidValueError
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
@@ -47,6 +48,7 @@ _COMPILED = CompiledEngine(
     ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking"),
 )  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
+COLUMNS = _COMPILED.columns
 instruction_set, room, named = _COMPILED.instruction_set, _COMPILED.room, _COMPILED.named
 
 
@@ -107,7 +109,7 @@ def run_compiled(
     bodies: Bodies,
     grounds: Sequence[SpatialGround],
     table: RowTable,
-    settings: Settings,
+    settings: SpaceBatchSettings,
     threads: int | None,
     progress: Progress,
 ) -> tuple[Results, str]:
@@ -132,10 +134,10 @@ def steps_of(
     *,
     scale: float = 1.0,
     start: SpatialStart | None = None,
-    settings: Settings | None = None,
+    settings: SpaceBatchSettings | None = None,
 ) -> np.ndarray:
     """Return a history's steps, fields of `STEP`, as the compiled engine computes them in any batch, bit for bit."""
-    settings = settings or Settings(mechanics="space, many")
+    settings = settings or SpaceBatchSettings()
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
     stock = _stock([body], [ground], table, settings.gravity)
@@ -156,7 +158,7 @@ def _stock(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gr
     )  # fmt: skip
 
 
-def _limits(settings: Settings) -> dict[str, Any]:
+def _limits(settings: SpaceBatchSettings) -> dict[str, Any]:
     return {
         "gravity": settings.gravity, "rest_speed": settings.rest_speed, "tolerance": settings.tolerance,
         "longest": settings.longest_step, "most_events": settings.most_events,

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude, complementarity, event_functions, rolling
 from rocking.dynamics.space.attitude import cross
 from rocking.dynamics.space.body import SpatialBody
@@ -16,6 +15,7 @@ from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.dynamics.space.impact_resolution import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
 from rocking.dynamics.space.rolling import RollingFlow
+from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.space.trajectory import (
     IntegrationState,
     SpatialEvent,
@@ -37,7 +37,9 @@ Ending = tuple[Outcome, Status] | None  # how a history has ended; None while it
 class SpatialReference:
     """One history."""
 
-    def __init__(self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: Settings) -> None:
+    def __init__(
+        self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: SpaceSettings
+    ) -> None:
         self.body, self.ground, self.law, self.settings = body, ground, law, settings
         self.p = body.frequency(settings.gravity)
         self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)

@@ -12,7 +12,6 @@ from rocking import checks, conventions, plausibility
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
 from rocking.dynamics.response_base import ResponseBase, check_samples, motion_provenance
-from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
@@ -20,6 +19,7 @@ from rocking.dynamics.space.event_functions import NEARLY_FLAT
 from rocking.dynamics.space.ground import Component, SpatialGround, ground_of
 from rocking.dynamics.space.impact_laws import SpatialImpactLaw, law_of
 from rocking.dynamics.space.reference import SpatialReference
+from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, pivots, states_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -53,7 +53,7 @@ class SpatialResponse(ResponseBase):
         The motion as it was integrated [m/s2].
     law : SpatialImpactLaw
         What impacts cost.
-    settings : Settings
+    settings : SpaceSettings
         How it was integrated.
     time : ndarray
         Times of the samples, to the end or until the body lies [s].
@@ -70,7 +70,7 @@ class SpatialResponse(ResponseBase):
     body: SpatialBody
     ground: SpatialGround
     law: SpatialImpactLaw
-    settings: Settings
+    settings: SpaceSettings
     time: FloatArray
     trajectory: SpatialTrajectory
     end: float
@@ -360,7 +360,7 @@ def response_in_space(
     body: Any,
     components: tuple[Component, Component, Component],
     restitution: Any,
-    settings: Settings,
+    settings: SpaceSettings,
     *,
     start: SpatialStart,
     scale: float = 1.0,

@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude, complementarity
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.complementarity import ContactSet
+from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.taylor import slope, turning_points
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, dot, powers, times
@@ -190,7 +190,7 @@ _HALVINGS = 60
 class IntegrationState:
     """The record of a history."""
 
-    def __init__(self, body: SpatialBody, settings: Settings) -> None:
+    def __init__(self, body: SpatialBody, settings: SpaceSettings) -> None:
         self.body, self.settings = body, settings
         self.pieces: list[StepPiece] = []
         self.events: list[SpatialEvent] = []

@@ -13,9 +13,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import Settings, settings_of
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
@@ -55,8 +56,8 @@ class Subject:
         """Return the subject of an analysis; options: gravity [m/s2], engine and other fields of `Settings`."""
         rest = dict(options)
         engine = rest.pop("engine", "auto")
-        settings = settings_of(rest.pop("gravity", conventions.g), rest, body)
-        parameters = RockingParameters.of_body(body, restitution, settings.gravity, friction=settings.friction)
+        settings = study_settings(body, rest, rest.pop("gravity", conventions.g))
+        parameters = mechanics_of(settings).parameters(body, restitution, settings)
         all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions, plane=isinstance(body, Body))
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
 
@@ -90,10 +91,10 @@ class Subject:
 
         There is one for PGA, absolute or normalised, under horizontal motions of a body that does not slide before.
         """
-        friction, gravity = self.settings.friction, self.settings.gravity
-        if self.settings.mechanics == "space with friction":
+        settings = self.settings
+        if not mechanics_of(settings).in_plane:
             return None  # it depends on the direction
-        if self.measure.uplift is None or (friction is not None and friction * gravity <= self.scale.threshold):
+        if self.measure.uplift is None or settings.friction * settings.gravity <= self.scale.threshold:
             return None
         return self.measure.uplift(self.scale) if self.are_horizontal else None
 

@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray, IntArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
@@ -302,7 +302,7 @@ class _Assessor:
         sides = {name: np.stack([column[name] for column in columns], axis=-2) for name in columns[0]}
         if not self.drawn and not any(item.approximate for item in items):
             sides = {name: values[0] for name, values in sides.items()}  # the same under every motion
-        settings = Settings(gravity=self.gravity)
+        settings = PlaneSettings(gravity=self.gravity)
         return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
 
     def _column(self, item: InventoryObject, way: Direction) -> dict[str, FloatArray]:

@@ -7,11 +7,10 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
-from rocking.dynamics._simulate import in_plane, together
 from rocking.errors import InvalidValueError
 from rocking.language import language
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
-from rocking.motions.components import Components
+from rocking.motions.components import Components, in_plane, together
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.processing import scaled_to
 from rocking.motions.synthetic.families import Family

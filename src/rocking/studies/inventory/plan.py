@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FEET, FloatArray, IntArray
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.outcome import overturned
 from rocking.restitution import ImpactGeometry
@@ -71,7 +71,11 @@ class Planner:
         is_green: _Judgement,
     ) -> None:  # fmt: skip
         self.draws, self.restitution, self.gravity, self.threads = draws, restitution, gravity, threads
-        self.motions, self.settings, self.is_green = MotionList(hazard.motions), Settings(gravity=gravity), is_green
+        self.motions, self.settings, self.is_green = (
+            MotionList(hazard.motions),
+            PlaneSettings(gravity=gravity),
+            is_green,
+        )
         # of level motions the strongest one alone decides what lifts
         peaks = [peak_ground_acceleration(each) for each in hazard.motions]
         self.strongest = hazard.motions if hazard.vertical else hazard.motions[int(np.argmax(peaks)) :][:1]

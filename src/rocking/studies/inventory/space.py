@@ -7,9 +7,9 @@ import numpy as np
 
 from rocking.bodies import Solid
 from rocking.conventions import FloatArray, IntArray, g
-from rocking.dynamics._simulate import components_of
-from rocking.dynamics.parameters import RockingParameters, sides_of
-from rocking.dynamics.settings import settings_of
+from rocking.dynamics.mechanics import mechanics_of, study_settings
+from rocking.dynamics.parameters import sides_of
+from rocking.motions.components import components_of
 from rocking.studies.histories import Product, results_of
 from rocking.studies.inventory.draws import Draws, slenderest
 from rocking.studies.inventory.hazard import Hazard
@@ -28,8 +28,7 @@ class SpatialObject:
         self.item, self.hazard, self.gravity, self.threads = item, hazard, gravity, threads
         self.bodies = [each.in_space() for each in draws.bodies(item)]
         self.number = draws.number(len(self.bodies))
-        self.settings = settings_of(gravity, {"friction": friction}, self.bodies[0])
-        assert self.settings.friction is not None
+        self.settings = study_settings(self.bodies[0], {"friction": friction}, gravity)
         self.friction = self.settings.friction
         self._first = slenderest(item).in_space()  # of approximate sizes, those that lift first
 
@@ -50,7 +49,7 @@ class SpatialObject:
             if not own.size:
                 continue
             motions = MotionList([turned for one in which[own] for turned in self.turned(int(one))])
-            parameters = RockingParameters.of_body(body, word, self.gravity, friction=self.friction)
+            parameters = mechanics_of(self.settings).parameters(body, word, self.settings)
             law: Any = parameters.law
             _ = law.on_hull  # what it cannot be for this body is said here, before anything is computed
             sides = {name: values[None] for name, values in sides_of([parameters]).items()}

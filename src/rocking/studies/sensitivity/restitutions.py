@@ -11,7 +11,7 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.content import full_name
 from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw, RandomRestitution
 from rocking.dynamics.parameters import COMPLEMENTARITY, cut_words
-from rocking.dynamics.plane.batch import Rows, drawn_rows
+from rocking.dynamics.rows import Rows, drawn_rows
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.studies.histories import Histories, described_law

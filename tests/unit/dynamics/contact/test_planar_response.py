@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics import Settings, SpeedRestitution, simulate
+from rocking.dynamics import ContactSettings, SpeedRestitution, simulate
 from rocking.dynamics.contact import (
     GroundContact,
     Regime,
@@ -116,7 +116,7 @@ def test_impacts_have_impulses_that_press(rocked):
     ("options", "words"),
     [
         ({"rest_speed": 0.0}, "rest_speed must be in"),
-        ({"order": 8}, "order is no setting of contact"),
+        ({"order": 8}, "order does not apply to a plane body with friction"),
         ({"restitution": SpeedRestitution((0.0, 1.0), (1.0, 0.9))}, "laws that change"),
     ],
 )
@@ -138,7 +138,7 @@ def test_bad_starts_are_refused(wrong):
 
 def test_settings_are_frozen_values():
     """Defaults pass their own checks."""
-    assert Settings(mechanics="contact").rest_speed == 1e-7
+    assert ContactSettings().rest_speed == 1e-7
     assert GroundContact(0.5) == GroundContact(0.5, 0.0, None)
 
 
@@ -194,9 +194,7 @@ def test_numbers_that_run_out():
     base, law = PlaneBase.of_body(BODY), GroundContact(0.6)
     for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
         with np.errstate(all="ignore"):
-            found = ContactEngine(
-                base, Segments.between_samples(1e80, np.array(push)), law, Settings(mechanics="contact")
-            ).run()
+            found = ContactEngine(base, Segments.between_samples(1e80, np.array(push)), law, ContactSettings()).run()
         assert found.status is Status.NOT_FINITE
 
 

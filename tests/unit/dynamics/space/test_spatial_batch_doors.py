@@ -10,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import Settings
+from rocking.dynamics import SpaceBatchSettings, SpaceSettings
 from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine
 from rocking.dynamics.space.batch import batch_in_space
 from rocking.dynamics.space.fast_engine import batch_law
@@ -80,9 +80,7 @@ def test_threads_pieces_and_order_leave_the_bits(monkeypatch):
     back = batch_in_space(bodies[::-1], RECORD, scales=[0.9, 0.6])
     for name in first.values:
         np.testing.assert_array_equal(back[name][::-1, :, ::-1], first[name])
-    other = batch_in_space(
-        bodies, RECORD, scales=[0.6, 0.9], settings=Settings(tolerance=1e-8, mechanics="space, many")
-    )
+    other = batch_in_space(bodies, RECORD, scales=[0.6, 0.9], settings=SpaceBatchSettings(tolerance=1e-8))
     assert not _same(first, other)
 
 
@@ -266,7 +264,7 @@ def test_a_start_knows_whether_it_can_be(wrong):
 
 def test_settings_of_the_batch_are_those_of_one_history():
     """But for step and tolerance, which each engine has its own."""
-    batch, one = Settings(mechanics="space, many"), Settings(mechanics="space")
+    batch, one = SpaceBatchSettings(), SpaceSettings()
     for name in ("gravity", "rest_speed", "most_events"):
         assert getattr(batch, name) == getattr(one, name)
 

@@ -7,7 +7,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Corner, Edge
-from rocking.dynamics import Settings
+from rocking.dynamics import SpaceSettings
 from rocking.dynamics.space import ContactMode, SpatialBody, attitude
 from rocking.dynamics.space.complementarity import SpatialState, edge, face, forces, impulses, of_impact, rise, vertex
 from rocking.dynamics.space.ground import ground_of
@@ -185,7 +185,7 @@ def test_laws_by_name_by_number_and_by_interface():
 def test_settings_out_of_range_are_refused(bad):
     """Each setting has a range, and says so."""
     with pytest.raises(InvalidValueError, match="must be"):
-        Settings(**bad, mechanics="space")
+        SpaceSettings(**bad)
 
 
 def test_of_two_contact_sets_the_larger_stays():

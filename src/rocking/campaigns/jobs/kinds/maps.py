@@ -12,8 +12,8 @@ from rocking.campaigns.jobs.study import AdaptiveResult, Compute, DelegatedQuest
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.plane.batch import Rows
 from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.spec.document import MapTable

@@ -9,7 +9,8 @@ import numpy as np
 from rocking.campaigns.jobs.study import AdaptiveResult, Compute, NumberedTable, Study, along, first_round, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.mechanics import mechanics_of
+from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
@@ -57,10 +58,8 @@ def minimum_study(problem: StudyProblem) -> Study:
         raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
     motions, settings = MotionList([problem.motions[k] for k in range(len(problem.motions))]), problem.settings
     with located("body"):
-        parameters = [
-            [RockingParameters.of_body(b, each, settings.gravity, friction=settings.friction) for b in problem.bodies]
-            for each in problem.restitutions.values()
-        ]
+        make, laws = mechanics_of(settings).parameters, problem.restitutions.values()
+        parameters = [[make(body, law, settings) for body in problem.bodies] for law in laws]
     sides = [sides_of(row) for row in parameters]
     with located("minimum"):
         effort = Effort(table.points, table.levels, table.tolerance)

@@ -9,7 +9,8 @@ from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.campaigns.jobs.study import Study, along, labels_along, motions_along
 from rocking.dynamics.impact_laws import ConstantRestitution
-from rocking.dynamics.parameters import RockingParameters, sides_of
+from rocking.dynamics.mechanics import mechanics_of
+from rocking.dynamics.parameters import sides_of
 from rocking.errors import InvalidValueError
 from rocking.motions.summary import provenance_of
 from rocking.spec.document import HistoriesTable
@@ -99,7 +100,7 @@ def inventory_study(problem: StudyProblem) -> Study:
     with located("inventory"):
         histories, finish, dims, items = assessment_plan(
             objects, hazard, restitution=restitution, thresholds=limits, gravity=problem.settings.gravity,
-            friction=problem.settings.friction,
+            friction=problem.settings.stated.get("friction"),
         )  # fmt: skip
     names = ("asked", "compared") if restitution is not None else ("calibrated", "housner", "ked")
     if isinstance(histories, JoinedHistories) and restitution is None:
@@ -120,10 +121,8 @@ def inventory_study(problem: StudyProblem) -> Study:
 def _product(problem: StudyProblem, bodies: Sequence[Body], scales: np.ndarray) -> tuple[Product, dict[str, Any]]:
     """Return bodies with every motion, scale and restitution, and what a Python call says of such a study."""
     settings, restitutions = problem.settings, list(problem.restitutions.values())
-    gravity, friction = settings.gravity, settings.friction
-    parameters = [
-        [RockingParameters.of_body(body, each, gravity, friction=friction) for body in bodies] for each in restitutions
-    ]
+    make = mechanics_of(settings).parameters
+    parameters = [[make(body, each, settings) for body in bodies] for each in restitutions]
     columns = [sides_of(row) for row in parameters]
     sides = {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}
     law, engine = parameters[0][0].law, problem.document.settings.engine

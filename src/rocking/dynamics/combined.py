@@ -1,0 +1,109 @@
+"""What `simulate_many` takes of plane bodies, and the labelled dataset that it returns of them."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from rocking import checks, plausibility, quantities
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.contact.base import Start, starts_of
+from rocking.dynamics.mechanics_base import Combinations, row_of
+from rocking.dynamics.parameters import COMPLEMENTARITY, is_none
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError, extra
+from rocking.motions.components import in_plane
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.summary import provenance_of
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_START_UNITS = {
+    "rotation": "rad", "angular_velocity": "rad/s", "horizontal_velocity": "m/s", "height": "m",
+    "vertical_velocity": "m/s",
+}  # fmt: skip
+
+
+def plane_inputs(given: Combinations) -> tuple[list[Body], list[Motion], FloatArray, list[Start] | None]:
+    """Return plane bodies, their motions, scales, and starts where any are stated; refuse everything else."""
+    bodies = _several("bodies", given.bodies, (Body,))
+    motions = [in_plane(motion) for motion in _several("motions", given.motions, (GroundMotion, Pulse, Mapping))]
+    scales = row_of("scale", given.scales)
+    plausibility.warn(plausibility.of_scaled(motions, scales))
+    if not given.restitutions:
+        raise InvalidValueError("restitution must be at least one model, got none")
+    return bodies, motions, scales, starts_of(given.start, given.rotation, given.angular_velocity)
+
+
+def dataset_of(
+    bodies: list[Body],
+    motions: list[Motion],
+    axes: dict[str, Any],
+    results: dict[str, Any],
+    settings: Settings,
+    attributes: dict[str, Any],
+) -> "xr.Dataset":
+    """Return results, one after another over body, motion and the axes, with units and provenance."""
+    xarray = extra("xarray", "simulate_many")
+    axes = {name: row for name, row in axes.items() if row is not None}
+    starts = axes.get("start", [])
+    dims = ("body", "motion", *axes)
+    shape = (len(bodies), len(motions), *map(len, axes.values()))
+    sides = [body.side("right", settings.gravity) for body in bodies]
+    numbers = [name for name in ("scale", "friction") if name in axes]
+    counted: dict[str, Any] = {name: (name, axes[name], {"units": "1"}) for name in numbers}
+    made: xr.Dataset = xarray.Dataset(
+        {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
+        coords={
+            "slenderness_angle": ("body", [side.slenderness_angle for side in sides], {"units": "rad"}),
+            "frequency_parameter": ("body", [side.frequency_parameter for side in sides], {"units": "rad/s"}),
+            "motion": [m.name for m in motions],
+            "motion_provenance": ("motion", ["; ".join(provenance_of(m)) for m in motions]),
+            "restitution": axes["restitution"],
+            **counted,
+            **_coordinates(starts),
+        },
+        attrs={
+            "software": SOFTWARE,
+            **attributes,
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.integration.items()},
+        },
+    )
+    return made
+
+
+def _coordinates(starts: list[Start]) -> dict[str, Any]:
+    """Return the coordinates of starts: rotation and angular velocity, and what else one of them has."""
+    if not starts:
+        return {}
+    rows = {name: [getattr(start, name) for start in starts] for name in _START_UNITS}
+    shown = [name for name in rows if name in {"rotation", "angular_velocity"} or any(rows[name])]
+    return {f"initial_{name}": ("start", rows[name], {"units": _START_UNITS[name]}) for name in shown}
+
+
+_KINDS = {"bodies": "Body", "motions": "GroundMotion, Pulse, Mapping"}
+
+
+def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
+    wanted = f"{name} must be one or more of {_KINDS[name]}"
+    if isinstance(given, kinds):
+        return [given]
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InvalidValueError(f"{wanted}, got {checks.given(name, given)}")
+    found = list(given)
+    if not found:
+        raise InvalidValueError(f"{wanted}, got none")
+    for k, item in enumerate(found):
+        if not isinstance(item, kinds):
+            raise InvalidValueError(f"{wanted}, got {checks.given(name, item, f' at index {k}')}")
+    return found
+
+
+def label_of(restitution: Any) -> str:
+    """Return a restitution in a few words."""
+    if is_none(restitution):
+        return COMPLEMENTARITY
+    label = getattr(restitution, "label", None)
+    return label if isinstance(label, str) else str(restitution)

@@ -1,0 +1,54 @@
+"""How to integrate a plane body that may slide, hop and fly, and the ground under it."""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from rocking import checks
+from rocking.dynamics.settings import BOUNCE_LAWS, NEVER_SLIDES, Settings, checked, checked_friction, ranged
+
+_GROUND = {"friction", "bounce", "bounce_law"}
+_BOUNCE = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
+
+
+@dataclass(frozen=True)
+class ContactSettings(Settings):
+    """How to integrate a plane body with `friction`, and the ground under it.
+
+    Parameters
+    ----------
+    gravity, most_events
+        As for all mechanics, `Settings`.
+    rest_speed : float
+        Speed of a bounce or of a rocking motion after an impact, over sqrt(g R), below which it ends at once; its
+        energy is booked as lost in that impact [-].
+    tolerance : float
+        Bound on the last two terms of a Taylor step, over the angle alpha and the size R [-].
+    friction : float
+        Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for feet that never slide [-].
+    bounce : float
+        Coefficient of normal restitution, in [0, 1) [-].
+    bounce_law : {"newton", "poisson", "stronge"}
+        What `bounce` is the ratio of, as for `simulate`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> ContactSettings(friction=0.4).rest_speed
+    1e-07
+    """
+
+    rest_speed: float = ranged(1e-7, 1e-12, 0.1, hint="bounces accumulate: zero would never end")
+    tolerance: float = ranged(1e-15, 1e-17, 1e-3)
+    friction: float = checked(NEVER_SLIDES, checked_friction)
+    bounce: float = ranged(0.0, 0.0, 1.0, open_high=True, hint=_BOUNCE)
+    bounce_law: str = checked("newton", partial(checks.one_of, known=BOUNCE_LAWS))
+
+    @property
+    def integration(self) -> dict[str, Any]:
+        """Values by name, without those of the ground."""
+        return {name: value for name, value in self.stated.items() if name not in _GROUND}

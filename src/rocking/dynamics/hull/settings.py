@@ -1,0 +1,38 @@
+"""How to integrate a body on the vertices of its convex hull, which may slide, hop and fly."""
+
+from dataclasses import dataclass
+
+from rocking.dynamics.settings import NEVER_SLIDES, Settings, checked, checked_friction, counted, ranged
+
+
+@dataclass(frozen=True)
+class HullSettings(Settings):
+    """How to integrate a body in space with `friction`.
+
+    Parameters
+    ----------
+    gravity, most_events
+        As for all mechanics, `Settings`.
+    rest_speed : float
+        Its square is the energy over m g size at which a body comes to rest, at least 1e-11, since smaller gaps count
+        as closed; over sqrt(g size) [-].
+    tolerance : float
+        Bound on the local error of a step of order 5, over size, radian and their rates [-].
+    friction : float
+        Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for a body that never slides [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> HullSettings(friction=0.4).tolerance
+    1e-12
+    """
+
+    most_events: int = counted(100_000, 1, 10_000_000)
+    rest_speed: float = ranged(1e-5, 1e-7, 0.01)
+    tolerance: float = ranged(1e-12, 1e-15, 1e-2)
+    friction: float = checked(NEVER_SLIDES, checked_friction)

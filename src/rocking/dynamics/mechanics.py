@@ -1,0 +1,45 @@
+"""The mechanics, and the one place where a history, a batch or a study chooses one.
+
+A mechanics more is a folder with a `mechanics.py`, and a line in `MECHANICS`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rocking import conventions
+from rocking.bodies import Body
+from rocking.dynamics.contact.mechanics import PlaneContact
+from rocking.dynamics.hull.mechanics import HullRocking
+from rocking.dynamics.mechanics_base import Mechanics, in_space
+from rocking.dynamics.plane.mechanics import PlaneRocking
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space.mechanics import SpaceRocking
+from rocking.errors import InvalidValueError
+
+MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())
+
+
+def chosen(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
+    """Return how a body moves, with friction or with None; study: in a study."""
+    return next(each for each in MECHANICS if each.takes(body, friction, study=study))
+
+
+def chosen_for(bodies: Any, friction: Any) -> Mechanics:
+    """Return how one or several bodies move together: in space where all that are bodies are in space."""
+    several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
+    plane = [body for body in several if isinstance(body, Body)]
+    return chosen(next(iter(plane or filter(in_space, several)), None), friction)
+
+
+def mechanics_of(settings: Settings) -> Mechanics:
+    """Return the mechanics that settings are of."""
+    return next(each for each in MECHANICS if isinstance(settings, (each.settings, each.batch_settings)))
+
+
+def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conventions.g) -> Settings:
+    """Return the settings of a study of a body, in space or not; options: fields of the settings, by name."""
+    known = {name for each in MECHANICS for name in each.settings.names()} - {"gravity"}
+    if unknown := sorted(set(options) - known):
+        raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
+    mechanics = chosen(body, options.get("friction"), study=True)
+    return mechanics.split({**options, "gravity": gravity}, mechanics.settings, frozenset())[0]

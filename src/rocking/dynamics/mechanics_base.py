@@ -1,0 +1,206 @@
+"""What one mechanics offers: which bodies it takes, its settings, one history, many histories, rows of a study."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.motions.components import Components, components_of, in_plane
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.dynamics.response_base import ResponseBase
+    from rocking.dynamics.rows import RowRunner
+
+Sample = tuple[list[Any], ImpactLaw, Settings]
+"""Laid out motions, law and settings of some histories by which the last digits of an engine are told."""
+
+UNCHANGED: dict[str, tuple[Any, ...]] = {
+    "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "linear": (False,), "rest_speed": (None,),
+    "longest_step": (None,), "order": (None,), "tolerance": (None,), "engine": ("auto", "reference"), "stream": (0,),
+    "start": (None,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,), "threads": (None,),
+    "twin": (False,), "progress": (None,),
+}  # fmt: skip
+"""Values of options that change nothing, the default first: also the mechanics that lack an option take them."""
+
+
+def in_space(body: Any) -> bool:
+    """Return whether a body is one in space: it has a base to stand on, not two feet."""
+    return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
+
+
+def listed(given: Any) -> list[Any]:
+    """Return a sequence as a list, anything else as a list of one."""
+    return list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [given]
+
+
+def row_of(name: str, values: Any) -> FloatArray:
+    """Return one number or several as a row of finite numbers."""
+    row = np.atleast_1d(checks.real_array(name, values))
+    if row.ndim != 1 or not row.size:
+        raise InvalidValueError(f"{name} must be one number or a row of numbers, got shape {row.shape}")
+    bad = np.flatnonzero(~(np.abs(row) <= 1e6))
+    if bad.size:
+        raise InvalidValueError(f"{name} must be finite and within 1e6, got {row[bad[0]]:g} at index {bad[0]}")
+    return row
+
+
+@dataclass(frozen=True)
+class Combinations:
+    """What `simulate_many` computes, as users give it: every body under every motion at every scale, and so on."""
+
+    bodies: Any
+    motions: Any
+    restitutions: list[Any]
+    scales: Any  # [-]
+    frictions: FloatArray  # none without friction [-]
+    start: Any = None
+    rotation: Any = 0.0
+    angular_velocity: Any = 0.0
+    duration: float | None = None
+    engine: str = "auto"
+    threads: int | None = None
+    twin: bool = False
+    progress: Callable[[int], None] | None = None
+
+
+class Mechanics(ABC):
+    """One way in which bodies move."""
+
+    name: ClassVar[str]  # one word
+    in_plane: ClassVar[bool] = True  # whether a body has one horizontal motion
+    may_be_unimposed: ClassVar[bool] = False  # whether a restitution may be none
+    is_compared: ClassVar[bool] = False  # whether restitutions are compared, with linear equations too and two engines
+    title: ClassVar[str]  # as a noun
+    subject: ClassVar[str]  # bodies that move like this, in messages
+    settings: ClassVar[type[Settings]]
+    options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, beside settings, start and duration
+    batch_options: ClassVar[frozenset[str]]  # of `follow_many`, beside settings
+    start_kind: ClassVar[type]  # what states how a body starts
+    at_rest: ClassVar[Any] = None  # ground at rest as a motion of `follow`
+
+    @property
+    def batch_settings(self) -> type[Settings]:
+        """Class of the settings of `follow_many`."""
+        return self.settings
+
+    @abstractmethod
+    def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
+        """Return whether a body moves like this, with friction or with None; study: in a study."""
+
+    @abstractmethod
+    def motion(self, motion: Any) -> Any:
+        """Return what a user gives as the motion in the form that `follow` takes, or refuse it."""
+
+    @abstractmethod
+    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
+        """Return how a body starts, from the rotation [rad] and the angular velocity [rad/s]."""
+
+    @abstractmethod
+    def follow(
+        self, body: Any, motion: Any, restitution: Any, settings: Any, *, start: Any, **options: Any
+    ) -> "ResponseBase":
+        """Return one history; options: scale, duration, and those of the mechanics."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> tuple[str, ...]:
+        """Names of the variables that `follow_many` fills."""
+
+    @abstractmethod
+    def follow_many(self, combinations: Combinations, settings: Any) -> "xr.Dataset":
+        """Return every combination."""
+
+    def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
+        """Return what computes the rows of a study."""
+        raise InvalidValueError(f"studies do not take {self.subject}")
+
+    def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
+        """Return a body with its restitution, as the rows of a study take it."""
+        return RockingParameters.of_body(body, restitution, settings.gravity, may_be_none=self.may_be_unimposed)
+
+    def check_laid_out(self, motions: Sequence[Any]) -> None:
+        """Refuse motions of a study that these mechanics do not take."""
+        if any(isinstance(motion, Components) for motion in motions):
+            raise InvalidValueError("a motion of several components is for bodies in space; a plane body takes one")
+
+    def engine_of_study(self, *, fast: bool) -> str:
+        """Return which engine computes the rows of a study, in words; fast: whether the compiled one ran."""
+        return "fast" if fast else "reference"
+
+    def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
+        """Return histories that tell the last digits of the engine, of pulses and of records without and with z."""
+        return []
+
+    def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Return the rows of these histories, limited to what these mechanics take."""
+        return values
+
+    def instruction_set(self) -> str:
+        """Return the instruction set that decides last digits of the compiled engine, if it has several."""
+        return ""
+
+    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
+        """Return how a body starts: the start that is stated, or one of rotation and angular velocity."""
+        if start is None:
+            return self.start_of(rotation, angular_velocity)
+        if np.any(rotation) or np.any(angular_velocity):
+            raise InvalidValueError("give either start or rotation and angular_velocity, got both")
+        if not isinstance(start, self.start_kind):
+            raise InvalidValueError(f"start must be a {self.start_kind.__name__}(...), got {start!r:.60}")
+        return start
+
+    def split(
+        self, options: Mapping[str, Any], kind: type[Settings], own: frozenset[str]
+    ) -> tuple[Settings, dict[str, Any]]:
+        """Return the settings, and the other options that these mechanics have; refuse what they have not."""
+        names = kind.names()
+        given = {name: value for name, value in options.items() if value is not None or None not in _usual(name)}
+        for name, value in given.items():
+            if name in names or name in own:
+                continue
+            if np.ndim(value) or not any(value is usual or value == usual for usual in _usual(name)):
+                raise InvalidValueError(
+                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: "
+                    f"{', '.join(sorted({*names, *own}))}"
+                )
+        settings = kind(**{name: given[name] for name in names if name in given})
+        return settings, {name: given[name] for name in own if name in given}
+
+
+class PlaneMechanics(Mechanics):
+    """Mechanics of plane bodies, which start as `Start` states."""
+
+    def motion(self, motion: Any) -> Any:
+        """Return the motion along x, and z as its vertical part."""
+        return in_plane(motion)
+
+
+class SpatialMechanics(Mechanics):
+    """Mechanics of bodies in space, which start as `SpatialStart` states."""
+
+    in_plane, at_rest = False, (None, None, None)
+
+    def motion(self, motion: Any) -> Any:
+        """Return the components along x, y and z."""
+        return components_of(motion)
+
+    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
+        """Return how a body that leans towards x starts."""
+        if not np.ndim(angular_velocity) and angular_velocity:
+            raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
+        return self.start_kind(rotation, angular_velocity=angular_velocity if np.ndim(angular_velocity) else (0.0,) * 3)
+
+
+def _usual(name: str) -> tuple[Any, ...]:
+    return UNCHANGED.get(name, ())

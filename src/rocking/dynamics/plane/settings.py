@@ -1,0 +1,65 @@
+"""How to integrate a plane body that rocks and neither slides nor flies."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.dynamics.settings import SHORTEST_STEP, Settings, checked, ranged
+from rocking.errors import InvalidValueError
+
+ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
+
+
+def _checked_linear(_: str, value: object) -> bool:
+    if not isinstance(value, bool):
+        raise InvalidValueError(f"linear must be True or False, got {value!r}")
+    return value
+
+
+def _checked_order(_: str, value: Any) -> int:
+    if not isinstance(value, (int, np.integer)) or value not in ORDERS:
+        raise InvalidValueError(f"order must be one of {ORDERS}, got {value!r:.60}")
+    return int(value)
+
+
+@dataclass(frozen=True)
+class PlaneSettings(Settings):
+    """How to integrate a plane body without `friction`.
+
+    Parameters
+    ----------
+    gravity, most_events
+        As for all mechanics, `Settings`.
+    linear : bool
+        Slender-linear equations: sine and cosine of the angles replaced by angle and one.
+    rest_speed : float
+        Speed after an impact, over p alpha, below which the impacts to come are summed up to rest instead of being
+        resolved one by one, only where they provably end before the body could rise again [-].
+    longest_step : float
+        Longest Taylor step of the fast engine as p times time [-].
+    order : int
+        Order of the Taylor series of the fast engine: 4, 6 or 8. With order 8, records whose samples are so close that
+        order 6 leaves out less than a hundredth of what order 8 may leave out at the longest step are followed with
+        order 6, under many g only if they are closer still. Orders 4 and 6 by themselves exist only for many histories
+        at once (`simulate_many`), with the nonlinear equations and motions without a vertical part; elsewhere they are
+        refused. The reference engine chooses its own.
+    tolerance : float
+        Bound on the last two terms of a Taylor step over the angle alpha [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> PlaneSettings(gravity=9.81).rest_speed
+    0.001
+    """
+
+    linear: bool = checked(False, _checked_linear)
+    rest_speed: float = ranged(0.001, 0.0, 0.1, hint="the flights must be short for the sum to hold")
+    longest_step: float = ranged(0.15, SHORTEST_STEP, 1.0)
+    order: int = checked(8, _checked_order)
+    tolerance: float = ranged(1e-15, 1e-17, 1e-3)

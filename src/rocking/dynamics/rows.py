@@ -1,0 +1,108 @@
+"""Rows of a study: arrays of bodies, motions, scales and coefficients, and the pieces in which they are computed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from rocking.conventions import FEET, FloatArray
+from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
+from rocking.dynamics.settings import check_progress
+from rocking.errors import InvalidValueError
+
+PIECE = 1 << 16
+"""Histories that are handed to the engine at a time: memory beside the results does not grow with their number."""
+
+ROWS = (
+    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
+    "share_right", "share_left", "scale", "rotation", "velocity", "friction", "azimuth",
+)  # fmt: skip
+"""Numbers that make a history, beside the number of its motion and its stream."""
+
+SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
+"""What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
+
+_UNTOLD = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan, "azimuth": np.nan}
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Histories to compute, one entry each; a piece of a larger whole."""
+
+    # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side, share the part of a
+    # distribution that its coefficient is drawn from; the friction is that of the settings where it is NaN, and the
+    # azimuth by which the motion of a body in space is turned [rad] is none
+    values: dict[str, FloatArray]
+    motion: np.ndarray  # number of the motion
+    stream: np.ndarray  # number of the history, for random coefficients
+
+    @classmethod
+    def of(cls, count: int, motion: Any = 0, stream: Any = None, **values: Any) -> "Rows":
+        """Return rows from numbers and arrays, which are repeated to the count."""
+        given = _UNTOLD | SIDES_UNTOLD | values
+        if set(given) != set(ROWS):
+            odd = sorted(set(given) ^ set(ROWS))
+            raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
+        try:
+            rows = {name: _repeated(given[name], count, np.float64) for name in ROWS}
+            streams = np.arange(count) if stream is None else stream
+            return cls(rows, _repeated(motion, count, np.int64), _repeated(streams, count, np.int64))
+        except (TypeError, ValueError) as error:
+            raise InvalidValueError(f"rows must be numbers, or arrays of {count}: {error}") from error
+
+    def __len__(self) -> int:
+        return int(self.motion.size)
+
+    def part(self, first: int, last: int) -> "Rows":
+        values = {name: self.values[name][first:last] for name in ROWS}
+        return Rows(values, self.motion[first:last], self.stream[first:last])
+
+
+class RowRunner(Protocol):
+    """Motions as the engine of a mechanics keeps them, and histories under them as rows."""
+
+    def run(self, piece: Rows, threads: int) -> tuple[Arrays, dict[str, int]]:
+        """Return columns, among them those of `fast_engine.RESULTS` that the mechanics fills, and the steps taken."""
+
+
+def run_rows(
+    runner: RowRunner,
+    law: ImpactLaw,
+    count: int,
+    rows: Callable[[int, int], Rows],
+    threads: int,
+    progress: Callable[[int], None] | None = None,
+) -> tuple[Arrays, dict[str, int]]:
+    """Return the results of rows, piece by piece, and the steps taken; law: of which coefficients are drawn."""
+    check_progress(progress)
+    results, total = empty_results(count), dict[str, int]()
+    for first in range(0, count, PIECE):
+        piece = rows(first, min(first + PIECE, count))
+        done, work = runner.run(drawn_rows(piece, law) if law.per_history else piece, threads)
+        for name in results.keys() & done.keys():
+            results[name][first : first + len(piece)] = done[name]
+        total = {name: total.get(name, 0) + value for name, value in work.items()}
+        if progress is not None:
+            progress(len(piece))
+    return results, total
+
+
+def law_of_rows(law: ImpactLaw) -> ImpactLaw:
+    """Return the law of rows, into whose coefficients a draw for every history goes beforehand."""
+    return ConstantRestitution() if law.per_history else law
+
+
+def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
+    """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history."""
+    draws: Any = law.draws
+    drawn, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
+    for foot in FEET:
+        where = (foot, rows.values[f"share_{foot}"]) if cut else ()
+        drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.stream, *where)
+    return replace(rows, values=rows.values | drawn)
+
+
+def _repeated(values: Any, count: int, dtype: Any) -> np.ndarray:
+    return np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=dtype), (count,)))
