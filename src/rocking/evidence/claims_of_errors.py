@@ -15,6 +15,7 @@ from rocking.evidence.comparison import (
     correlation,
     drawn,
     errors_of_groups,
+    rank_correlation,
     relative_error,
     resampled,
     zone,
@@ -222,9 +223,7 @@ def _mass_trend() -> tuple[str, str]:
     mass = np.concatenate([data.mass for data, _, _ in groups])
     error = np.concatenate([np.abs(ked - data.coefficient) for data, _, ked in groups])
     ratio = np.concatenate([data.slenderness for data, _, _ in groups])
-    from scipy.stats import spearmanr
-
-    (rho, p), (by_ratio, p_ratio) = spearmanr(mass, error), spearmanr(ratio, error)
+    (rho, p), (by_ratio, p_ratio) = rank_correlation(mass, error), rank_correlation(ratio, error)
     return resolved(-int(np.sign(rho)) * int(p < 0.05)), (
         f"rank correlation with mass {rho:.2f} (p = {p:.3f}); with slenderness, which grows with mass in every group, "
         f"{by_ratio:.2f} (p = {p_ratio:.3f})"

@@ -144,6 +144,21 @@ def correlation(model: FloatArray, measured: FloatArray) -> float:
     return float(dm @ de) / scale if scale > 0.0 else float("nan")
 
 
+def rank_correlation(one: FloatArray, other: FloatArray) -> tuple[float, float]:
+    """Spearman's rank correlation, and the probability of one as far from zero by chance, by Student's t."""
+    from scipy.special import stdtr
+
+    rho = correlation(_ranks(one), _ranks(other))
+    freedom = one.size - 2
+    return rho, float(2.0 * stdtr(freedom, -abs(rho) * np.sqrt(freedom / max((1.0 + rho) * (1.0 - rho), 1e-300))))
+
+
+def _ranks(values: FloatArray) -> FloatArray:
+    """Ranks from 1 on; equal values share the mean of theirs."""
+    _, place, count = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(count) - 0.5 * (count - 1))[place]
+
+
 def concordance(model: FloatArray, measured: FloatArray) -> float:
     """Lin's concordance (Biometrics 45, 1989): correlation that also pays for bias and scale."""
     covariance = float(np.mean((model - model.mean()) * (measured - measured.mean())))

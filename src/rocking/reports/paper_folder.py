@@ -97,8 +97,9 @@ def _draw(folder: Path, step: Step, result: Reproduction) -> None:
     for stem, draw in paper_figures(result.data).items():
         step(stem.replace("_", " "))
         figure = draw()
-        for kind in ("png", "svg"):
-            write(figure, folder / f"{stem}.{kind}")
+        write(figure, folder / f"{stem}.png")
+        figure.set_layout_engine("none")  # it is laid out, for the other format too
+        write(figure, folder / f"{stem}.svg")
 
 
 def _write_table(table: ReportTable, path: Path) -> None:

@@ -5,10 +5,19 @@ import os
 
 import numpy as np
 import pytest
+from scipy.stats import spearmanr
 
 from rocking.evidence import all_measurements
 from rocking.evidence.claims_of_errors import FAILS, HOLDS, UNRESOLVED, all_or_open
-from rocking.evidence.comparison import Difference, compare, drawn, errors_of_groups, resampled
+from rocking.evidence.comparison import (
+    Difference,
+    compare,
+    correlation,
+    drawn,
+    errors_of_groups,
+    rank_correlation,
+    resampled,
+)
 from rocking.restitution import Housner, Ked
 
 DATA = all_measurements()
@@ -107,3 +116,15 @@ def test_a_claim_that_something_is_larger(ends, verdict):
     """It holds where the interval is above zero, fails below, is not resolved between; the worst of several counts."""
     sure = Difference(0.1, 0.05, 0.2)
     assert all_or_open(sure, Difference(0.0, *ends), sure) == verdict
+
+
+def test_rank_correlation_is_that_of_scipy():
+    """Ties share their rank; the probability is that of Student's t; values in one order have correlation one."""
+    random = np.random.default_rng(4)
+    for count in (5, 27):
+        one = random.integers(0, 6, count).astype(float)
+        other = one + random.normal(0.0, 2.0, count)
+        assert rank_correlation(one, other) == pytest.approx(tuple(spearmanr(one, other)), rel=1e-9)
+    assert rank_correlation(one, one**3)[0] == pytest.approx(1.0, rel=1e-12)
+    # negative control: the plain correlation does not see the same order
+    assert correlation(one, one**3) < 0.99
