@@ -8,16 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.evidence import comparison
 from rocking.evidence.comparison import FEWEST, MEASURES, compare, drawn, resampled
 from rocking.evidence.likelihood import rounding_bic
 from rocking.evidence.measurements import BANDS, DataSet, all_measurements
+from rocking.evidence.searches import minimise_between
 from rocking.restitution import (
     DistributedImpulse,
     HorizontalMomentum,
     Housner,
+    ImpactGeometry,
     Interface,
     Ked,
     PlasticWinkler,
@@ -25,7 +27,9 @@ from rocking.restitution import (
     ShiftedImpulse,
 )
 from rocking.restitution.bed_table import HARDNESS, POINTS
-from rocking.restitution.contact_bed import ContactBedModel
+from rocking.restitution.contact_bed import ContactBedModel, tabulated
+from rocking.restitution.distributed_impulse import distributed
+from rocking.restitution.shifted_impulse import shifted
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,46 +38,62 @@ class Contender:
 
     name: str  # name in the league
     parameters: tuple[str, ...]  # names of the fitted parameters; none for a model as it is
-    # takes a `DataSet` and returns the model that fits it best in least squares of r
-    fit: Callable[[DataSet], RestitutionModel]
+    # takes a `DataSet` and some of its rows; returns for each of them the model with the least squares of r
+    fit: Callable[[DataSet, Sequence[BoolArray]], list[RestitutionModel]]
 
 
 def as_it_is(model: RestitutionModel) -> Contender:
     """Return a contender without anything fitted."""
-    return Contender(model.label, (), lambda data: model)
+    return Contender(model.label, (), lambda data, rows: [model] * len(rows))
 
 
 def with_interface(model: RestitutionModel) -> Contender:
     """Return a contender with a fitted interface factor."""
 
-    def fit(data: DataSet) -> RestitutionModel:
+    def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
         """Fit the factor by least squares."""
-        return Interface(model, eta=_best_eta(model.of_slenderness(data.slenderness), data.coefficient))
+        r = model.of_slenderness(data.slenderness)
+        return [Interface(model, eta=_best_eta(r[some], data.coefficient[some])) for some in rows]
 
     return Contender(f"eta*{model.name}", ("eta",), fit)
 
 
 def family(
-    name: str, parameter: str, make: Callable[[float], RestitutionModel], ends: tuple[float, float], *, eta: bool
+    name: str,
+    parameter: str,
+    make: Callable[[float], RestitutionModel],
+    coefficients: Callable[[ImpactGeometry, FloatArray], FloatArray],
+    ends: tuple[float, float],
+    *,
+    eta: bool,
 ) -> Contender:
-    """Return a contender with one fitted parameter, and an interface factor on request."""
+    """Return a contender with one fitted parameter, and an interface factor on request.
 
-    def fitted(value: float, data: DataSet) -> tuple[RestitutionModel, float]:
-        """Return the model at a value of its parameter, and its misfit."""
-        model = make(value)
-        r = model.of_slenderness(data.slenderness)
-        factor = _best_eta(r, data.coefficient) if eta else 1.0
-        misfit = float(((factor * r - data.coefficient) ** 2).sum())
-        return (Interface(model, eta=factor) if eta else model), misfit
+    The parameter makes a model; of impacts and a column of its values it makes coefficients, a line for each value.
+    """
 
-    def fit(data: DataSet) -> RestitutionModel:
+    def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
         """Find the parameter by bounded least squares."""
-        from scipy.optimize import minimize_scalar
+        geometry = ImpactGeometry.of_slenderness(data.slenderness)
 
-        least = minimize_scalar(
-            lambda value: fitted(float(value), data)[1], bounds=ends, method="bounded", options={"xatol": 1e-7}
+        def factors(values: FloatArray, which: IntArray) -> tuple[list[float], list[float]]:
+            """Return the interface factors at values of the parameter, and the misfits, each to its rows."""
+            every = np.maximum(coefficients(geometry, values[:, None]), 0.0)
+            pairs = [(r[rows[i]], data.coefficient[rows[i]]) for r, i in zip(every, which.tolist(), strict=True)]
+            best = [_best_eta(r, measured) if eta else 1.0 for r, measured in pairs]
+            misfits = [
+                float(((factor * r - measured) ** 2).sum()) for factor, (r, measured) in zip(best, pairs, strict=True)
+            ]
+            return best, misfits
+
+        every = np.arange(len(rows))
+        values = minimise_between(
+            lambda values, which: np.array(factors(values, which)[1]), ends, len(rows), tolerance=1e-7
         )
-        return fitted(float(least.x), data)[0]
+        models = [make(value) for value in values.tolist()]
+        if not eta:
+            return models
+        return [Interface(model, eta=factor) for model, factor in zip(models, factors(values, every)[0], strict=True)]
 
     prefix = "eta*" if eta else ""
     return Contender(f"{prefix}{name}({parameter})", (("eta", parameter) if eta else (parameter,)), fit)
@@ -81,18 +101,27 @@ def family(
 
 def contact_bed(*, eta: bool) -> Contender:
     """Return the contact bed with points and hardness fitted, damping its default, and a factor on request."""
+    usual = ContactBedModel().damping
 
     def of(points: int) -> Contender:
         return family(
-            "contact-bed", "hardness", lambda x: ContactBedModel(points=points, hardness=x), HARDNESS, eta=eta
+            "contact-bed",
+            "hardness",
+            lambda x: ContactBedModel(points=points, hardness=x),
+            lambda geometry, x: tabulated(geometry, points, usual, x),
+            HARDNESS,
+            eta=eta,
         )
 
-    def fit(data: DataSet) -> RestitutionModel:
+    def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
         """Fit the hardness with every number of points; the one with the least squares takes part."""
-        fitted = [of(points).fit(data) for points in POINTS]
-        return min(
-            fitted, key=lambda model: float(((model.of_slenderness(data.slenderness) - data.coefficient) ** 2).sum())
-        )
+
+        def closest(models: Sequence[RestitutionModel], some: BoolArray) -> RestitutionModel:
+            ratios, measured = data.slenderness[some], data.coefficient[some]
+            return min(models, key=lambda model: float(((model.of_slenderness(ratios) - measured) ** 2).sum()))
+
+        each = zip(*(of(points).fit(data, rows) for points in POINTS), strict=True)
+        return [closest(models, some) for models, some in zip(each, rows, strict=True)]
 
     prefix, first = ("eta*", ("eta",)) if eta else ("", ())
     return Contender(f"{prefix}contact-bed(points, hardness)", (*first, "points", "hardness"), fit)
@@ -103,15 +132,15 @@ def contenders() -> list[Contender]:
     impulses = [ShiftedImpulse(k=2.0 / 3.0), *(DistributedImpulse(q=q) for q in (0.0, 1.0, 2.0))]
     whole = [Housner(), Ked(), HorizontalMomentum(), *impulses, PlasticWinkler(), ContactBedModel()]
     factored = [Housner(), Ked(), HorizontalMomentum(), PlasticWinkler()]
-    shifted = ("shifted-impulse", "k", ShiftedImpulse, (0.0, 1.0))
-    distributed = ("distributed-impulse", "q", DistributedImpulse, (0.0, 20.0))
+    by_position = ("shifted-impulse", "k", ShiftedImpulse, shifted, (0.0, 1.0))
+    by_exponent = ("distributed-impulse", "q", DistributedImpulse, distributed, (0.0, 20.0))
     return [
         *(as_it_is(model) for model in whole),
-        family(*shifted, eta=False),
-        family(*distributed, eta=False),
+        family(*by_position, eta=False),
+        family(*by_exponent, eta=False),
         *(with_interface(model) for model in factored),
-        family(*shifted, eta=True),
-        family(*distributed, eta=True),
+        family(*by_position, eta=True),
+        family(*by_exponent, eta=True),
         contact_bed(eta=False),
         contact_bed(eta=True),
     ]
@@ -198,14 +227,18 @@ def _standing(data: DataSet) -> tuple[LeagueRow, ...]:
 
 
 def _row(contender: Contender, data: DataSet) -> LeagueRow:
-    model = contender.fit(data)
-    r, measured = model.of_slenderness(data.slenderness), data.coefficient
+    measured = data.coefficient
+    groups = {name: np.array([group == name for group in data.group]) for name in dict.fromkeys(data.group)}
+    whole, alone = np.ones(len(data), dtype=bool), list(~np.eye(len(data), dtype=bool))
+    apart = [~rows for rows in groups.values()]
+    if contender.parameters and len(groups) == 1:
+        apart = []  # nothing is left to fit
+    model, *others = contender.fit(data, [whole, *alone, *apart])
+    r = model.of_slenderness(data.slenderness)
     low, high = np.quantile(resampled((r - measured) ** 2, drawn(data)), [0.025, 0.975]).tolist()
     against_ked = compare(data, r, Ked().of_slenderness(data.slenderness))
     count = len(contender.parameters)
     bands = {name: (data.slenderness > a) & (data.slenderness <= b) for name, a, b in BANDS}
-    groups = {name: np.array([group == name for group in data.group]) for name in dict.fromkeys(data.group)}
-    each = list(np.eye(len(data), dtype=bool)) if count else [np.ones(len(data), dtype=bool)]
     measures = ("rmse", "bias", "correlation", "concordance", "loss_rmse", "log_loss_rmse")
     return LeagueRow(
         name=contender.name,
@@ -214,8 +247,8 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
         rmse_low=low,
         rmse_high=high,
         **{name: getattr(comparison, name)(r, measured) for name in measures},
-        leave_one_out=_left_out(contender, data, each),
-        leave_group_out=_left_out(contender, data, list(groups.values())),
+        leave_one_out=_left_out(others[: len(alone)], alone, data),
+        leave_group_out=_left_out(others[len(alone) :], apart, data) if apart else math.nan,
         bic=rounding_bic(data, r, count),
         by_group={name: comparison.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
         by_band={
@@ -225,14 +258,11 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
     )
 
 
-def _left_out(contender: Contender, data: DataSet, subsets: list[Any]) -> float:
-    if contender.parameters and any(left.all() for left in subsets):
-        return math.nan  # nothing is left to fit
+def _left_out(models: Sequence[RestitutionModel], seen: Sequence[BoolArray], data: DataSet) -> float:
+    """Return the error of predictions of rows by models that were fitted to the others [-]."""
     predicted = np.empty(len(data))
-    for left in subsets:
-        # nothing is fitted where nothing is free, so the whole may be left out at once
-        model = contender.fit(data.rows(~left)) if contender.parameters else contender.fit(data)
-        predicted[left] = model.of_slenderness(data.slenderness[left])
+    for model, rows in zip(models, seen, strict=True):
+        predicted[~rows] = model.of_slenderness(data.slenderness[~rows])
     return comparison.rmse(predicted, data.coefficient)
 
 

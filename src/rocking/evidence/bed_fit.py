@@ -11,7 +11,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.evidence.comparison import rmse
 from rocking.evidence.likelihood import interval_log_likelihood
 from rocking.evidence.measurements import DataSet, all_measurements
-from rocking.evidence.simplex import minimise_many
+from rocking.evidence.searches import minimise_many
 from rocking.portable import each
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, Bed, bed_table
 from rocking.restitution.calibrated import scatter

@@ -150,7 +150,11 @@ class ContactBedModel(InertiaModel):
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
         """Angular momentum about the place of the impulse, and no more energy after than before."""
         read = self._read(geometry)
-        r = self._from_table(geometry) if bool(read.any()) else np.empty_like(geometry.base_gyration)
+        r = (
+            tabulated(geometry, self.points, self.damping, self.hardness)
+            if bool(read.any())
+            else np.empty_like(geometry.base_gyration)
+        )
         if not bool(read.all()):
             r = np.array(r)
             r[~read] = self._resolved(geometry, ~read)
@@ -166,19 +170,6 @@ class ContactBedModel(InertiaModel):
     def _error(self, geometry: ImpactGeometry) -> FloatArray:
         return stated_error(self.points, self.damping, _flatness(geometry))
 
-    def _from_table(self, geometry: ImpactGeometry) -> FloatArray:
-        half = 0.5 * (geometry.old_lever + geometry.new_lever)
-        gyration = geometry.base_gyration / half**2
-        old, new = geometry.old_lever / half, geometry.new_lever / half
-        table = bed_table()
-        bed = table.bed(self.points, self.damping, self.hardness)
-        arm = table.position(bed, 1.0 / (1.0 + gyration), old - 1.0) - (old - 1.0)
-        after = gyration + arm * new
-        # the impulse of a plumb line far outside the table could lie behind it
-        most = np.sqrt(geometry.old_gyration / geometry.new_gyration)
-        # Eq. 19
-        return np.asarray(np.where(after > 0.0, (gyration - arm * old) / np.where(after > 0.0, after, 1.0), most))
-
     def _resolved(self, geometry: ImpactGeometry, where: BoolArray) -> FloatArray:
 
         half = 0.5 * (geometry.old_lever + geometry.new_lever)
@@ -189,6 +180,24 @@ class ContactBedModel(InertiaModel):
         return resolved_coefficients(
             [ScaledImpact(flat, offset, *bed, height_share=height) for flat, offset, height in bodies.tolist()]
         )
+
+
+def tabulated(
+    geometry: ImpactGeometry, points: int, damping: FloatArray | float, hardness: FloatArray | float
+) -> FloatArray:
+    """Return the coefficients that the table gives, for arrays of beds, broadcast; no impact adds energy."""
+    half = 0.5 * (geometry.old_lever + geometry.new_lever)
+    gyration = geometry.base_gyration / half**2
+    old, new = geometry.old_lever / half, geometry.new_lever / half
+    table = bed_table()
+    bed = table.bed(points, damping, hardness)
+    arm = table.position(bed, 1.0 / (1.0 + gyration), old - 1.0) - (old - 1.0)
+    after = gyration + arm * new
+    # the impulse of a plumb line far outside the table could lie behind it
+    most = np.sqrt(geometry.old_gyration / geometry.new_gyration)
+    # Eq. 19
+    r = np.where(after > 0.0, (gyration - arm * old) / np.where(after > 0.0, after, 1.0), most)
+    return np.minimum(r, most)  # Eq. 29
 
 
 def _flatness(geometry: ImpactGeometry) -> FloatArray:

@@ -62,16 +62,7 @@ class DistributedImpulse(InertiaModel):
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
         """Evaluate the closed form for a base that touches from foot to foot."""
-        start, end = -geometry.old_lever, geometry.new_lever
-        c = 1.0 / (geometry.base_gyration * (self.q + 2.0))
-        e = c * (self.q + 1.0) * end
-        lowest = np.clip(-0.5 * (self.q + 1.0) * end, start, end)
-        # D = 1 + kappa s_c sigma > 0: the stopped points stay behind
-        leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
-            exponent = 0.5 * np.log(ratio) + 0.5 * e * _inverse_quadratic(c, e, start, end)  # Eq. 12
-        return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
+        return distributed(geometry, np.asarray(self.q))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Evaluate the closed form where the whole base touches, quadrature over its parts otherwise."""
@@ -97,6 +88,20 @@ class DistributedImpulse(InertiaModel):
                 return 0.0
             exponent += dot(_WEIGHTS, slope * arm / behind)  # Eq. 11
         return math.exp(-exponent)
+
+
+def distributed(geometry: ImpactGeometry, q: FloatArray) -> FloatArray:
+    """Return the coefficients of bases that touch from foot to foot, for arrays of exponents, broadcast."""
+    start, end = -geometry.old_lever, geometry.new_lever
+    c = 1.0 / (geometry.base_gyration * (q + 2.0))
+    e = c * (q + 1.0) * end
+    lowest = np.clip(-0.5 * (q + 1.0) * end, start, end)
+    # D = 1 + kappa s_c sigma > 0: the stopped points stay behind
+    leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
+        exponent = 0.5 * np.log(ratio) + 0.5 * e * _inverse_quadratic(c, e, start, end)  # Eq. 12
+    return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
 
 
 def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) -> FloatArray:

@@ -1,10 +1,10 @@
-"""Many simplex searches at once: each ends where scipy's ends, with fewer variables, few evaluations, or shrinking."""
+"""Many searches at once: each ends where that of scipy ends."""
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 
-from rocking.evidence.simplex import minimise_many
+from rocking.evidence.searches import minimise_between, minimise_many
 
 SHIFTS = np.array([0.0, 0.3, -0.7, 1.1, 2.0])
 
@@ -38,3 +38,22 @@ def test_each_search_takes_the_steps_of_scipy(function, evaluations):
     # negative control: searches that are given more evaluations end elsewhere
     if evaluations < 1000:
         assert (found != minimise_many(function, starts, sizes, tolerance=1e-5, evaluations=1000)).any()
+
+
+def waves(x, search):
+    """Functions of one variable, with a kink and several minima, the last one with its minimum at an end."""
+    return np.where(search < 30, (x - 0.1 * search) ** 4 + np.sin(0.2 * search * x) + 0.3 * np.abs(x - 0.5), -x)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
+def test_each_search_between_bounds_takes_the_steps_of_scipy(tolerance):
+    found = minimise_between(waves, (-0.5, 2.0), 31, tolerance=tolerance)
+    for number in range(31):
+
+        def alone(x, number=number):
+            return float(waves(np.array([x]), np.array([number]))[0])
+
+        expected = minimize_scalar(alone, bounds=(-0.5, 2.0), method="bounded", options={"xatol": tolerance}).x
+        assert found[number] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    # negative control: other bounds, other minima
+    assert (found != minimise_between(waves, (-0.4, 2.0), 31, tolerance=tolerance)).all()

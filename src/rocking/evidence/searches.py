@@ -1,16 +1,17 @@
-"""The adaptive simplex search of Nelder and Mead for many functions at once, which take their steps together."""
+"""Searches of the minima of many functions at once, which take their steps together."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray, IntArray
 
-Function = Callable[[FloatArray, IntArray], FloatArray]
+Values = Callable[[FloatArray, IntArray], FloatArray]
 
 
 def minimise_many(
-    function: Function, starts: FloatArray, sizes: IntArray, *, tolerance: float, evaluations: int
+    function: Values, starts: FloatArray, sizes: IntArray, *, tolerance: float, evaluations: int
 ) -> FloatArray:
     """Return the lowest point that each search finds, of shape (searches, n).
 
@@ -46,7 +47,7 @@ def minimise_many(
 
 
 def _step(
-    function: Function, search: IntArray, sizes: IntArray, simplices: FloatArray, values: FloatArray, left: IntArray
+    function: Values, search: IntArray, sizes: IntArray, simplices: FloatArray, values: FloatArray, left: IntArray
 ) -> None:
     """Replace the highest corner of each sorted simplex, or shrink the simplex, as far as evaluations are left."""
     own, number = np.arange(search.size), sizes[:, None]
@@ -77,3 +78,56 @@ def _step(
         simplices[lane, 1:] = simplices[lane, 0] + (1.0 - 1.0 / size) * (simplices[lane, 1:] - simplices[lane, 0])
         values[lane, 1 : count + 1] = function(simplices[lane, 1 : count + 1], np.repeat(search[lane], count))
         left[lane] -= count
+
+
+_GOLDEN, _ROOT = 0.5 * (3.0 - math.sqrt(5.0)), math.sqrt(2.2e-16)
+
+
+def minimise_between(function: Values, bounds: tuple[float, float], count: int, *, tolerance: float) -> FloatArray:
+    """Return the lowest place that each of some searches finds between bounds, of shape (count,).
+
+    Each search takes the steps of ``scipy.optimize.minimize_scalar(method="bounded")``: parabolas and golden sections
+    (Brent 1973). The function takes places and the number of the search of each, and returns their values.
+    """
+    low, high = np.repeat(np.array(bounds)[:, None], count, axis=1)
+    lowest = low + _GOLDEN * (high - low)
+    value = function(lowest, np.arange(count))
+    places, values = np.tile(lowest, (3, 1)), np.tile(value, (3, 1))  # the lowest place, the second and the third
+    step, before = np.zeros((2, count))
+    while True:
+        best, middle = places[0], 0.5 * (low + high)
+        least = _ROOT * np.abs(best) + tolerance / 3.0
+        goes_on = np.abs(best - middle) > 2.0 * least - 0.5 * (high - low)
+        if not goes_on.any():
+            return np.asarray(best)
+        section = np.where(best >= middle, low, high) - best
+        parabolic, fits = _parabola(places, values, low, high, np.where(np.abs(before) > least, before, 0.0))
+        at_edge = np.minimum(best + parabolic - low, high - best - parabolic) < 2.0 * least
+        parabolic = np.where(at_edge, np.where(middle >= best, least, -least), parabolic)
+        step, before = np.where(fits, parabolic, _GOLDEN * section), np.where(fits, step, section)
+        place = best + np.where(step >= 0.0, 1.0, -1.0) * np.maximum(np.abs(step), least)
+        value = np.full(count, np.inf)
+        value[goes_on] = function(place[goes_on], np.flatnonzero(goes_on))
+        lower, right = value <= values[0], place >= best
+        low = np.where(goes_on & (lower == right), np.where(lower, best, place), low)
+        high = np.where(goes_on & (lower != right), np.where(lower, best, place), high)
+        second = ~lower & ((value <= values[1]) | (places[1] == best))
+        third = ~lower & ~second & ((value <= values[2]) | (places[2] == best) | (places[2] == places[1]))
+        for held, new in ((places, place), (values, value)):
+            held[2] = np.where(goes_on & (lower | second), held[1], np.where(goes_on & third, new, held[2]))
+            held[1] = np.where(goes_on & lower, held[0], np.where(goes_on & second, new, held[1]))
+            held[0] = np.where(goes_on & lower, new, held[0])
+
+
+def _parabola(
+    places: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray, before: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """Return the step to the minimum of the parabola through three places, and where it is to be taken."""
+    best, second, third = places
+    r = (best - second) * (values[0] - values[2])
+    q = (best - third) * (values[0] - values[1])
+    p = (best - third) * q - (best - second) * r
+    q = 2.0 * (q - r)
+    p, q = np.where(q > 0.0, -p, p), np.abs(q)
+    fits = (np.abs(p) < np.abs(0.5 * q * before)) & (p > q * (low - best)) & (p < q * (high - best))
+    return np.divide(p, q, out=np.zeros_like(p), where=fits), fits
