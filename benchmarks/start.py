@@ -1,25 +1,46 @@
-"""How long a fresh process takes: `import rocking`, `rocking --help`."""
+"""CPU time of a fresh process until its first answer, in seconds of the machine that the goals are stated for."""
 
+import resource
 import statistics
 import subprocess
 import sys
-import time
+import tempfile
+
+NUMPY = 0.28  # CPU time of `import numpy` on the machine of the goals [s]
+BLOCK = ("--width", "0.6", "--height", "1.8")
+SHAKEN = (*BLOCK, "--motion", "sine:amplitude=3,period=1.2")
+COMMANDS = {  # arguments, goal [s], repeats
+    "--help": ((), 0.3, 5),
+    "cor": (BLOCK, 0.6, 5),
+    "simulate": (SHAKEN, 0.6, 5),
+    "map": (SHAKEN, 0.6, 5),
+    "assess": (SHAKEN, 2.0, 5),
+    "predict": (SHAKEN, 2.0, 5),
+    "paper": ((), 12.0, 1),
+}
 
 
-def seconds(*arguments: str, repeats: int = 7) -> float:
-    """Median wall seconds of a fresh interpreter with these arguments."""
+def seconds(*arguments: str) -> float:
+    """CPU seconds of a fresh interpreter with these arguments, and of its processes."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
-    def once() -> float:
-        start = time.perf_counter()
-        subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
-        return time.perf_counter() - start
 
-    return statistics.median(once() for _ in range(repeats))
+def scaled(*arguments: str, repeats: int = 5) -> float:
+    """Median CPU seconds on the machine of the goals; this one is compared with it by `import numpy`, turn by turn."""
+    pairs = [(seconds(*arguments), seconds("-c", "import numpy")) for _ in range(repeats)]
+    own, unit = (statistics.median(column) for column in zip(*pairs, strict=True))
+    return NUMPY * own / unit
 
 
 def starts() -> list[tuple[str, float, float]]:
     """(what, seconds, goal) for each."""
-    return [
-        ("import rocking", seconds("-c", "import rocking"), 0.3),
-        ("rocking --help", seconds("-c", "from rocking.cli import main; main(['--help'])"), 0.5),
-    ]
+    found = [("import rocking", scaled("-c", "import rocking"), 0.1)]
+    for name, (options, goal, repeats) in COMMANDS.items():
+        with tempfile.TemporaryDirectory() as folder:
+            out = ("--out", folder) if name == "paper" else ()
+            spent = scaled("-m", "rocking", name, *options, *out, repeats=repeats)
+        found.append((f"rocking {name}", spent, goal))
+    return found

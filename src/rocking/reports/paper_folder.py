@@ -98,7 +98,7 @@ def _draw(folder: Path, step: Step, result: Reproduction) -> None:
         step(stem.replace("_", " "))
         figure = draw()
         write(figure, folder / f"{stem}.png")
-        figure.set_layout_engine("none")  # it is laid out, for the other format too
+        figure.set_layout_engine(None)  # it is laid out, for the other format too
         write(figure, folder / f"{stem}.svg")
 
 
