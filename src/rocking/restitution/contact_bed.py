@@ -1,23 +1,17 @@
 """Contact bed: what emerges from an impact that takes time, on springs and dashpots under the base, in units of it."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from enum import Enum
-from functools import lru_cache
 from typing import cast
 
 import numpy as np
 
-from rocking import checks, conventions
-from rocking.bodies import Body, MassPoints
+from rocking import checks
+from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.restitution._model import InertiaModel, Restitution
-from rocking.restitution.bed.contact_bed import BaseFriction, ContactBed, Coulomb, Sticking
-from rocking.restitution.bed.impact import BedStatus, bed_impacts
-from rocking.restitution.bed.laws import KelvinVoigt
-from rocking.restitution.bed.setup import Setup, setup_of
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table, stated_error
 from rocking.restitution.impact import ImpactGeometry
 
@@ -171,6 +165,7 @@ class ContactBedModel(InertiaModel):
         return stated_error(self.points, self.damping, _flatness(geometry))
 
     def _resolved(self, geometry: ImpactGeometry, where: BoolArray) -> FloatArray:
+        from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
 
         half = 0.5 * (geometry.old_lever + geometry.new_lever)
         flatness = _flatness(geometry)
@@ -203,86 +198,3 @@ def tabulated(
 def _flatness(geometry: ImpactGeometry) -> FloatArray:
     half = 0.5 * (geometry.old_lever + geometry.new_lever)
     return np.asarray(1.0 / (1.0 + geometry.base_gyration / half**2))
-
-
-RELEASE = 0.05  # rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]
-_TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
-
-
-@dataclass(frozen=True, slots=True)
-class ScaledImpact:
-    """A body on a Kelvin-Voigt bed, in numbers without units.
-
-    >>> impact = ScaledImpact(flatness=0.15, offset=0.0, points=2, damping=1.0, hardness=300.0)
-    >>> round(float(resolved_coefficients([impact])[0]), 2)
-    0.7
-    """
-
-    flatness: float  # 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
-    offset: float  # way from the plumb line back to the middle of the base, over w [-]
-    points: int  # contact points from foot to foot
-    damping: float  # damping ratio of the whole bed [-]
-    hardness: float  # landing speed of the new foot times sqrt(k / m) over gravity [-]
-    friction: float = math.inf  # coefficient of friction; infinite where the base cannot slide [-]
-    # m h^2 / (I_C + m h^2): the height of the centre, which matters where the base slides [-]
-    height_share: float = 0.7
-
-    def __post_init__(self) -> None:
-        checks.within("flatness", self.flatness, 1e-6, 1.0, open_high=True)
-        checks.within("offset", self.offset, -1.0, 1.0, open_low=True, open_high=True)
-        checks.within("height share", self.height_share, 0.0, 1.0, open_low=True)
-
-    @property
-    def setup(self) -> Setup:
-        """The impact, ready to be computed."""
-        body, feet, release, speed = _body(self.flatness, self.offset, self.height_share)
-        stiffness = (self.hardness * conventions.g / speed) ** 2
-        friction = Sticking() if math.isinf(self.friction) else Coulomb(self.friction)
-        bed = _bed(feet, self.points, stiffness, self.damping, friction)
-        return setup_of(body, bed, rotation=release, tolerance=_TOLERANCES[0])
-
-
-def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) -> FloatArray:
-    """Return coefficients of restitution resolved in time."""
-    setups = [impact.setup for impact in impacts]
-    r = np.full(len(setups), np.nan)
-    # a chattering point can use up its steps: another step tolerance takes another way through
-    for tolerance in _TOLERANCES:
-        failed = np.flatnonzero(np.isnan(r))
-        if failed.size == 0:
-            return r
-        found = bed_impacts([replace(setups[i], tolerance=tolerance) for i in failed.tolist()], threads=threads)
-        ended = [status in {BedStatus.PEAK, BedStatus.TOPPLED} for status in found.status]
-        r[failed] = np.where(ended, found.coefficient, np.nan)
-    if np.isnan(r).any():
-        raise InvalidValueError(
-            f"{int(np.isnan(r).sum())} impacts did not end, the first is {impacts[int(np.argmax(np.isnan(r)))]}"
-        )
-    return r
-
-
-@lru_cache(maxsize=256)
-def _body(flatness: float, offset: float, share: float) -> tuple[MassPoints, tuple[float, float], float, float]:
-    """Body, feet, rotation of release and landing speed of the new foot."""
-    gyration = 1.0 / flatness - 1.0
-    height, arm = math.sqrt(share * gyration), math.sqrt((1.0 - share) * gyration)
-    feet = (-1.0 - offset, 1.0 - offset)
-    masses = ([(-arm, height), (arm, height)], [0.5, 0.5]) if arm > 0.0 else ([(0.0, height)], [1.0])
-    body = MassPoints(*masses, feet=feet)
-    release = RELEASE * math.atan(min(-feet[0], feet[1]) / height)
-    speed = 2.0 * setup_of(body, _bed(feet, 2, 1.0, 1.0, Sticking()), rotation=release).landing_velocity
-    return body, feet, release, speed
-
-
-def _bed(
-    feet: tuple[float, float], points: int, stiffness: float, damping: float, friction: BaseFriction
-) -> ContactBed:
-    shares = np.ones(points)
-    shares[[0, -1]] = 0.5
-    law = KelvinVoigt(stiffness, damping_ratio=damping)
-    # a base that slides needs the points of a rigid body; where it sticks, small rotations are the table's setting
-    slides = not isinstance(friction, Sticking)
-    return ContactBed(
-        np.linspace(*feet, points), law, shares / shares.sum(), friction=friction,
-        kinematics="exact" if slides else "small",
-    )  # fmt: skip

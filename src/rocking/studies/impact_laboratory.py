@@ -25,9 +25,10 @@ from rocking.restitution.bed import (
     fast,
     setup_of,
 )
+from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
 from rocking.restitution.bed.setup import Setup
 from rocking.restitution.bed_table import HARDNESS, POINTS, STEP, BedTable, nodes
-from rocking.restitution.contact_bed import ContactBedModel, ScaledImpact, resolved_coefficients
+from rocking.restitution.contact_bed import ContactBedModel
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
