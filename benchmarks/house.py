@@ -201,7 +201,8 @@ def upward(arrows: dict[str, set[str]]) -> list[tuple[str, str]]:
     ]
 
 
-CHOICE = re.compile(r"rocking\.dynamics\.(\w+\.)?mechanics(_base)?")  # modules that choose the mechanics
+# modules that choose the mechanics, or take its bodies
+CHOICE = re.compile(r"rocking\.dynamics\.((\w+\.)?mechanics(_base)?|\w+\.body)")
 
 
 def choices_of_mechanics(folder: Path) -> dict[str, list[str]]:

@@ -16,6 +16,30 @@ def test_every_room_has_its_floor():
     assert {name.split(".")[1] for name in house.trees(house.SOURCE) if "." in name} == planned
 
 
+def test_the_mechanics_are_chosen_in_one_place():
+    """No code outside the choice of mechanics asks whether a body is in space or whether it has friction."""
+    assert house.choices_of_mechanics(house.SOURCE) == {
+        "in_space()": [], "friction is None": [], "isinstance(..., Solid)": []
+    }  # fmt: skip
+
+
+CHOOSES = """from rocking.bodies import Body, Solid
+def moves(body, settings, friction=None):
+    if in_space(body) or bodies.in_space(body) or isinstance(body, (Body, Solid)):
+        return settings.friction is not None
+    return isinstance(body, Solid) and friction is None
+"""
+
+
+@pytest.mark.parametrize(("name", "count"), [("studies/map.py", 2), ("dynamics/hull/mechanics.py", 0)])
+def test_a_second_choice_of_mechanics_is_seen(name, count, tmp_path):
+    """Negative control: each of the three questions is found twice in a study, and allowed where a mechanics asks."""
+    path = tmp_path / "rocking" / name
+    path.parent.mkdir(parents=True)
+    path.write_text(CHOOSES, "utf-8")
+    assert [len(places) for places in house.choices_of_mechanics(tmp_path / "rocking").values()] == [count] * 3
+
+
 def test_no_class_name_stands_twice():
     """Content hashes and readers know a class of ours by its name alone."""
     assert [name for name, count in house.classes(house.SOURCE).items() if count > 1] == []

@@ -229,7 +229,7 @@ def test_no_hang(case: str, name: str) -> None:
     row = {f"{key}_{side}": x for key, x in (("alpha", 0.2), ("p", 2.0), ("r", 0.5)) for side in ("right", "left")}
     code = (
         "import numpy as np; from rocking.dynamics.batch import Batch; from rocking.dynamics.rows import Rows\n"
-        "from rocking.dynamics.settings import Settings; from rocking.motions.segments import Segments\n"
+        "from rocking.dynamics import PlaneSettings; from rocking.motions.segments import Segments\n"
         f"batch = Batch({motions}, settings=PlaneSettings(linear={linear}), engine={name!r})\n"
         f"batch.run(1, lambda a, b: Rows.of(1, **{row | odd | {'rotation': -0.05}}))"
     )

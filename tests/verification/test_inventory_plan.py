@@ -256,7 +256,7 @@ def spatial(item, hazard, scale=1.0):
     """Outcomes along width and depth by one history after another of the body in space."""
     motions = [replace(each, acceleration=scale * each.acceleration) for each in hazard.motions]
     shaken = [{axis: each} for axis in "xy" for each in motions]
-    found = simulate_many(item.in_space(), shaken, restitution="ked", friction=item.friction)
+    found = simulate_many(item.as_solid(), shaken, restitution="ked", friction=item.friction)
     return found.outcome.values.ravel()
 
 
@@ -315,7 +315,7 @@ def test_sizes_are_drawn_in_three_dimensions(few):
     bodies = Draws(8, few.description["seed"]).bodies(vague)
     fell = 0
     for k, motion in enumerate(few.motions):
-        one = simulate_many(bodies[k % 5].in_space(), [{"y": motion}], restitution="ked", friction=0.45)
+        one = simulate_many(bodies[k % 5].as_solid(), [{"y": motion}], restitution="ked", friction=0.45)
         fell += int(one.outcome.values.item() == Outcome.OVERTURNED.code)
     assert found.results[1].overturned == fell
     assert found.results[1].median_rotation != bare.results[1].median_rotation

@@ -259,7 +259,7 @@ class Inputs(ResponseTables):
     def _few_restitutions(self) -> "Inputs":
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
         refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
-        if self.response.friction is not None:
+        if self.response.friction:  # the table has none of 0
             raise refused("response.friction: the page rocks without sliding, compared with response.assumed_friction; "
                           "`rocking simulate` lets a body slide, hop and fly")  # fmt: skip
         return self

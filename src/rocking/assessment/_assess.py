@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from rocking.assessment.answer import BodyAssessment, ModelMargin, StandingSolid
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import StablePose
 from rocking.conventions import FEET, FloatArray, IntArray
+from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
 from rocking.evidence import restitution_distribution
@@ -273,20 +274,20 @@ def assess(  # noqa: PLR0913 - what is asked, what is known and how it is comput
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
     whole = several(motions, pga)
-    given = FRICTION[0] if friction is None else friction
-    coefficient = Uncertain.of("friction", given, *FRICTION[1:]).median
-    options = {"gravity": gravity, "threads": threads, "progress": progress}
+    stated = (mu for mu in (friction, FRICTION[0]) if mu is not None)
+    coefficient = Uncertain.of("friction", next(stated), *FRICTION[1:]).median
+    options, subject = {"gravity": gravity, "threads": threads, "progress": progress}, cast(Any, body)
     space: SolidHistories | None = None
     moving: Sequence[Any]
-    if isinstance(body, Solid):
-        space = SolidHistories(body, whole, known.get("azimuth"), coefficient, options)
+    if not mechanics_for(subject, friction, study=True).in_plane:
+        space = SolidHistories(subject, whole, known.get("azimuth"), coefficient, options)
         flat, moving, records, body, whole = space.body, space.motions, space.records, space.standing.solid, space.given
         plane = [each.in_plane for each in space.motions]
         asked = IN_SPACE if restitution is None else restitution
         restitution = [each.removesuffix("-3d") if isinstance(each, str) else each for each in asked]
     else:
         plane, records = in_the_plane(whole, known.get("azimuth"))
-        flat, moving = body, plane
+        flat, moving = subject, plane
     if still := next((each for each in plane if not each.peak > 0.0), None):
         raise InvalidValueError(f"motion {still.name!r} is zero throughout: nothing would move")
     different = list({id(each): each for each in plane}.values())

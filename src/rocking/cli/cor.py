@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.bodies import Solid
+from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
@@ -78,7 +78,13 @@ def cor(
         raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
     subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
-    if isinstance(subject, Solid):
+    if isinstance(subject, Body):
+        from rocking.reports.body_facts import ImpactAnswer
+
+        models = None if restitution is None else [_model(text) for text in restitution]
+        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=identities)
+        answer: Any = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
+    else:
         from rocking.cli.solids import SolidAnswer
 
         plane = {"--onto": onto != "both", "--identities": identities}
@@ -88,13 +94,7 @@ def cor(
                 f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
             )
         found = _recommended(subject, restitution) if recommend else None
-        answer: Any = SolidAnswer.of(subject, restitution, gravity, length, found)
-    else:
-        from rocking.reports.body_facts import ImpactAnswer
-
-        models = None if restitution is None else [_model(text) for text in restitution]
-        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=identities)
-        answer = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
+        answer = SolidAnswer.of(subject, restitution, gravity, length, found)
     deliver(answer, exports, as_json=as_json)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.bodies import Block, Section, Solid
+from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
 from rocking.cli import options
 from rocking.cli.arguments import Arguments
@@ -50,7 +50,7 @@ def equilibria(
     if isinstance(subject, (Block, Section)):
         subject = Solid.from_section(subject)
         subject.name = Path(body or "").name
-    if not isinstance(subject, Solid):
+    if isinstance(subject, Body):
         raise InvalidValueError(
             "equilibria are those of a body in space: give a mesh, a file with [[solid.part]], or a block or a section"
         )

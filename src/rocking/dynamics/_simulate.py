@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack, overload
 
 from rocking.bodies import Body
-from rocking.dynamics.mechanics import chosen
+from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.mechanics_base import UNCHANGED, Mechanics
 from rocking.dynamics.response import Response
 from rocking.dynamics.settings import Settings
@@ -290,7 +290,7 @@ def _follow(
     body: Any, motion: Callable[[Mechanics], Any], restitution: Any, rotation: float, *, scale: float = 1.0,
     start: Any = None, angular_velocity: Any = 0.0, duration: float | None = None, **options: Any,
 ) -> Any:  # fmt: skip
-    mechanics = chosen(body, options["friction"])
+    mechanics = mechanics_for(body, options["friction"])
     begun = mechanics.begun(start, rotation, angular_velocity)
     settings, own = mechanics.split(options, mechanics.settings, mechanics.options)
     return mechanics.follow(

@@ -3,12 +3,10 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
 
-import numpy as np
-
 from rocking.bodies import Body
 from rocking.dynamics._simulate import IntegrationOptions
-from rocking.dynamics.mechanics import chosen_for
-from rocking.dynamics.mechanics_base import Combinations, listed, row_of
+from rocking.dynamics.mechanics import mechanics_for_all
+from rocking.dynamics.mechanics_base import Combinations, frictions_of, listed
 from rocking.errors import extra
 from rocking.motions.pulse import Motion
 
@@ -106,8 +104,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     [True, False]
     """
     extra("xarray", "simulate_many")
-    mechanics = chosen_for(bodies, friction)
-    frictions = np.empty(0) if friction is None else row_of("friction", friction)
+    mechanics = mechanics_for_all(bodies, friction)
+    frictions = frictions_of(friction)
     given = {
         **options, "friction": next(iter(frictions.tolist()), None), "rotation": rotation, "start": start,
         "angular_velocity": angular_velocity, "duration": duration, "threads": threads, "twin": twin,

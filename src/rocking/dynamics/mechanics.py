@@ -19,16 +19,16 @@ from rocking.errors import InvalidValueError
 MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())
 
 
-def chosen(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
+def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
     """Return how a body moves, with friction or with None; study: in a study."""
     return next(each for each in MECHANICS if each.takes(body, friction, study=study))
 
 
-def chosen_for(bodies: Any, friction: Any) -> Mechanics:
+def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
     """Return how one or several bodies move together: in space where all that are bodies are in space."""
     several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
     plane = [body for body in several if isinstance(body, Body)]
-    return chosen(next(iter(plane or filter(in_space, several)), None), friction)
+    return mechanics_for(next(iter(plane or filter(in_space, several)), None), friction)
 
 
 def mechanics_of(settings: Settings) -> Mechanics:
@@ -41,5 +41,5 @@ def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conve
     known = {name for each in MECHANICS for name in each.settings.names()} - {"gravity"}
     if unknown := sorted(set(options) - known):
         raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
-    mechanics = chosen(body, options.get("friction"), study=True)
+    mechanics = mechanics_for(body, options.get("friction"), study=True)
     return mechanics.split({**options, "gravity": gravity}, mechanics.settings, frozenset())[0]

@@ -55,6 +55,11 @@ def row_of(name: str, values: Any) -> FloatArray:
     return row
 
 
+def frictions_of(friction: Any) -> FloatArray:
+    """Return one coefficient of friction or several as a row, which is empty without any."""
+    return np.empty(0) if friction is None else row_of("friction", friction)
+
+
 @dataclass(frozen=True)
 class Combinations:
     """What `simulate_many` computes, as users give it: every body under every motion at every scale, and so on."""
@@ -79,7 +84,7 @@ class Mechanics(ABC):
 
     name: ClassVar[str]  # one word
     in_plane: ClassVar[bool] = True  # whether a body has one horizontal motion
-    may_be_unimposed: ClassVar[bool] = False  # whether a restitution may be none
+    slides: ClassVar[bool] = False  # whether bodies slide, hop and fly; a restitution may then be none
     is_compared: ClassVar[bool] = False  # whether restitutions are compared, with linear equations too and two engines
     title: ClassVar[str]  # as a noun
     subject: ClassVar[str]  # bodies that move like this, in messages
@@ -127,7 +132,7 @@ class Mechanics(ABC):
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
         """Return a body with its restitution, as the rows of a study take it."""
-        return RockingParameters.of_body(body, restitution, settings.gravity, may_be_none=self.may_be_unimposed)
+        return RockingParameters.of_body(body, restitution, settings.gravity, may_be_none=self.slides)
 
     def check_laid_out(self, motions: Sequence[Any]) -> None:
         """Refuse motions of a study that these mechanics do not take."""
@@ -165,17 +170,20 @@ class Mechanics(ABC):
     ) -> tuple[Settings, dict[str, Any]]:
         """Return the settings, and the other options that these mechanics have; refuse what they have not."""
         names = kind.names()
+        self.refuse_others(options, {*names, *own})
         given = {name: value for name, value in options.items() if value is not None or None not in _usual(name)}
-        for name, value in given.items():
-            if name in names or name in own:
+        settings = kind(**{name: given[name] for name in names if name in given})
+        return settings, {name: given[name] for name in own if name in given}
+
+    def refuse_others(self, options: Mapping[str, Any], known: set[str]) -> None:
+        """Refuse options that these mechanics do not have, unless they change nothing."""
+        for name, value in options.items():
+            if name in known:
                 continue
             if np.ndim(value) or not any(value is usual or value == usual for usual in _usual(name)):
                 raise InvalidValueError(
-                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: "
-                    f"{', '.join(sorted({*names, *own}))}"
+                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: {', '.join(sorted(known))}"
                 )
-        settings = kind(**{name: given[name] for name in names if name in given})
-        return settings, {name: given[name] for name in own if name in given}
 
 
 class PlaneMechanics(Mechanics):

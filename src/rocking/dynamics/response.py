@@ -133,13 +133,13 @@ class Response(ResponseBase):
         """Whether the ground would have to pull, so that the verdict assumes contact; None if there is no result."""
         return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
 
-    def with_contact(self, friction: float | None = None) -> "ContactResponse":
+    def with_contact(self, friction: float = math.inf) -> "ContactResponse":
         """Return what the body does if it may slide, hop and fly: the same question to `simulate` with friction.
 
         Parameters
         ----------
-        friction : float, optional
-            Coefficient of friction [-]; if not given, the largest of 10, 3 and 1 that has a response, so that feet
+        friction : float
+            Coefficient of friction [-]; if infinite, the largest of 10, 3 and 1 that has a response, so that feet
             that carry do not slide.
 
         Returns
@@ -160,7 +160,7 @@ class Response(ResponseBase):
         if parameters.law.kind:
             raise InvalidValueError(f"restitution must be constant where the body may fly, got {parameters.label}")
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
-        for mu in (friction,) if friction is not None else (10.0, 3.0, 1.0):
+        for mu in (10.0, 3.0, 1.0) if friction == math.inf else (friction,):
             with warnings.catch_warnings():  # what was asked has been doubted
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 found = response_with_contact(
@@ -172,13 +172,13 @@ class Response(ResponseBase):
                 break
         return found
 
-    def doubts(self, friction: float | None = None) -> list[str]:
+    def doubts(self, friction: float = math.inf) -> list[str]:
         """Return why pure rocking is not credible; where contact is lost, with what the body does if it may fly.
 
         Parameters
         ----------
-        friction : float, optional
-            Coefficient of friction between body and ground [-]; if not given, only loss of contact is looked at.
+        friction : float
+            Coefficient of friction between body and ground [-]; if infinite, only loss of contact is looked at.
 
         Returns
         -------
@@ -186,18 +186,18 @@ class Response(ResponseBase):
             Sentences; empty if it is credible.
         """
         # what nobody gave decides no flight: the feet are then kept from sliding
-        given = None if isinstance(friction, Assumed) else friction
+        given = math.inf if isinstance(friction, Assumed) else friction
         if self.lost_contact and given not in self._flights:
             self._flights[given] = self._flown(given)
         told = [self._flights[given]] if self.lost_contact else []
-        return told if friction is None else [*told, *self.contact.slips(friction)]
+        return told if friction == math.inf else [*told, *self.contact.slips(friction)]
 
     @cached_property
-    def _flights(self) -> dict[float | None, str]:
+    def _flights(self) -> dict[float, str]:
         """What the body does if it may fly, by the coefficient of friction: a history of its own, followed once."""
         return {}
 
-    def _flown(self, friction: float | None) -> str:
+    def _flown(self, friction: float) -> str:
         from rocking.dynamics.plane.energy_balance import LEAVES
 
         lost = (
@@ -208,7 +208,7 @@ class Response(ResponseBase):
             found = self.with_contact(friction)
         except InvalidValueError as error:
             return f"{lost}nothing is known: {error}"
-        why = "since none was given" if friction is None else f"as {given_or_assumed(friction)}"
+        why = "since none was given" if friction == math.inf else f"as {given_or_assumed(friction)}"
         return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property

@@ -87,11 +87,10 @@ def recommend(
     >>> [each.name for each in found.models if each.name in found.remaining]
     ['calibrated', 'housner']
     """
-    given: object = body
-    if isinstance(given, Solid):
-        return _in_space(given, motion, models)
+    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
+    given: Any = body
     if not isinstance(given, Body):
-        raise InvalidValueError(f"body must be a Block, Section, MassPoints or Solid, got {checks.given('body', body)}")
+        return _in_space(given, motion, models)
     data = all_measurements() if measurements is None else measurements
     known: object = data
     if not isinstance(known, DataSet) or not len(known):

@@ -8,6 +8,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
+from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.settings import check_progress, thread_count
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
@@ -174,13 +175,13 @@ def _mechanics(
     body: Any, motions: Any, given: Mapping[str, Any], gravity: float, bounce: float, bounce_law: str
 ) -> SampledBodies:
     """Return what a body is on its engine."""
-    if isinstance(body, Solid):
+    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
+    if not mechanics_for(body, None, study=True).in_plane:
         from rocking.prediction.space import SampledInSpace
 
         if bounce:
             raise InvalidValueError(f"bounce is of plane bodies: in space corners do not bounce, got {bounce:g}")
         return SampledInSpace(body, motions, given, gravity)
-    checks.of_kind("body", body, Body, "a Block, Section, MassPoints or Solid")
     from rocking.prediction.plane import SampledInPlane, whole_settings
 
     return SampledInPlane(body, motions, given, whole_settings(gravity, bounce, bounce_law))

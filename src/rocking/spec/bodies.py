@@ -20,7 +20,7 @@ _OUTSIDE = ("units", "name", "note")
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     """Return the plane body that a table describes."""
     body = any_body_of(table, inputs)
-    if isinstance(body, Solid):
+    if not isinstance(body, Body):
         raise InvalidValueError("describes a body in space; a plane body is needed here")
     return body
 
@@ -51,7 +51,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
 def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
     """Return the body of a table; turned: it moves in space, where a plane body of known depth is one in space."""
     body = any_body_of(table, inputs)
-    if not turned or isinstance(body, Solid):
+    if not turned or not isinstance(body, Body):
         return body
     tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
     inner = (each for each in tables.values() if isinstance(each, dict))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import FEET
-from rocking.dynamics.mechanics import chosen_for
+from rocking.dynamics.mechanics import mechanics_for_all
 from rocking.dynamics.mechanics_base import Mechanics
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
@@ -49,13 +49,13 @@ def restitutions_of(
     mechanics: Mechanics | None = None,
 ) -> dict[str, Any]:
     """Return models, coefficients, pairs by side or laws by their label; with friction a word may stand for none."""
-    moves = mechanics or chosen_for(bodies, None)
+    moves = mechanics or mechanics_for_all(bodies, None)
     with located("restitution"):
         if not moves.in_plane and (table.distribution is not None or table.left is not None):
             raise InvalidValueError("a body in space takes model, models, value or values")
         pairs: list[tuple[str, Any]] = []
         for text in table.models or ([table.model] if table.model else []):
-            if text == COMPLEMENTARITY and moves.may_be_unimposed:
+            if text == COMPLEMENTARITY and moves.slides:
                 pairs.append((text, None))
                 continue
             try:

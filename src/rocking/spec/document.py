@@ -531,20 +531,6 @@ class ResponseTable(JobTable):
         description="without friction: what pure rocking is compared with; 0.5 if not given [-]",
     )
 
-    @model_validator(mode="after")
-    def _bounces(self) -> "ResponseTable":
-        if self.bounce is not None and self.friction is None:
-            raise refused("pure rocking does not leave the ground: bounce goes with friction")
-        if self.bounce_law is not None and self.friction is None:
-            raise refused("pure rocking does not leave the ground: bounce_law goes with friction")
-        if self.friction is None and self.dropped:
-            raise refused(
-                "without friction a body neither slides nor flies: start_height, start_velocity need friction"
-            )
-        if self.friction is not None and "assumed_friction" in self.model_fields_set:
-            raise refused("give friction, which lets the body slide, or assumed_friction, not both")
-        return self
-
     @property
     def dropped(self) -> bool:
         """Whether the body starts above the ground, or in motion."""
@@ -598,7 +584,7 @@ class PredictedBody(JobTable):
         odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
         if odd:
             raise refused(f"settings.{odd[0]} does not go with a prediction, which has one engine")
-        if self.settings.friction is not None and self.predict.friction is not None:
+        if "friction" in self.settings.model_fields_set & self.predict.model_fields_set:
             raise refused("predict.friction and settings.friction say the same: leave one out")
         return self
 

@@ -51,7 +51,7 @@ class PredictionProblem:
         if odd := sorted(set(self.options) - set(options)):
             raise InvalidValueError(f"settings.{odd[0]} does not go with an assessment, whose histories do not bounce")
         predicted, given = options.pop("restitution", None), table.restitutions
-        if given is not None and not isinstance(self.body, Solid):
+        if given is not None:
             given = [
                 next(iter(restitutions_of(RestitutionTable(model=each), 0, [self.body], inputs).values()))
                 if isinstance(each, str) and each != "calibrated"
@@ -80,7 +80,7 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
 
         options["pga"] = IntensityLevel.of("PGA", options["pga"]).value
     model = options.get("restitution")
-    if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY} and not isinstance(body, Solid):
+    if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY}:
         table = RestitutionTable(model=model)
         options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
     return options

@@ -9,7 +9,7 @@ from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, simulate
-from rocking.dynamics.mechanics import chosen, mechanics_of
+from rocking.dynamics.mechanics import mechanics_for, mechanics_of
 from rocking.dynamics.mechanics_base import Mechanics
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.settings import Settings
@@ -21,8 +21,6 @@ from rocking.spec.reading import InputFiles, located
 
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables
-
-_PLANE_ONLY = {"bounce", "bounce_law", "assumed_friction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,12 +116,17 @@ def problem_of(
 ) -> ResponseProblem:
     """Return the problem of tables with its body and motion made; scale, if given, in place of the tables' own."""
     table, start = getattr(tables, "motion", None), tables.response
-    mechanics = chosen(body, start.friction)
-    if not mechanics.in_plane:
-        _refuse(f"{mechanics.title} has an engine of its own", start, _PLANE_ONLY)
-    if not mechanics.is_compared:
-        _refuse(f"{mechanics.title} has one engine, with the full equations", tables.settings, {"linear", "engine"})
+    mechanics = mechanics_for(body, start.friction)
     ground = start.model_dump(include={"friction", "bounce", "bounce_law"}, exclude_none=True)
+    with located("response"):
+        mechanics.refuse_others(ground, {*mechanics.settings.names()})
+        if start.dropped and not mechanics.slides:
+            raise InvalidValueError(
+                "without friction a body neither slides nor flies: start_height, start_velocity need friction"
+            )
+    if not mechanics.is_compared:
+        _refuse(f"{mechanics.title} is not compared with an assumed friction", start, {"assumed_friction"})
+        _refuse(f"{mechanics.title} has one engine, with the full equations", tables.settings, {"linear", "engine"})
     with located("settings"):
         settings, _ = mechanics.split(tables.settings.stated() | ground, mechanics.settings, frozenset())
     restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)

@@ -83,7 +83,7 @@ REFUSED = {
     "friction": ([*SQUAT, SINE, "--friction", "-1"], "--friction must be a number > 0"),
     "friction nan": ([*SQUAT, SINE, "--friction", "nan"], "--friction must be a finite number"),
     "bounce": ([*SQUAT, SINE, "--friction", "1", "--bounce", "1"], "bounce must be in [0, 1)"),
-    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "bounce goes with friction"),
+    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "bounce does not apply to a body without friction"),
     "mesh": ([*SQUAT, SINE, "--set", "body.up=z"], "unknown key 'up'"),
     "space": ([*SQUAT, SINE, "--motion", f"y={SINE}"], "a plane body has one horizontal motion"),
 }

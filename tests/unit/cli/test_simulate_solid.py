@@ -178,9 +178,15 @@ REFUSED = {
     "two motions": (["--motion", f"x={SINE}", "--motion", f"x={SINE}"], "one motion along x, please"),
     "free in degrees": (["--free", "10"], "--free is a share of the slenderness angle, here 14 degrees"),
     "free and a motion": ([SINE, "--free", "0.5"], "give a motion or --free, not both"),
-    "free and bounce": (["--free", "0.5", "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
+    "free and bounce": (
+        ["--free", "0.5", "--friction", "0.4", "--bounce", "0.2"],
+        "bounce does not apply to a body in space with friction",
+    ),
     "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
-    "bounce": ([SINE, "--friction", "0.4", "--bounce", "0.2"], "so it takes no bounce"),
+    "bounce": (
+        [SINE, "--friction", "0.4", "--bounce", "0.2"],
+        "bounce does not apply to a body in space with friction",
+    ),
     "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),
     "engine": ([SINE, "--set", "settings.engine=fast"], "so it takes no engine"),
     "model": ([SINE, "--restitution", "best"], "'best"),

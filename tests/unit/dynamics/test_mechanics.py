@@ -7,7 +7,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import ConstantRestitution, SpatialBody
-from rocking.dynamics.mechanics import MECHANICS, chosen, chosen_for, mechanics_of, study_settings
+from rocking.dynamics.mechanics import MECHANICS, mechanics_for, mechanics_for_all, mechanics_of, study_settings
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.errors import InvalidValueError
 
@@ -26,7 +26,7 @@ def test_one_mechanics_takes_each_body(name: str) -> None:
     body, friction = CASES[name]
     (mechanics,) = [each for each in MECHANICS if each.takes(body, friction)]
     assert mechanics.name == name
-    assert chosen(body, friction) is mechanics is chosen_for([body, body], friction)
+    assert mechanics_for(body, friction) is mechanics is mechanics_for_all([body, body], friction)
     assert mechanics_of(mechanics.settings()) is mechanics_of(mechanics.batch_settings()) is mechanics
 
 
@@ -47,14 +47,14 @@ def test_columns_are_those_of_the_dataset(name: str) -> None:
     pytest.importorskip("xarray")
     body, friction = CASES[name]
     found = rk.simulate_many(body, PULSE, "housner", friction=friction, scale=0.5)
-    assert set(found.data_vars) == set(chosen(body, friction).columns)
+    assert set(found.data_vars) == set(mechanics_for(body, friction).columns)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_options_of_other_mechanics_are_refused(name: str) -> None:
     """Of every option that a mechanics lacks the refusal states the value and the options that there are."""
     body, friction = CASES[name]
-    mechanics = chosen(body, friction)
+    mechanics = mechanics_for(body, friction)
     known = {*mechanics.settings.names(), *mechanics.options}
     values: dict[str, Any] = {
         "linear": True, "order": 8, "longest_step": 0.1, "bounce": 0.1, "bounce_law": "stronge", "stream": 3,

@@ -117,7 +117,7 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
     stated = inputs.model_dump(include={"shape", "amplitude", "seed"}, exclude_defaults=True)
     options = {**_OPTIONS.get(inputs.varied, {}), **stated}
     start = Laboratory(**inputs.model_dump(include=_OF_LABORATORY))
-    if inputs.friction is not None:
+    if inputs.friction:
         start = start.but(friction=Coulomb(inputs.friction))
     found = study(inputs.varied, values, start, **options)
     slender = [each if inputs.varied == "slenderness" else inputs.slenderness for each in values.tolist()]

@@ -19,7 +19,7 @@ class PlaneContact(PlaneMechanics):
     """Rest, sliding, rocking and flight of a plane body."""
 
     name, title, subject = "contact", "sliding and hopping", "a plane body with friction"
-    settings, start_kind, may_be_unimposed = ContactSettings, Start, True
+    settings, start_kind, slides = ContactSettings, Start, True
     batch_options = frozenset({"start", "rotation", "angular_velocity", "duration", "engine", "threads", "progress"})
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:

@@ -22,7 +22,7 @@ class HullRocking(SpatialMechanics):
     """Rocking, sliding, hopping and flight of a body in space."""
 
     name, title, subject = "hull", "a body in space with friction", "a body in space with friction"
-    settings, start_kind, may_be_unimposed = HullSettings, SpatialStart, True
+    settings, start_kind, slides = HullSettings, SpatialStart, True
     options = frozenset({"engine"})
     batch_options = frozenset({"start", "duration", "engine", "threads", "progress"})
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class PlaneRocking(PlaneMechanics):
     """Pure rocking of a plane body."""
 
-    name, title, subject = "plane", "pure rocking", "a body without friction=, which rocks alone"
+    name, title, subject = "plane", "pure rocking", "a body without friction, which rocks alone"
     settings, start_kind, is_compared = PlaneSettings, Start, True
     options = frozenset({"engine", "stream"})
     batch_options = frozenset({"start", "rotation", "angular_velocity", "engine", "threads", "twin", "progress"})

@@ -76,7 +76,7 @@ class Verdict:
     results: tuple[DirectionResult, ...]  # one for each direction, by the model of impact that was asked for
     compared: tuple[tuple[DirectionResult, ...], ...]  # the same by each of the other models
     interval: tuple[float, float]  # interval of the share that overturns in the worse direction [-]
-    friction: float | None = None  # of an object that moves in three dimensions; None for one that rocks in a plane [-]
+    friction: float = math.inf  # of an object that moves in space; infinite for one that rocks in a plane [-]
 
     @property
     def worse(self) -> DirectionResult:
@@ -186,7 +186,7 @@ def assess(
     assessor = _Assessor(
         inventory, hazard, restitution=restitution, thresholds=thresholds, gravity=gravity, friction=friction
     )
-    in_space = filter(assessor.in_space, assessor.inventory.objects)
+    in_space = filter(assessor.moves_in_space, assessor.inventory.objects)
     rulings = [assessor.verdict_in_space(item, threads, progress) for item in in_space]
     for objects in assessor.pieces():
         product, items, refused = assessor.product(objects)
@@ -207,7 +207,7 @@ def assessment_plan(
     objects = assessor.inventory.objects
     shaken, models = {"motion": len(hazard.motions)}, {"restitution": len(assessor.labels)}
     ways = {"direction": len(DIRECTIONS)}
-    if any(map(assessor.in_space, objects)):
+    if any(map(assessor.moves_in_space, objects)):
         every = [assessor.object_histories(item) for item in objects]
         rows = [each for each in every if isinstance(each, ObjectHistories)]
         refused = [each for each in every if isinstance(each, NotAssessed)]
@@ -278,7 +278,7 @@ class _Assessor:
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
         """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
-        objects = [item for item in self.inventory.objects if not self.in_space(item)]
+        objects = [item for item in self.inventory.objects if not self.moves_in_space(item)]
         many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * len(self.labels)))
         for first in range(0, len(objects), many):
             yield objects[first : first + many]
@@ -332,12 +332,12 @@ class _Assessor:
             lifts = [slenderest(item).uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
             yield self._verdict(item, lifts, outcome[:, k], ratio[:, k], lost[:, k])
 
-    def in_space(self, item: InventoryObject) -> bool:
+    def moves_in_space(self, item: InventoryObject) -> bool:
         """Return whether an object moves in three dimensions; a round one, which would roll for minutes, does not."""
         return item.solid is not None or (item.shape != "round" and self._friction(item) is not None)
 
     def _friction(self, item: InventoryObject) -> float | None:
-        return self.friction if item.friction is None else item.friction
+        return next((mu for mu in (item.friction, self.friction) if mu is not None), None)
 
     def verdict_in_space(
         self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
@@ -357,7 +357,7 @@ class _Assessor:
 
     def object_histories(self, item: InventoryObject) -> ObjectHistories | NotAssessed:
         """Return the histories of one object, whether it rocks in a plane or moves in three dimensions."""
-        if self.in_space(item):
+        if self.moves_in_space(item):
             try:
                 return self._histories_in_space(item)
             except RockingError as error:
@@ -409,7 +409,7 @@ class _Assessor:
 
     def _verdict(
         self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
-        friction: float | None = None,
+        friction: float = math.inf,
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
             return NotAssessed.of(item, "no motion could be computed in one of its directions")
@@ -423,7 +423,7 @@ class _Assessor:
         )
         worse = max(of_model, key=lambda each: each.severity)
         interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
-        if friction is None and self._friction(item) is not None:
+        if not self.moves_in_space(item) and self._friction(item) is not None:
             item = replace(item, remarks=(*item.remarks, "its friction was not used: a round object rocks in a plane"))
         return Verdict(item, of_model, tuple(of_others), interval, friction)
 
@@ -469,7 +469,7 @@ class _Assessor:
             if each.light is Light.GREEN:
                 continue
             share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
-            if self.in_space(each.item):
+            if self.moves_in_space(each.item):
                 found.append(planner.entry_in_space(self._moving(each.item, threads), self.spatial[0], share, weight))
             else:
                 lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)

@@ -126,7 +126,7 @@ class InventoryObject:
             object.__setattr__(self, "centre_of_mass_height", centre)
         if self.mass is not None:
             object.__setattr__(self, "mass", self._checked_mass(self.mass))
-        if self.friction is not None:
+        if self.friction:
             checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
         for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
             checks.one_of(name, getattr(self, name), words)
@@ -192,7 +192,7 @@ class InventoryObject:
         body = Block(width=size, height=self.height, depth=across, mass=self.mass, centre=centre)
         return body if base == size else body.with_feet(0.5 * (size - base), 0.5 * (size + base))
 
-    def in_space(self) -> Solid:
+    def as_solid(self) -> Solid:
         """Return the body in three dimensions, along x its width and along y its depth.
 
         Returns

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
-from rocking.bodies import Block, Section, Solid
+from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
 from rocking.studies.inventory.cells import CellMeasure, is_missing
@@ -241,7 +241,7 @@ def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[s
     body = read_body(find(name), units=units)
     if isinstance(body, (Block, Section)):
         body = Solid.from_section(body)
-    if not isinstance(body, Solid):
+    if isinstance(body, Body):
         raise InvalidValueError(f"{name}: mass points have no shape to stand on in three dimensions")
     size = body.box[1] - body.box[0]
     return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}

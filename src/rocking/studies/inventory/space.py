@@ -26,11 +26,11 @@ class SpatialObject:
         threads: int | None,
     ) -> None:  # fmt: skip
         self.item, self.hazard, self.gravity, self.threads = item, hazard, gravity, threads
-        self.bodies = [each.in_space() for each in draws.bodies(item)]
+        self.bodies = [each.as_solid() for each in draws.bodies(item)]
         self.number = draws.number(len(self.bodies))
         self.settings = study_settings(self.bodies[0], {"friction": friction}, gravity)
         self.friction = self.settings.friction
-        self._first = slenderest(item).in_space()  # of approximate sizes, those that lift first
+        self._first = slenderest(item).as_solid()  # of approximate sizes, those that lift first
 
     def results(self, restitution: Any, which: IntArray, scale: float) -> tuple[np.ndarray, FloatArray]:
         """Return outcomes, and peak rotations over the slenderness angle, of some motions and both directions."""

@@ -38,7 +38,7 @@ def plan_header(say: Language) -> list[str]:
 
 def sliding(assessment: Assessment) -> str:
     """Return whether objects slide, as a sentence or two."""
-    slides = [(each.friction or NEVER_SLIDES) < NEVER_SLIDES for each in assessment.verdicts]
+    slides = [each.friction < NEVER_SLIDES for each in assessment.verdicts]
     names = ([] if slides and all(slides) else ["sliding"]) + (["slides"] if any(slides) else [])
     return " ".join(words_of(assessment)(f"limits.{name}") for name in names)
 
@@ -217,7 +217,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "worse_direction": verdict.worse.direction,
         "uplift_acceleration_m_s2": verdict.uplift_acceleration,
         "overturned_interval": list(verdict.interval),
-        "friction": verdict.friction,
+        "friction": verdict.friction if math.isfinite(verdict.friction) else None,
         "directions": [_direction(each) for each in verdict.results],
         "directions_by_comparison": {
             name: [_direction(each) for each in results]
@@ -309,7 +309,7 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
     say, light = words_of(assessment), verdict.light
     if light is Light.GREEN:
         return say("advice.green")
-    how = say("advice.secure") if verdict.friction is not None else _base(verdict, assessment)
+    how = say("advice.secure") if math.isfinite(verdict.friction) else _base(verdict, assessment)
     if verdict.worse.overturned == 0 and verdict.worse.slid:
         return say("advice.slides")
     return f"{how} {say(f'advice.{light.word}')}"

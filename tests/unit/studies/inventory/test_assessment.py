@@ -323,7 +323,7 @@ def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
     found = assess([round_one, COLUMN], few, friction=0.5)
     by_name = {each.item.name: each for each in found.verdicts}
     assert by_name["drum"].results == alone.results
-    assert by_name["drum"].friction is None
+    assert by_name["drum"].friction == math.inf
     assert by_name["drum"].item.remarks == ("its friction was not used: a round object rocks in a plane",)
     assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
 

@@ -207,7 +207,7 @@ def test_an_ellipse_is_an_ellipse():
             one.body(way).side("left").moment_of_inertia / one.body(way).mass
         )
     with pytest.raises(InvalidValueError, match="its shape above a smaller base is not known"):
-        one.in_space()
+        one.as_solid()
 
 
 @pytest.mark.parametrize("word", ["konisch", "L-förmig", "bauchig"])

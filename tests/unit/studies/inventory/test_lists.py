@@ -312,7 +312,7 @@ def test_a_round_object_is_a_cylinder(base, centre):
     # negative control: the box of the same size is another body
     block = InventoryObject(name="box", width=0.4, depth=0.4, height=1.2, centre_of_mass_height=centre, mass=80.0)
     assert block.body("width").side("right").moment_of_inertia > 1.001 * inertia or base < 0.4
-    solid = urn.in_space()
+    solid = urn.as_solid()
     assert solid.centre[2] == pytest.approx(middle, rel=1e-12)
     assert solid.base.radius == pytest.approx(0.5 * base, rel=1e-12)
 
