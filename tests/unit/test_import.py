@@ -6,6 +6,7 @@ import sys
 import time
 
 import pytest
+from benchmarks import start
 from waiting import allowed
 
 import rocking as rk
@@ -50,6 +51,23 @@ def test_import_is_quick():
     spent = seconds_of("import rocking") - seconds_of("pass")
     assert spent < (limit := allowed(0.06))
     assert seconds_of(f"import time; time.sleep({1.5 * limit})") - seconds_of("pass") > limit
+
+
+@pytest.mark.speed
+def test_the_list_of_commands_is_quick():
+    """`rocking --help` takes less CPU time than the goal; a command's own help, with frames, takes more than that."""
+    assert start.scaled("-m", "rocking", "--help") < start.COMMANDS["--help"][1]
+    assert start.scaled("-m", "rocking", "cor", "--help") > start.COMMANDS["--help"][1]
+
+
+def test_the_list_of_commands_loads_nothing_heavy():
+    """The list of commands needs neither numpy nor frames around text; the help of a command does."""
+    told = "import atexit; atexit.register(lambda: print(*{name.partition('.')[0] for name in sys.modules})); "
+    listed, own = (
+        loaded_by(f"{told}from rocking.cli import main; main({words})") for words in (["--help"], ["cor", "-h"])
+    )
+    assert not listed & {*HEAVY, "numpy"} - {"typer"}
+    assert own >= {"numpy", "rich", "pydantic"}
 
 
 def test_every_public_name_is_there():
