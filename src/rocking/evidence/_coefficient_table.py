@@ -1,5 +1,6 @@
 """One body under every model: coefficient with its interval for one more measurement, and what it implies."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -50,23 +51,35 @@ def interval_for(
     if isinstance(model, Fixed):
         floor, slope = (calibrate_hierarchy().summary[name]["mean"] for name in ("s", "gamma"))
     else:
-        floor, slope = _misfit(model.of_slenderness(data.slenderness).tobytes(), data)
+        floor, slope = _misfit(model, data)
     sd = scatter(r, floor, slope)
     reach = NORMAL_95 * sd
     top = np.maximum(bound, r)
     return PredictedCoefficient(r, np.clip(r - reach, 0.0, None), np.minimum(r + reach, top.reshape(())), sd)
 
 
-@lru_cache(maxsize=1024)
-def _misfit(predictions: bytes, data: DataSet) -> tuple[float, float]:
-    predicted = np.frombuffer(predictions)
+def _misfit(model: RestitutionModel, data: DataSet) -> tuple[float, float]:
+    """Return the scatter of the measurements around a model, from what is kept of the models as they are."""
+    first, *misfit = _kept_misfits(data).get(model.label, (math.nan,))
+    # one prediction tells another model of the same label
+    if abs(first - model.of_slenderness(data.slenderness[:1])[0]) < 1e-12:
+        return misfit[0], misfit[1]
+    return _fitted(model.of_slenderness(data.slenderness).tobytes(), data)
+
+
+@lru_cache(maxsize=8)
+def _kept_misfits(data: DataSet) -> dict[str, list[float]]:
+    """Return the first prediction and the scatter that are kept of models, by their labels."""
     stored = kept(KEPT)
-    if stored["inputs"] == fingerprint(data):
-        same = np.abs(stored["predictions"] - predicted).max(axis=1) < 1e-12
-        if same.any():
-            floor, slope = stored["misfits"][same][0].tolist()
-            return floor, slope
-    floor, slope, _ = fit_scatter(data, predicted)
+    if stored["inputs"] != fingerprint(data):
+        return {}
+    rows = np.column_stack([stored["predictions"][:, 0], stored["misfits"]]).tolist()
+    return dict(zip(stored["labels"].tolist(), rows, strict=True))
+
+
+@lru_cache(maxsize=1024)
+def _fitted(predictions: bytes, data: DataSet) -> tuple[float, float]:
+    floor, slope, _ = fit_scatter(data, np.frombuffer(predictions))
     return floor, slope
 
 

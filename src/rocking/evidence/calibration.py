@@ -208,6 +208,7 @@ def keep(path: Path) -> None:
     arrays: dict[str, Any] = {
         "inputs": fingerprint(data),
         **arrays_of(calibration),
+        "labels": [each.label for each in named],
         "predictions": predictions,
         "misfits": [fit_scatter(data, each)[:2] for each in predictions],
     }

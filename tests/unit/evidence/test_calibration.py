@@ -277,14 +277,14 @@ def test_other_measurements_are_calibrated_anew(monkeypatch):
     whole, before = calibrate().summary, interval_for(Ked(), block)
     for room in (calibration, interval_module):
         monkeypatch.setattr(room, "all_measurements", lambda: fewer)
-    for cache in (calibrate, interval_module._misfit):
+    for cache in (calibrate, interval_module._kept_misfits, interval_module._fitted):
         cache.cache_clear()
     try:
         assert calibrate().summary["k"] == pytest.approx(calibrate_on(fewer).summary["k"])
         assert calibrate().summary["k"]["mean"] != pytest.approx(whole["k"]["mean"], rel=1e-6)
         assert interval_for(Ked(), block).low != pytest.approx(float(before.low), rel=1e-6)
     finally:
-        for cache in (calibrate, interval_module._misfit):
+        for cache in (calibrate, interval_module._kept_misfits, interval_module._fitted):
             cache.cache_clear()
 
 
