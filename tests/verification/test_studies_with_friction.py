@@ -172,7 +172,7 @@ def test_the_name_of_histories_knows_the_friction():
         ({"friction": 2e6}, "friction must be in"),
         ({"friction": 0.3, "bounce": 1.0}, "bounce must be"),
         ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
-        ({"bounce": 0.3}, "bounce does not apply to a body without friction="),
+        ({"bounce": 0.3}, "bounce does not apply to a body without friction,"),
         ({"friction": 0.3, "linear": True}, "linear does not apply to a plane body with friction"),
         ({"friction": 0.3, "order": 6}, "order does not apply to a plane body with friction"),
         ({"friction": 0.3, "engine": "reference"}, "studies with friction run on the compiled engine"),

@@ -46,6 +46,13 @@ class HistoryOptions(IntegrationOptions, total=False):
     stream: int
 
 
+class MovedOptions(HistoryOptions, total=False):
+    """Options of one history under a motion."""
+
+    scale: float
+    rotation: float
+
+
 def _shown(function: Called) -> Called:
     """Show the options by name and default in the signature, for help, documentation and completion."""
     defaults: dict[str, Any] = {name: values[0] for name, values in UNCHANGED.items()}
@@ -53,60 +60,33 @@ def _shown(function: Called) -> Called:
     signature = inspect.signature(function)
     *known, _ = signature.parameters.values()
     keyword = inspect.Parameter.KEYWORD_ONLY
-    options = [inspect.Parameter(name, keyword, default=defaults[name]) for name in HistoryOptions.__annotations__]
+    options = [inspect.Parameter(name, keyword, default=defaults[name]) for name in MovedOptions.__annotations__]
     function.__signature__ = signature.replace(parameters=[*known, *options])  # type: ignore[attr-defined]
     return function
 
 
 @overload
 def simulate(
-    body: Body,
-    motion: AnyMotion,
-    restitution: Any = "ked",
-    *,
-    friction: None = None,
-    scale: float = 1.0,
-    rotation: float = 0.0,
-    **options: Unpack[HistoryOptions],
-) -> Response: ...
+    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: None = None,
+    **options: Unpack[MovedOptions],
+) -> Response: ...  # fmt: skip
 @overload
 def simulate(
-    body: Body,
-    motion: AnyMotion,
-    restitution: Any = "ked",
-    *,
-    friction: float,
-    scale: float = 1.0,
-    rotation: float = 0.0,
-    **options: Unpack[HistoryOptions],
-) -> "ContactResponse": ...
+    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: float,
+    **options: Unpack[MovedOptions],
+) -> "ContactResponse": ...  # fmt: skip
 @overload
 def simulate(
-    body: "BodyInSpace",
-    motion: AnyMotion,
-    restitution: Any = "ked",
-    *,
-    friction: None = None,
-    scale: float = 1.0,
-    rotation: float = 0.0,
-    **options: Unpack[HistoryOptions],
-) -> "SpatialResponse": ...
+    body: "BodyInSpace", motion: AnyMotion, restitution: Any = "ked", *, friction: None = None,
+    **options: Unpack[MovedOptions],
+) -> "SpatialResponse": ...  # fmt: skip
 @overload
 def simulate(
-    body: "BodyInSpace",
-    motion: AnyMotion,
-    restitution: Any = "ked",
-    *,
-    friction: float,
-    scale: float = 1.0,
-    rotation: float = 0.0,
-    **options: Unpack[HistoryOptions],
-) -> "HullResponse": ...
+    body: "BodyInSpace", motion: AnyMotion, restitution: Any = "ked", *, friction: float,
+    **options: Unpack[MovedOptions],
+) -> "HullResponse": ...  # fmt: skip
 @_shown
-def simulate(
-    body: Any, motion: Any, restitution: Any = "ked", *, friction: float | None = None, scale: float = 1.0,
-    rotation: float = 0.0, **options: Any,
-) -> Any:  # fmt: skip
+def simulate(body: Any, motion: Any, restitution: Any = "ked", *, friction: float | None = None, **options: Any) -> Any:
     """Return how a body moves under a ground motion.
 
     A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
@@ -136,10 +116,6 @@ def simulate(
         Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
         given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
         then does.
-    scale : float
-        Factor on all components of the motion [-].
-    rotation : float
-        theta at the start; how far a body in space leans towards x [rad].
     bounce : float
         Coefficient of normal restitution of a plane body, in [0, 1), with friction [-].
     bounce_law : {"newton", "poisson", "stronge"}
@@ -168,6 +144,10 @@ def simulate(
         leans less: `outcome` needs it. In space with friction until it rests.
     stream : int
         Number of the history, for random coefficients.
+    scale : float
+        Factor on all components of the motion [-].
+    rotation : float
+        theta at the start; how far a body in space leans towards x [rad].
 
     Returns
     -------
@@ -199,48 +179,29 @@ def simulate(
     >>> rk.simulate(box, {"x": pulse, "y": pulse.scaled(0.4)}, "housner", friction=0.2).outcome.name
     'SLID'
     """
-    return _follow(
-        body,
-        lambda mechanics: mechanics.motion(motion),
-        restitution,
-        rotation,
-        scale=scale,
-        friction=friction,
-        **options,
-    )
+    return _follow(body, lambda mechanics: mechanics.motion(motion), restitution, friction=friction, **options)
 
 
 @overload
 def free_rocking(
-    body: Body,
-    rotation: float = 0.0,
-    restitution: Any = "ked",
-    *,
-    friction: None = None,
+    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
     **options: Unpack[HistoryOptions],
-) -> Response: ...
+) -> Response: ...  # fmt: skip
 @overload
 def free_rocking(
-    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: float, **options: Unpack[HistoryOptions]
-) -> "ContactResponse": ...
+    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: float,
+    **options: Unpack[HistoryOptions],
+) -> "ContactResponse": ...  # fmt: skip
 @overload
 def free_rocking(
-    body: "BodyInSpace",
-    rotation: float = 0.0,
-    restitution: Any = "ked",
-    *,
-    friction: None = None,
+    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
     **options: Unpack[HistoryOptions],
-) -> "SpatialResponse": ...
+) -> "SpatialResponse": ...  # fmt: skip
 @overload
 def free_rocking(
-    body: "BodyInSpace",
-    rotation: float = 0.0,
-    restitution: Any = "ked",
-    *,
-    friction: float,
+    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = "ked", *, friction: float,
     **options: Unpack[HistoryOptions],
-) -> "HullResponse": ...
+) -> "HullResponse": ...  # fmt: skip
 def free_rocking(
     body: Any, rotation: float = 0.0, restitution: Any = "ked", *, friction: float | None = None, **options: Any
 ) -> Any:
@@ -283,12 +244,14 @@ def free_rocking(
     >>> round(float((first["energy_after"] / first["energy_before"]) ** 0.5) / 59.0 * 71.0, 12)
     1.0
     """
-    return _follow(body, lambda mechanics: mechanics.at_rest, restitution, rotation, friction=friction, **options)
+    return _follow(
+        body, lambda mechanics: mechanics.at_rest, restitution, friction=friction, rotation=rotation, **options
+    )
 
 
 def _follow(
-    body: Any, motion: Callable[[Mechanics], Any], restitution: Any, rotation: float, *, scale: float = 1.0,
-    start: Any = None, angular_velocity: Any = 0.0, duration: float | None = None, **options: Any,
+    body: Any, motion: Callable[[Mechanics], Any], restitution: Any, *, scale: float = 1.0, start: Any = None,
+    rotation: float = 0.0, angular_velocity: Any = 0.0, duration: float | None = None, **options: Any,
 ) -> Any:  # fmt: skip
     mechanics = mechanics_for(body, options["friction"])
     begun = mechanics.begun(start, rotation, angular_velocity)

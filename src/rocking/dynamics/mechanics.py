@@ -14,7 +14,6 @@ from rocking.dynamics.mechanics_base import Mechanics, in_space
 from rocking.dynamics.plane.mechanics import PlaneRocking
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.mechanics import SpaceRocking
-from rocking.errors import InvalidValueError
 
 MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())
 
@@ -38,8 +37,5 @@ def mechanics_of(settings: Settings) -> Mechanics:
 
 def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conventions.g) -> Settings:
     """Return the settings of a study of a body, in space or not; options: fields of the settings, by name."""
-    known = {name for each in MECHANICS for name in each.settings.names()} - {"gravity"}
-    if unknown := sorted(set(options) - known):
-        raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
     mechanics = mechanics_for(body, options.get("friction"), study=True)
     return mechanics.split({**options, "gravity": gravity}, mechanics.settings, frozenset())[0]

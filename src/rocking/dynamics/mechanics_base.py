@@ -28,8 +28,8 @@ Sample = tuple[list[Any], ImpactLaw, Settings]
 UNCHANGED: dict[str, tuple[Any, ...]] = {
     "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "linear": (False,), "rest_speed": (None,),
     "longest_step": (None,), "order": (None,), "tolerance": (None,), "engine": ("auto", "reference"), "stream": (0,),
-    "start": (None,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,), "threads": (None,),
-    "twin": (False,), "progress": (None,),
+    "start": (None,), "scale": (1.0,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,),
+    "threads": (None,), "twin": (False,), "progress": (None,),
 }  # fmt: skip
 """Values of options that change nothing, the default first: also the mechanics that lack an option take them."""
 
@@ -90,8 +90,8 @@ class Mechanics(ABC):
     subject: ClassVar[str]  # bodies that move like this, in messages
     settings: ClassVar[type[Settings]]
     options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, beside settings, start and duration
-    batch_options: ClassVar[frozenset[str]]  # of `follow_many`, beside settings
-    start_kind: ClassVar[type]  # what states how a body starts
+    # of `follow_many`, beside settings
+    batch_options: ClassVar[frozenset[str]] = frozenset({"start", "duration", "engine", "threads", "progress"})
     at_rest: ClassVar[Any] = None  # ground at rest as a motion of `follow`
 
     @property
@@ -108,8 +108,12 @@ class Mechanics(ABC):
         """Return what a user gives as the motion in the form that `follow` takes, or refuse it."""
 
     @abstractmethod
+    def start_class(self) -> type:
+        """Return the class that states how a body starts."""
+
     def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
         """Return how a body starts, from the rotation [rad] and the angular velocity [rad/s]."""
+        return self.start_class()(rotation, angular_velocity)
 
     @abstractmethod
     def follow(
@@ -161,8 +165,9 @@ class Mechanics(ABC):
             return self.start_of(rotation, angular_velocity)
         if np.any(rotation) or np.any(angular_velocity):
             raise InvalidValueError("give either start or rotation and angular_velocity, got both")
-        if not isinstance(start, self.start_kind):
-            raise InvalidValueError(f"start must be a {self.start_kind.__name__}(...), got {start!r:.60}")
+        kind = self.start_class()
+        if not isinstance(start, kind):
+            raise InvalidValueError(f"start must be a {kind.__name__}(...), got {start!r:.60}")
         return start
 
     def split(
@@ -178,9 +183,7 @@ class Mechanics(ABC):
     def refuse_others(self, options: Mapping[str, Any], known: set[str]) -> None:
         """Refuse options that these mechanics do not have, unless they change nothing."""
         for name, value in options.items():
-            if name in known:
-                continue
-            if np.ndim(value) or not any(value is usual or value == usual for usual in _usual(name)):
+            if name not in known and not _changes_nothing(name, value):
                 raise InvalidValueError(
                     f"{name} does not apply to {self.subject}, got {value!r:.60}; options: {', '.join(sorted(known))}"
                 )
@@ -192,6 +195,12 @@ class PlaneMechanics(Mechanics):
     def motion(self, motion: Any) -> Any:
         """Return the motion along x, and z as its vertical part."""
         return in_plane(motion)
+
+    def start_class(self) -> type:
+        """Return the class of starts in a plane."""
+        from rocking.dynamics.contact.base import Start
+
+        return Start
 
 
 class SpatialMechanics(Mechanics):
@@ -207,7 +216,19 @@ class SpatialMechanics(Mechanics):
         """Return how a body that leans towards x starts."""
         if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
-        return self.start_kind(rotation, angular_velocity=angular_velocity if np.ndim(angular_velocity) else (0.0,) * 3)
+        spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
+        return self.start_class()(rotation, angular_velocity=spin)
+
+    def start_class(self) -> type:
+        """Return the class of starts in space."""
+        from rocking.dynamics.space.attitude import SpatialStart
+
+        return SpatialStart
+
+
+def _changes_nothing(name: str, value: Any) -> bool:
+    usual = _usual(name)  # 0 is not False
+    return any(value is each for each in usual) or (not np.ndim(value) and name != "linear" and value in usual)
 
 
 def _usual(name: str) -> tuple[Any, ...]:

@@ -67,6 +67,12 @@ class Settings:
     ------
     InvalidValueError
         If a value is outside its range.
+
+    Examples
+    --------
+    >>> from rocking.dynamics import PlaneSettings, SpaceSettings
+    >>> PlaneSettings(gravity=9.81).rest_speed, SpaceSettings().rest_speed
+    (0.001, 1e-05)
     """
 
     gravity: float = checked(conventions.g, _checked_gravity)

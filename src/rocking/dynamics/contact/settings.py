@@ -30,16 +30,6 @@ class ContactSettings(Settings):
         Coefficient of normal restitution, in [0, 1) [-].
     bounce_law : {"newton", "poisson", "stronge"}
         What `bounce` is the ratio of, as for `simulate`.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> ContactSettings(friction=0.4).rest_speed
-    1e-07
     """
 
     rest_speed: float = ranged(1e-7, 1e-12, 0.1, hint="bounces accumulate: zero would never end")

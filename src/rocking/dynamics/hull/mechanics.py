@@ -1,7 +1,7 @@
 """Bodies in space on the vertices of their convex hull, which rock, slide, hop, fly and fall into other poses."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -9,57 +9,44 @@ from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.mechanics_base import Combinations, Sample, SpatialMechanics, in_space
 from rocking.dynamics.parameters import UNIMPOSED, RockingParameters, RockingSide
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space.attitude import SpatialStart
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from rocking.dynamics.hull.batch import RowsOnHull
-    from rocking.dynamics.hull.response import HullResponse
 
 
 class HullRocking(SpatialMechanics):
     """Rocking, sliding, hopping and flight of a body in space."""
 
     name, title, subject = "hull", "a body in space with friction", "a body in space with friction"
-    settings, start_kind, slides = HullSettings, SpatialStart, True
+    settings, slides = HullSettings, True
     options = frozenset({"engine"})
-    batch_options = frozenset({"start", "duration", "engine", "threads", "progress"})
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        """Return True of a body in space with friction; of a study, which needs none: it then never slides."""
+        # a study that states no friction lets it hop and fall into other poses, but not slide
         return (study or friction is not None) and in_space(body)
 
     def follow(
-        self, body: Any, motion: Any, restitution: Any, settings: HullSettings, *, start: SpatialStart, **options: Any
-    ) -> "HullResponse":
-        """Return one history."""
+        self, body: Any, motion: Any, restitution: Any, settings: HullSettings, *, start: Any, **options: Any
+    ) -> Any:
         from rocking.dynamics.hull.response import response_on_hull
 
         return response_on_hull(body, motion, restitution, settings, start=start, **options)
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the variables that `follow_many` fills."""
         from rocking.dynamics.hull.batch import RENAMED
         from rocking.dynamics.hull.histories import COLUMNS
 
         return (*(RENAMED.get(name, name) for name in COLUMNS), "overturned")
 
-    def follow_many(self, combinations: Combinations, settings: HullSettings) -> "xr.Dataset":
-        """Return every combination."""
+    def follow_many(self, combinations: Combinations, settings: HullSettings) -> Any:
         from rocking.dynamics.hull.batch import many_on_hulls
 
         return many_on_hulls(combinations, settings).to_xarray()
 
-    def rows(self, motions: Sequence[Any], law: Any, settings: HullSettings, engine: str) -> "RowsOnHull":
-        """Return what computes the rows of a study."""
+    def rows(self, motions: Sequence[Any], law: Any, settings: HullSettings, engine: str) -> Any:
         from rocking.dynamics.hull.batch import RowsOnHull
 
         return RowsOnHull(motions, law, settings, engine)
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
-        """Return a body with its restitution; its sides are those of the least slenderness angle of its base."""
         from rocking.dynamics.hull.restitution import RestitutionOnHull
 
         law = RestitutionOnHull.of(body, restitution, settings.gravity)
@@ -71,11 +58,9 @@ class HullRocking(SpatialMechanics):
         """Take motions of one component and of several."""
 
     def engine_of_study(self, *, fast: bool) -> str:
-        """Return which engine computes the rows of a study, in words."""
         return "fast (Dormand-Prince with complementarity, compiled)"
 
     def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
-        """Return histories of records along x."""
         from rocking.bodies.solid import Solid, box
         from rocking.dynamics.hull.restitution import RestitutionOnHull
 
@@ -83,5 +68,4 @@ class HullRocking(SpatialMechanics):
         return [(flat, law, HullSettings(gravity=9.8125, friction=0.5))]
 
     def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:
-        """Return rows that start upright."""
         return values | {"rotation": np.zeros_like(values["rotation"])}

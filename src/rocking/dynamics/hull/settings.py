@@ -20,16 +20,6 @@ class HullSettings(Settings):
         Bound on the local error of a step of order 5, over size, radian and their rates [-].
     friction : float
         Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for a body that never slides [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> HullSettings(friction=0.4).tolerance
-    1e-12
     """
 
     most_events: int = counted(100_000, 1, 10_000_000)

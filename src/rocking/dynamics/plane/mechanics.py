@@ -1,49 +1,40 @@
 """Pure rocking: a plane body turns about its feet and neither slides nor flies."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rocking import errors
-from rocking.dynamics.contact.base import Start, rocking_start
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.mechanics_base import Combinations, PlaneMechanics, Sample, in_space
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import PureRockingWarning
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from rocking.dynamics.plane.batch import RowsInPlane
-    from rocking.dynamics.response import Response
 
 
 class PlaneRocking(PlaneMechanics):
     """Pure rocking of a plane body."""
 
     name, title, subject = "plane", "pure rocking", "a body without friction, which rocks alone"
-    settings, start_kind, is_compared = PlaneSettings, Start, True
+    settings, is_compared = PlaneSettings, True
     options = frozenset({"engine", "stream"})
     batch_options = frozenset({"start", "rotation", "angular_velocity", "engine", "threads", "twin", "progress"})
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        """Return True of what is no body in space, without friction."""
         return friction is None and not in_space(body)
 
-    def start_of(self, rotation: Any, angular_velocity: Any) -> tuple[Any, Any]:
-        """Return both as they are: their limits depend on the body."""
-        return rotation, angular_velocity
+    def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
+        return rotation, angular_velocity  # their limits depend on the body
 
-    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> tuple[Any, Any]:
-        """Return rotation and angular velocity; a start that lifts or pushes the body along is refused."""
+    def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
+        from rocking.dynamics.contact.base import rocking_start
+
         begun = super().begun(start, rotation, angular_velocity)
-        return rocking_start(begun) if isinstance(begun, Start) else begun
+        return begun if start is None else rocking_start(begun)
 
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: PlaneSettings, *, start: Any, **options: Any
-    ) -> "Response":
-        """Return one history, and say where the ground would have to pull."""
+    ) -> Any:
         from rocking.dynamics.response import response_of_rocking
 
         response = response_of_rocking(body, motion, restitution, settings, start=start, **options)
@@ -53,35 +44,29 @@ class PlaneRocking(PlaneMechanics):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the variables that `follow_many` fills; with a twin, two more."""
         from rocking.dynamics.plane.fast_engine import RESULTS
 
         return (*RESULTS, "overturned", "lost_contact")
 
-    def follow_many(self, combinations: Combinations, settings: PlaneSettings) -> "xr.Dataset":
-        """Return every combination."""
+    def follow_many(self, combinations: Combinations, settings: PlaneSettings) -> Any:
         from rocking.dynamics.plane.many import rocking_alone
 
         return rocking_alone(combinations, settings)
 
-    def rows(self, motions: Sequence[Any], law: ImpactLaw, settings: PlaneSettings, engine: str) -> "RowsInPlane":
-        """Return what computes the rows of a study."""
+    def rows(self, motions: Sequence[Any], law: ImpactLaw, settings: PlaneSettings, engine: str) -> Any:
         from rocking.dynamics.plane.batch import RowsInPlane
 
         return RowsInPlane(motions, law, settings, engine)
 
     def engine_of_study(self, *, fast: bool) -> str:
-        """Return which engine computes the rows of a study, in words."""
         return f"fast ({self.instruction_set()})" if fast else "reference"
 
     def instruction_set(self) -> str:
-        """Return the instruction set of which the last digits are."""
         from rocking.dynamics.plane import fast_engine
 
         return fast_engine.instruction_set()
 
     def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
-        """Return histories of pulses and records, all laws, both kinds of equations, two orders."""
         quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
         by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
         return [

@@ -46,16 +46,6 @@ class PlaneSettings(Settings):
         refused. The reference engine chooses its own.
     tolerance : float
         Bound on the last two terms of a Taylor step over the angle alpha [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> PlaneSettings(gravity=9.81).rest_speed
-    0.001
     """
 
     linear: bool = checked(False, _checked_linear)

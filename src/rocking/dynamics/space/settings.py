@@ -22,16 +22,6 @@ class SpaceSettings(Settings):
         Highest order of the Taylor series, from 2 to 40.
     tolerance : float
         Bound on the last two terms of a Taylor step, for quaternions of unit length [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> SpaceSettings(order=20).rest_speed
-    1e-05
     """
 
     most_events: int = counted(100_000, 1, 10_000_000)
@@ -53,16 +43,6 @@ class SpaceBatchSettings(Settings):
         Longest Taylor step as p + ``|angular velocity|`` times time [-].
     tolerance : float
         As for one history, `SpaceSettings` [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> SpaceBatchSettings().tolerance
-    1e-13
     """
 
     most_events: int = counted(100_000, 1, 10_000_000)
