@@ -21,6 +21,7 @@ FLOORS = (
     ("conventions", "errors", "lazy", "messages", "version"),
     ("language", "outcome", "checks", "plausibility", "portable"),
     ("quantities",),
+    ("answers",),
     ("tables", "statistics"),
     ("exported",),
     ("bodies", "motions"),

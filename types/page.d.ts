@@ -83,7 +83,7 @@ type Box = { left: number; right: number; top: number; bottom: number };
 type Viewport = { scale: number; x: (length: number) => number; y: (length: number) => number; back: (x: number, y: number) => Point };
 type Axis = ReturnType<typeof import("/drawing/axis.js").axisOf>;
 /** What a drawing of a body needs of its facts. */
-type Drawn = Pick<Server.DescribedBody, "centre_m" | "feet_m" | "outline" | "sides"> & { points?: number[][]; ground?: number };
+type Drawn = Pick<Server.DescribedBody, "centre" | "foot_positions" | "outline" | "sides"> & { points?: number[][]; masses?: number[]; ground?: number };
 
 // The scene: scene/stage.js. Lengths are in metres, the middle between the feet is at x = 0.
 type Camera = { width: number; height: number; ratio: number; scale: number; middle: number; floor: number };

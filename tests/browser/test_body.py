@@ -322,7 +322,7 @@ def test_a_rounded_zero_is_a_zero(page: Any) -> None:
 
     def answered(route: Any, x: float) -> None:
         answer = route.fetch()
-        route.fulfill(response=answer, json={**answer.json(), "centre_m": [x, 1.0]})
+        route.fulfill(response=answer, json={**answer.json(), "centre": [x, 1.0]})
 
     page.route("**/api/body", lambda route: answered(route, -1.67e-18))
     page.get_by_label("Height").fill("2.1")

@@ -294,7 +294,7 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     outcome = asked(section)
     question = served.api("questions", method="GET")["questions"][0]
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
-    first = answer["minimum_m_s2"]
+    first = answer["minimum_acceleration"]
     expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{first / 9.80665:.4g} g, {first / 3.2:.4g} times")
     rows = outcome.get_by_role("table", name="Crossings").locator("tbody tr")
     assert rows.count() == min(len(answer["crossings"]), 20)

@@ -61,7 +61,7 @@ def test_a_scan_stands_and_settles(
     question = served.api("questions", method="GET")["questions"][0]
     again = served.api(f"questions/{question['id']}", method="GET")["answer"]
     assert again["stands_in"] == 0
-    assert again["body"]["centre_height_m"] == pytest.approx(answer["stable"][0]["height_m"], rel=1e-6)
+    assert again["body"]["centre_height"] == pytest.approx(answer["stable"][0]["centre_height"], rel=1e-6)
     # a browser that draws nothing in three dimensions says so, and tells the rest
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.reload()
@@ -138,7 +138,7 @@ def test_the_body_of_the_project_is_asked_in_space(
         expect(outcome.get_by_test_id("verdict")).to_contain_text(verdict)
         question = served.api("questions", method="GET")["questions"][0]
         answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
-        assert answer["body"]["size_m"] == pytest.approx([0.5, 0.4, 2.0])
+        assert answer["body"]["size"] == pytest.approx([0.5, 0.4, 2.0])
         shot(page, f"space-own-{what}")
     expect(page.get_by_test_id("project-saved")).to_have_text("saved")
     other = open_page(view="space").locator("#view-space").get_by_label("Body", exact=True)

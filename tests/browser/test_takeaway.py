@@ -107,7 +107,7 @@ def test_the_toml_on_the_command_line(takeaway: Any, tmp_path: Path, served: Any
     )
     told = json.loads(done.stdout)
     answer = served.api("response", json=INPUTS)["answers"][0]
-    assert told["peak_rotation_rad"] == answer["peak_rotation_rad"]
+    assert told["peak_rotation"] == answer["peak_rotation"]
     assert told["impacts"] == answer["impacts"]
     assert (
         served.api("response", json={**INPUTS, "motion": {"pulse": "sine:amplitude=3.1,period=0.8"}})["answers"][0][

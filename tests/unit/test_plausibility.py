@@ -15,7 +15,6 @@ from rocking.cli import main
 from rocking.dynamics import SpatialStart
 from rocking.errors import PlausibilityWarning
 from rocking.evidence import all_measurements
-from rocking.reports.body_facts import body_facts
 from rocking.restitution import model
 from rocking.studies.fragility import fragility_analysis
 
@@ -140,7 +139,7 @@ def test_assumed_density_is_said(tmp_path):
     assert plain.to_section().scaled(density=2.0).assumed == (heavier,)
     assert Solid(box(0.8, 0.8, 1.8)).scaled(density=2.0).assumed == (heavier,)
     assert rk.Block(width=0.8, height=1.8, density=2400.0).scaled(density=2.0).assumed == ()
-    assert body_facts(plain, 9.81)["assumed"] == list(plain.assumed)
+    assert plain.answer()["assumed"] == plain.assumed
     mixed = rk.Section(
         [rk.Region([(0, 0), (1, 0), (1, 1), (0, 1)], 7850.0), rk.Region([(0, 1), (1, 1), (1, 2), (0, 2)])]
     )
@@ -207,17 +206,17 @@ def test_assumed_friction_is_said(capsys, tmp_path):
     """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
     words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")
     given = ("--set", "response.assumed_friction=0.5")
-    assert "needed, 0.5 assumed" in run(capsys, *words)[0]
-    assert "needed, 0.5 given" in run(capsys, *words, *given)[0]
+    assert "(assumed 0.5)" in run(capsys, *words)[0]
+    assert "(given 0.5)" in run(capsys, *words, *given)[0]
     assert json.loads(run(capsys, *words, "--friction", "0.5", "--json")[0])["friction_assumed"] is False
     for option in ((), given):
-        friction = json.loads(run(capsys, *words, *option, "--json")[0])["friction"]
-        assert (friction["given"], friction["assumed"]) == (0.5, not option)
+        answer = json.loads(run(capsys, *words, *option, "--json")[0])
+        assert (answer["friction"], answer["friction_assumed"]) == (0.5, not option)
     question = tmp_path / "question.toml"
     question.write_text(
         '[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n[motion]\npulse = "sine:amplitude=3,period=.5"\n[response]\n'
     )
-    assert "needed, 0.5 assumed" in run(capsys, "simulate", str(question))[0]
+    assert "(assumed 0.5)" in run(capsys, "simulate", str(question))[0]
 
 
 def test_the_api_and_the_page_say_it():
@@ -225,12 +224,12 @@ def test_the_api_and_the_page_say_it():
     pytest.importorskip("fastapi")
     from rocking.app.api.body import described
     from rocking.plots.labels import fine_samples
-    from rocking.reports.response_facts import motion_facts
+    from rocking.reports.response_facts import record_answer
 
     assert "1000 m above the ground" in described(rk.Block(width=500.0, height=2000.0), 9.81, None)["warnings"][0]
     assert described(rk.Block(width=0.5, height=2.0), 9.81, None)["warnings"] == []
     strong = rk.pulses.sine(amplitude=3000.0, period=0.8)
-    assert "306 g" in motion_facts(strong, fine_samples(strong), {})["warnings"][0]
+    assert "306 g" in record_answer(strong, fine_samples(strong), {})["warnings"][0]
 
 
 def test_what_no_ground_does_is_doubted(tmp_path) -> None:

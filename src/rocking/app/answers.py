@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, create_model
 from pydantic_core import to_json
 from starlette.responses import JSONResponse, Response
 
+from rocking import answers
 from rocking.app.errors import Refused, kind_of, kind_of_status
 from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
@@ -81,6 +82,8 @@ class JsonAnswer(JSONResponse):
     """JSON of plain values and arrays, quick for long series; a NaN or an infinity is an error here."""
 
     def render(self, content: Any) -> bytes:
+        if isinstance(content, answers.Answer):
+            content = content.plain()
         data = to_json(content, inf_nan_mode="constants", fallback=_plain)
         if b"NaN" in data or b"Infinity" in data:  # in a name perhaps; if it is a number, this refuses it
             json.dumps(content, allow_nan=False, default=_plain)
@@ -121,17 +124,18 @@ def attachment_headers(name: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{safe_name(name)}"', "X-Content-Type-Options": "nosniff"}
 
 
-class Answer(BaseModel):
+class AnswerShape(BaseModel):
     """A table of an answer: it has these keys and no others."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
-def shape(name: str, meaning: str, base: type[Answer] = Answer, /, **fields: Any) -> Any:
+def shape(name: str, meaning: str, base: type[AnswerShape] = AnswerShape, /, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    fields: by key the type; type and words; or type, words and the quantity whose unit it has. The unit that the key
-    ends with follows the words. What else a key needs, such as a default, is a `Field` in place of the words.
+    fields: by key the type; type and words; or type, words and the quantity whose unit it has. Of a key that is a
+    quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such as a
+    default, is a `Field` in place of the words.
     """
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
@@ -145,12 +149,18 @@ def shape_of(kind: type, name: str, *, without: tuple[str, ...] = ()) -> Any:
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
+    entry = QUANTITIES.get(quantity or key)
+    if words is None and entry is not None:
+        words = entry.meaning
     if not isinstance(words, str):
         return kind, ... if words is None else words
     unit = next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "")
-    if quantity is not None:
-        unit = "-" if QUANTITIES[quantity].unit == "1" else QUANTITIES[quantity].unit
-    return kind, Field(description=f"{words} [{unit}]".strip() if unit else words)
+    if entry is not None:
+        unit = "-" if entry.unit == "1" else entry.unit
+    return kind, Field(description=f"{words} [{unit}]".strip() if unit and not words.endswith("]") else words)
+
+
+Units: Any = (dict[str, str], "unit of every number, by the name of its quantity")
 
 
 def answered(kind: Any, words: str, status: int = 200) -> dict[int | str, dict[str, Any]]:

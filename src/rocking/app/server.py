@@ -107,7 +107,7 @@ def _impact() -> None:
 
 
 def _response() -> None:
-    from rocking.app.api.response import answers_facts
+    from rocking.app.api.response import responses_answer
     from rocking.app.inputs import ResponseRequest, body_from
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
@@ -117,7 +117,7 @@ def _response() -> None:
     words = "sine:amplitude=3,period=0.8"
     inputs = ResponseRequest.model_validate({"body": _BLOCK, "motion": {"pulse": words}})
     motion = pulse(words)
-    answers_facts(problem_of(inputs, body_from(inputs.body), motion), 10)
+    responses_answer(problem_of(inputs, body_from(inputs.body), motion), 10)
     response_spectrum(fine_samples(motion), [1.0], 0.05)
 
 

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
@@ -43,6 +44,13 @@ class ModelMargin:
     coefficients: Mapping[str, float]
     overturned: FloatArray
     least: FloatArray
+
+    def answer(self) -> Answer:
+        """Return coefficients, outcomes and smallest factors."""
+        return Answer({
+            "coefficient": self.coefficients, "overturned": self.overturned, "factors": self.least,
+            "min_factor": self.lowest,
+        })  # fmt: skip
 
     @property
     def lowest(self) -> float:
@@ -94,16 +102,16 @@ class StandingSolid:
         margin = "no factor overturns it" if math.isinf(self.in_plane) else f"its margin is {self.in_plane:.3g}"
         return weak, f"{falls}As a plane body along {towards}, which does not slide: {margin}."
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return it as plain values, SI units; NaN where something does not exist."""
+    def answer(self) -> Answer:
+        """Return what is shown of the body in space."""
         out, pose = self.way_out, self.pose
-        return {
-            "plane_azimuth_rad": self.plane, "plane_is_weakest": self.weakest, "centre_height_m": pose.height,
-            "edge_m": self.reach, "barrier_m": pose.barrier,
-            "barrier_J": math.nan if out is None else out.energy,
-            "barrier_azimuth_rad": math.nan if out is None else out.azimuth,
-            "least_factor_in_plane": self.in_plane, "falls_towards_rad": self.falls_towards, "slides_m": self.slides,
-        }  # fmt: skip
+        return Answer({
+            "plane_azimuth": self.plane, "plane_is_weakest": self.weakest, "centre_height": pose.height,
+            "nearest_edge": self.reach, "barrier": pose.barrier,
+            "barrier_energy": math.nan if out is None else out.energy,
+            "barrier_azimuth": math.nan if out is None else out.azimuth,
+            "min_factor_in_plane": self.in_plane, "direction": self.falls_towards, "sliding_distance": self.slides,
+        })  # fmt: skip
 
 
 class Lowest(NamedTuple):
@@ -410,30 +418,33 @@ class BodyAssessment:
 
     __repr__ = __str__
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return everything that is shown.
 
         Returns
         -------
-        dict
+        Answer
             SI units; infinite where nothing overturns, NaN where something does not exist.
         """
-        return {
+        return Answer({
             "verdict": self.verdict,
             "sentences": list(self.sentences),
             "body": repr(self.body if self.standing is None else self.standing.solid),
             "motions": [each.name for each in self.motions],
             "repairs": list(self.prediction.repairs),
-            "records": self.records,
-            "lowest": {**self.lowest._asdict(), "motion": self.motions[self.lowest.motion].name},
-            "lifting_factors": self.lifts,
-            "models": {name: {**vars(each), "lowest": each.lowest} for name, each in self.models.items()},
+            "record_index": self.records,
+            "lowest": {
+                "min_factor": self.lowest.factor, "model": self.lowest.model, "mirrored": self.lowest.mirrored,
+                "motion": self.motions[self.lowest.motion].name,
+            },
+            "uplift_factors": self.lifts,
+            "models": {name: each.answer() for name, each in self.models.items()},
             "refused": dict(self.refused),
-            "with_friction": {"friction": self.friction, **vars(self.sliding), "lowest": self.sliding.lowest},
+            "with_friction": self.sliding.answer() | {"friction": self.friction},
             "code_methods": dict(self.capacities),
             "code_methods_outside": dict(self.outside),
             "motions_with_vertical": self.vertical,
-            "remedies": asdict(self.remedies),
-            "prediction": self.prediction.as_dict(),
-            **({} if self.standing is None else {"solid": self.standing.as_dict()}),
-        }
+            "remedies": self.remedies.answer(),
+            "prediction": self.prediction.answer(),
+            **({} if self.standing is None else {"solid": self.standing.answer()}),
+        })  # fmt: skip

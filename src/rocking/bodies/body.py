@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from rocking import checks, conventions, plausibility
+from rocking.answers import Answer
 from rocking.bodies._known import Known
 from rocking.bodies.moments import PlaneMoments
-from rocking.conventions import Assumed, FloatArray, Foot
+from rocking.conventions import FEET, Assumed, FloatArray, Foot
 from rocking.errors import AsymmetricBodyError, GeometryError, InvalidValueError
 
 
@@ -243,6 +244,30 @@ class Body(ABC):
         """What can be computed with but was hardly meant, in words."""
         (left, right), height = self.local_feet, self.local_moments.y
         return plausibility.of_body(height, 2.0 * height / (right - left), self.densities)
+
+    def answer(self, gravity: float = conventions.g) -> Answer:
+        """Return what is shown of the body.
+
+        Parameters
+        ----------
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        Answer
+            Mass, centre, feet, moment of inertia, assumptions, doubts, and the geometry of each side.
+        """
+        names = (
+            "slenderness_ratio", "slenderness_angle", "semi_diagonal", "frequency_parameter", "uplift_acceleration",
+        )  # fmt: skip
+        sides = {foot: self.side(foot, gravity) for foot in FEET}
+        return Answer({
+            "kind": type(self).__name__, "mass": self.mass, "centre": self.centre, "foot_positions": self.feet,
+            "moment_of_inertia": self.moment_of_inertia, "gravity": gravity, "assumed": self.assumed,
+            "warnings": self.doubts,
+            "sides": {foot: {name: getattr(side, name) for name in names} for foot, side in sides.items()},
+        })  # fmt: skip
 
     @property
     def is_symmetric(self) -> bool:

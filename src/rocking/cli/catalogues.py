@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 
@@ -41,12 +42,13 @@ def models(
 class _Models:
     kinds: dict[str, Any]
 
-    def facts(self) -> dict[str, dict[str, Any]]:
+    def answer(self) -> Answer:
+        """Return what each model says of itself."""
         names = ("title", "reference", "assumptions", "domain", "known_defects")
-        return {key: {name: getattr(kind, name) for name in names} for key, kind in self.kinds.items()}
+        return Answer({key: {name: getattr(kind, name) for name in names} for key, kind in self.kinds.items()})
 
     def show(self, page: Page) -> None:
-        for key, entry in self.facts().items():
+        for key, entry in self.answer().values.items():
             page.line(f"{key}: {entry.pop('title')}")
             for name, value in entry.items():
                 for k, line in enumerate([value] if isinstance(value, str) else value):
@@ -61,11 +63,12 @@ def formats(as_json: AsJson = False) -> None:
 
 
 class _Formats:
-    def facts(self) -> dict[str, dict[str, Any]]:
+    def answer(self) -> Answer:
+        """Return what each format states and needs."""
         from rocking.motions.formats import formats as registered
 
         names = ("title", "suffixes", "states_unit", "states_time_step", "notes")
-        return {key: {name: getattr(kind, name) for name in names} for key, kind in registered().items()}
+        return Answer({key: {name: getattr(kind, name) for name in names} for key, kind in registered().items()})
 
     def show(self, page: Page) -> None:
         from rich.console import Console
@@ -79,7 +82,7 @@ class _Formats:
         for head in ("name", "files", "unit", "step"):
             table.add_column(head, no_wrap=head != "files", max_width=14)
         table.add_column("what it is, and what to know", ratio=1)
-        for name, fact in self.facts().items():
+        for name, fact in self.answer().values.items():
             about = Text(fact["title"])
             if fact["notes"]:
                 about.append(f"\n{fact['notes']}\n", style="dim")

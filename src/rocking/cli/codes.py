@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.bodies import Block
 from rocking.cli import options
 from rocking.cli.exports import Export, Exports, write_columns
@@ -158,10 +159,11 @@ class CodesAnswer:
 
     found: "CodeComparison"
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return what each method gives for each body."""
         from rocking.studies.code_methods import LEFT_OUT
 
-        return {**self.found.as_dict(), "left_out": LEFT_OUT}
+        return self.found.answer() | {"left_out": LEFT_OUT}
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import plausibility
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, deliver
@@ -38,7 +39,7 @@ def _as(form: str) -> Any:
 
 
 def _provenance(answer: "Conversion", path: Path) -> None:
-    path.write_text(json.dumps(answer.facts(), indent=1) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(answer.answer().plain(), indent=1) + "\n", encoding="utf-8")
 
 
 def _kinds() -> dict[str, Export]:
@@ -137,10 +138,11 @@ class Conversion:
 
         return processing_picture(*self.leading)
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return what the record is before and after its steps."""
         each = {axis: _told(*pair) for axis, pair in self.pairs.items()}
         told = each[""] if len(each) == 1 else {"components": each}
-        return {"name": self.name, **told, "files": list(self.files)}
+        return Answer({"name": self.name, **told, "files": self.files})
 
     def show(self, page: Page) -> None:
         rows = []
@@ -173,7 +175,9 @@ def _told(before: "GroundMotion", after: "GroundMotion") -> dict[str, Any]:
 
 def _doubts(motion: "GroundMotion") -> list[str]:
     """Return what is hardly meant, of the samples and of what they integrate to."""
-    end, velocity, displacement = (_facts(motion)[key] for key in ("end_velocity_m_s", "pgv_m_s", "pgd_m"))
+    end, velocity, displacement = (
+        _facts(motion)[key] for key in ("end_velocity", "peak_ground_velocity", "peak_ground_displacement")
+    )
     return [*motion.doubts, *plausibility.of_integrals(end, velocity, displacement)]
 
 
@@ -182,9 +186,9 @@ def _facts(motion: "GroundMotion") -> dict[str, float]:
 
     return {
         "samples": len(motion),
-        "time_step_s": motion.time_step,
-        "pga_m_s2": motion.peak,
-        "pgv_m_s": peak_ground_velocity(motion),
-        "pgd_m": peak_ground_displacement(motion),
-        "end_velocity_m_s": float(ground_velocity(motion)[-1]),
+        "time_step": motion.time_step,
+        "peak_ground_acceleration": motion.peak,
+        "peak_ground_velocity": peak_ground_velocity(motion),
+        "peak_ground_displacement": peak_ground_displacement(motion),
+        "end_velocity": float(ground_velocity(motion)[-1]),
     }

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
-from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendation, side_line
+from rocking.cli.numbers import in_unit, recommendation_values, show_recommendation, side_line
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
@@ -148,10 +149,9 @@ class PlaneAnswer:
     length: str  # unit of lengths
     recommendation: Any = None  # which model to use, where that was asked
 
-    def facts(self) -> dict[str, Any]:
-        from rocking.reports.body_facts import impact_facts
-
-        return impact_facts(self.impact) | recommendation_facts(self.recommendation)
+    def answer(self) -> Answer:
+        """Return the body and every model's coefficient."""
+        return self.impact.answer() | recommendation_values(self.recommendation)
 
     def draw(self) -> Any:
         from rocking.plots import coefficient_picture
@@ -160,7 +160,7 @@ class PlaneAnswer:
 
     def write_csv(self, path: Path) -> None:
         write_records(path, [
-            {"onto": foot, **row.as_dict(), "warnings": "; ".join(row.warnings)}
+            {"onto": foot, **row.answer().values, "warnings": "; ".join(row.warnings)}
             for foot, rows in self.impact.tables.items() for row in rows
         ])  # fmt: skip
 

@@ -4,10 +4,11 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rocking.answers import Answer, AnswerRows, Display
 from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
 from rocking.cli import options
@@ -16,7 +17,7 @@ from rocking.cli.cor import named_body
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
-from rocking.cli.solids import body_facts, show_body
+from rocking.cli.solids import show_body
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ DIRECTIONS = 12  # azimuths towards which barriers are printed, from x towards y
 EXPORTS = {
     "picture": DRAWN,
     "space": Export((".glb",), lambda answer, path: answer.write_glb(path)),
-    "csv": Export((".csv",), lambda answer, path: write_records(path, answer.facts()["stable"])),
+    "csv": Export((".csv",), lambda answer, path: write_records(path, answer.answer()["stable"].records)),
 }
 
 
@@ -77,59 +78,53 @@ class EquilibriaAnswer:
         return base_tolerances(self.found, self.pose, [t for t in TOLERANCES if t < self.pose.height])
 
     @cached_property
-    def directions(self) -> list[dict[str, Any]]:
+    def directions(self) -> AnswerRows:
         """What it takes to lift and to topple it, by azimuth."""
         turns = [2.0 * math.pi * k / DIRECTIONS for k in range(DIRECTIONS)]
-        return [
-            {
-                "azimuth_rad": turn,
-                "uplift_acceleration_m_s2": float(self.pose.uplift_acceleration(turn)),
-                "straight_rise_m": float(self.found.barrier(self.pose, turn)),
-                "lowest_rise_m": float(self.found.barrier(self.pose, turn, path="lowest")),
-                "topples_into": None if (end := self.found.toppled(self.pose, turn)) is None else end.number,
-            }
-            for turn in turns
-        ]
+        ends = [self.found.toppled(self.pose, turn) for turn in turns]
+        return AnswerRows({
+            "azimuth": turns,
+            "straight_rise": [float(self.found.barrier(self.pose, turn)) for turn in turns],
+            "lowest_rise": [float(self.found.barrier(self.pose, turn, path="lowest")) for turn in turns],
+            "uplift_acceleration": [float(self.pose.uplift_acceleration(turn)) for turn in turns],
+            "topples_into": [None if end is None else end.number for end in ends],
+        })  # fmt: skip
 
-    def facts(self) -> dict[str, Any]:
-        found = self.found
-        return {
-            "body": body_facts(self.solid),
-            "stable": [
-                {
-                    "pose": pose.number,
-                    "height_m": pose.height,
-                    "energy_J": pose.energy,
-                    "down": pose.down.tolist(),
-                    "nearest_edge_m": float(pose.edge_distances.min()),
-                    "barrier_m": pose.barrier,
-                }
-                for pose in found.stable
-            ],
+    def answer(self) -> Answer:
+        """Return every way to stand, what leaves the pose that it has, and how sure its base is."""
+        found, stable = self.found, self.found.stable
+        passes = found.neighbours(self.pose)
+        return Answer({
+            "body": self.solid.answer(),
+            "stable": AnswerRows({
+                "pose": [pose.number for pose in stable],
+                "centre_height": [pose.height for pose in stable],
+                "energy": [pose.energy for pose in stable],
+                "nearest_edge": [float(pose.edge_distances.min()) for pose in stable],
+                "barrier": [pose.barrier for pose in stable],
+                "down": [pose.down.tolist() for pose in stable],
+            }),
             "saddles": len(found.saddles),
             "summits": len(found.summits),
-            "rings": [{"kind": r.kind, "tilt_rad": r.tilt, "height_m": r.height} for r in found.rings],
+            "rings": [{"kind": r.kind, "tilt": r.tilt, "centre_height": r.height} for r in found.rings],
             "stands_in": self.pose.number,
-            "passes": [
-                {
-                    "to": each.end, "rise_m": each.rise, "energy_J": each.energy, "tilt_rad": each.tilt,
-                    "azimuth_rad": each.azimuth,
-                }
-                for each in found.neighbours(self.pose)
-            ],
+            "passes": AnswerRows({
+                "topples_into": [each.end for each in passes],
+                **{name: [getattr(each, name) for each in passes] for name in ("rise", "energy", "tilt", "azimuth")},
+            }),
             "directions": self.directions,
-            "base_tolerances": [
-                {
-                    "tolerance_m": row.tolerance, "points": row.points, "corners": len(row.support),
-                    "nearest_edge_m": row.edge_distance, "azimuth_rad": row.azimuth,
-                    "uplift_acceleration_m_s2": row.uplift_acceleration, "barrier_m": row.barrier,
-                    "energy_J": row.energy,
-                }
-                for row in self.bases
-            ],
-            "repairs": list(self.solid.repairs),
-            "notes": list(found.notes),
-        }  # fmt: skip
+            "base_tolerances": AnswerRows({
+                "tolerance": [row.tolerance for row in self.bases],
+                "touching": [row.points for row in self.bases],
+                "corners": [len(row.support) for row in self.bases],
+                "nearest_edge": [row.edge_distance for row in self.bases],
+                **{
+                    name: [getattr(row, name) for row in self.bases]
+                    for name in ("azimuth", "uplift_acceleration", "barrier", "energy")
+                },
+            }),
+            "notes": found.notes,
+        })  # fmt: skip
 
     def draw(self) -> "Figure":
         from rocking.plots import equilibria_picture
@@ -157,39 +152,18 @@ class EquilibriaAnswer:
             what = "rolls" if ring.kind == "stable" else "can be balanced"
             lean, height = f"{math.degrees(ring.tilt):.3g} deg", in_unit(ring.height, self.length)
             page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
-        poses = [
-            (
-                f"{pose.number}", self._long(pose.height), f"{pose.energy:.4g}",
-                self._long(float(pose.edge_distances.min())), self._long(pose.barrier),
-            )
-            for pose in found.stable
-        ]  # fmt: skip
-        head = (f"centre {self.length}", "energy J", f"nearest edge {self.length}", f"rise to leave {self.length}")
-        page.table(("pose", *head), poses, bold={number})
+        answer, display = self.answer(), Display(self.length)
+        names = ("pose", "centre_height", "energy", "nearest_edge", "barrier")
+        page.rows(answer["stable"], display, names, bold={number}, most=len(found.stable))
         page.line()
         page.line(f"It stands in pose {number}. To topple it towards a direction its centre must rise", "bold")
-        sides = [
-            (
-                f"{math.degrees(row['azimuth_rad']):.0f}", self._long(row["straight_rise_m"]),
-                self._long(row["lowest_rise_m"]), f"{row['uplift_acceleration_m_s2']:.3g}",
-                "-" if row["topples_into"] is None else f"{row['topples_into']}",
-            )
-            for row in self.directions
-        ]  # fmt: skip
-        page.table(("deg", f"straight {self.length}", f"lowest way {self.length}", "lifts at m/s2", "into pose"), sides)
-        page.line("deg: from x towards y; lifts at: the steady acceleration of the ground that lifts it that way.")
+        page.rows(self.directions, display)
+        page.line("azimuth: from x towards y.")
         page.line()
         page.line("What it stands on, if points of it that are this close to the ground touch it too", "bold")
-        bases = [
-            (
-                f"{1e3 * row.tolerance:g}", f"{row.points}", f"{len(row.support)}", self._long(row.edge_distance),
-                f"{math.degrees(row.azimuth):.0f}", f"{row.uplift_acceleration:.3g}", self._long(row.barrier),
-            )
-            for row in self.bases
-        ]  # fmt: skip
-        near, leave = f"nearest edge {self.length}", f"rise to leave {self.length}"
-        page.table(("within mm", "points", "corners", near, "deg", "lifts at m/s2", leave), bases)
+        page.rows(
+            answer["base_tolerances"],
+            display,
+            ("tolerance", "touching", "corners", "nearest_edge", "azimuth", "uplift_acceleration", "barrier"),
+        )
         page.warn(found.notes)
-
-    def _long(self, value: float) -> str:
-        return in_unit(value, self.length).partition(" ")[0] if math.isfinite(value) else "-"

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli.page import Page, deliver
 
 if TYPE_CHECKING:
@@ -70,8 +71,9 @@ class AddedAnswer:
     data: "DataSet"
     new: bool
 
-    def facts(self) -> dict[str, Any]:
-        return {"file": str(self.path), "measurements": len(self.data), "new": self.new}
+    def answer(self) -> Answer:
+        """Return where the measurements are."""
+        return Answer({"file": str(self.path), "measurements": len(self.data), "new": self.new})
 
     def show(self, page: Page) -> None:
         words = "added to your evidence" if self.new else "are in your evidence already"
@@ -85,24 +87,25 @@ class ListAnswer:
 
     sets: "list[tuple[str, DataSet]]"
 
-    def facts(self) -> list[dict[str, Any]]:
-        return [
+    def answer(self) -> Answer:
+        """Return each set, its size and its ranges."""
+        return Answer({"sets": [
             {
                 "name": name, "measurements": len(data), "laboratories": _different(data.laboratory),
                 "interfaces": _different(data.interface),
-                "slenderness": [data.slenderness.min(), data.slenderness.max()],
+                "slenderness_ratio": [data.slenderness.min(), data.slenderness.max()],
                 "coefficient": [data.coefficient.min(), data.coefficient.max()], "source": data.source,
             }
             for name, data in self.sets
-        ]  # fmt: skip
+        ]})  # fmt: skip
 
     def show(self, page: Page) -> None:
         rows = [
             (
-                Path(each["name"]).name, str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness"]),
+                Path(each["name"]).name, str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness_ratio"]),
                 "{:.3f} - {:.3f}".format(*each["coefficient"]), ", ".join(each["laboratories"]),
             )
-            for each in self.facts()
+            for each in self.answer()["sets"]
         ]  # fmt: skip
         page.table(("set", "n", "h/b", "r", "laboratories"), rows, ("set", "laboratories"))
         page.line()
@@ -119,17 +122,18 @@ class CalibrationAnswer:
     calibration: "HierarchicalCalibration"
     left_out: "tuple[LeftOut, ...]"
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return the calibration and the league."""
         from dataclasses import asdict
 
-        return {
+        return Answer({
             "measurements": len(self.data),
             "model": self.calibration.model().label,
             "calibration": self.calibration.summary,
             "shares": self.calibration.shares,
             "left_out_groups": [{**asdict(each), "within": each.within} for each in self.left_out],
-            "league": [row.as_dict() for row in self.league],
-        }
+            "league": [row.answer() for row in self.league],
+        })  # fmt: skip
 
     def show(self, page: Page) -> None:
         from rocking.evidence import verdict

@@ -5,11 +5,12 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from rocking import checks, examples
+from rocking.answers import Answer
 from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 from rocking.errors import InvalidValueError
@@ -40,9 +41,10 @@ class _Listed:
     chosen: Mapping[str, examples.Example]
     whole: bool
 
-    def facts(self) -> list[dict[str, Any]]:
+    def answer(self) -> Answer:
+        """Return what each example writes and runs."""
         names = ("name", "kind", "title", "writes", "commands", "outputs")
-        return [{name: getattr(one, name) for name in names} for one in self.chosen.values()]
+        return Answer({"examples": [{name: getattr(one, name) for name in names} for one in self.chosen.values()]})
 
     def show(self, page: Page) -> None:
         if self.whole:

@@ -159,7 +159,9 @@ def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
 
 def write_records(path: Path, records: list[dict[str, Any]]) -> None:
     """Write records of the same keys as CSV."""
+    from rocking.quantities import QUANTITIES
     from rocking.tables import Column, Table, text_array, to_csv
 
-    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
+    units = {name: QUANTITIES[name].unit if name in QUANTITIES else "" for name in records[0]}
+    columns = {name: Column(text_array([row[name] for row in records]), unit) for name, unit in units.items()}
     to_csv(Table("coefficient", columns), path)

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rocking.answers import Answer
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
+from rocking.quantities import Quantity
 from rocking.studies.fragility.incremental_dynamic_analysis import WIDE, IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
@@ -14,6 +16,11 @@ if TYPE_CHECKING:
     from rocking.statistics.lognormal import LognormalFit
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
     from rocking.tables import Table
+
+# quantities in the unit of the measure
+_MEASURED = (
+    "levels", "median", "median_95", "uplift_threshold", "lowest_uplift", "first_crossings", "interval",
+)  # fmt: skip
 
 
 @dataclass(eq=False)
@@ -119,18 +126,19 @@ class FragilityAnswer:
                     shown_in(axes, which, *self.unit)
         return figure
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return what was counted, and the curves."""
         body, first, compared = self.problem.bodies[0], self.first, self.compared
-        return {
+        unit = "1" if first.subject.measure.unit == "-" else first.subject.measure.unit
+        return Answer({
             "body": repr(body),
             "assumed": list(body.assumed),
             "motions": self._motions_facts(),
-            "gravity_m_s2": self.problem.settings.gravity,
+            "gravity": self.problem.settings.gravity,
             "linear": self.problem.settings.linear,
             "analysis": self.kind,
             "measure": first.subject.measure.name,
             "measure_words": first.subject.measure_words,
-            "unit": first.subject.measure.unit,
             "states": list(self.problem.fragility_table.states),
             "uplift_threshold": first.subject.uplift_threshold,
             "lowest_uplift": first.subject.lowest_uplift,
@@ -138,22 +146,28 @@ class FragilityAnswer:
             "crossing": {"method": self.crossing, "adjusted": "" if self.shown is None else self.shown.adjusted},
             "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
             "comparison": None if compared is None else {"choices": compared.summary(), "verdict": compared.verdict},
-        }
+        }, {name: Quantity(name, unit, first.subject.measure_words) for name in _MEASURED})  # fmt: skip
 
     def _motions_facts(self) -> dict[str, Any]:
         from rocking.motions.components import leading
         from rocking.motions.pulse import Pulse
 
         table, motions = self.problem.document.motions[0], self.problem.motions
+        sources = [each.answer() for each in self.sources]
         if table.synthetic is not None:
             seed = table.seed or 0
             family = getattr(motions, "family", None)
             name = table.synthetic if family is None else family.name
             facts = {"kind": "synthetic", "count": len(motions), "family": name, "seed": seed}
-            return {**facts, "sources": [each.as_dict() for each in self.sources]}
+            return {**facts, "sources": sources}
         names = [motions[k].name for k in range(len(motions))]
         kind = "pulses" if isinstance(leading(motions[0]), Pulse) else "records"
-        return {"kind": kind, "count": len(names), "names": names, "sources": [each.as_dict() for each in self.sources]}
+        return {
+            "kind": kind,
+            "count": len(names),
+            "names": names,
+            "sources": [each.answer() for each in self.sources],
+        }
 
     @cached_property
     def sources(self) -> "tuple[MotionSummary, ...]":
@@ -299,7 +313,7 @@ def _result_facts(analysis: Any, adjusted: "dict[str, FragilityCurve]") -> dict[
         facts |= {
             "first_crossing": summary["first crossing"],
             "first_crossings": analysis.first_crossings,
-            "overturning_intervals": [{"motion": i.motion, "start": i.start, "end": i.end} for i in analysis.intervals],
+            "overturning_intervals": [{"motion": i.motion, "interval": [i.start, i.end]} for i in analysis.intervals],
             "resurrected_motions": analysis.resurrected(),
             "resurrected_motions_over_1_percent": analysis.resurrected(WIDE),
         }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Export, Exports
 from rocking.cli.page import Page, bar, deliver
@@ -130,8 +131,9 @@ class IdentifiedAnswer:
     found: "Identification"
     name: str = ""  # of the body
 
-    def facts(self) -> dict[str, Any]:
-        return self.found.to_dict()
+    def answer(self) -> Answer:
+        """Return the coefficients, impacts and fit."""
+        return Answer(self.found.to_dict())
 
     def draw(self) -> Any:
         return self.found.plot()
@@ -184,8 +186,9 @@ class TrialsAnswer:
 
     found: "IdentifiedTrials"
 
-    def facts(self) -> dict[str, Any]:
-        return self.found.as_dict()
+    def answer(self) -> Answer:
+        """Return the trials and their mean."""
+        return self.found.answer()
 
     def draw(self) -> Any:
         from rocking.plots.identification import trials_picture

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import completion, options
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
@@ -156,12 +157,11 @@ class InventoryAnswer:
 
     assessment: "Assessment"
 
-    def facts(self) -> Any:
-        import json
+    def answer(self) -> Answer:
+        """Return the ranked list, the plan of measures, and what the list rests on."""
+        from rocking.studies.inventory.table import answer_of
 
-        from rocking.reports.inventory_folder import inventory_json
-
-        return json.loads(inventory_json(self.assessment))
+        return answer_of(self.assessment)
 
     def show(self, page: Page) -> None:
         from rich.text import Text

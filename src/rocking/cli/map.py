@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import mode_shares
+from rocking.quantities import Quantity
 from rocking.spec.document import MapTable
 
 if TYPE_CHECKING:
@@ -189,17 +191,19 @@ class MapAnswer:
                 shown_in(figure.axes[0], which, *self.unit(axis))
         return figure
 
-    def facts(self) -> dict[str, Any]:
-        from rocking.cli.study import subject_facts
+    def answer(self) -> Answer:
+        """Return every cell, the islands, and where overturning begins."""
+        from rocking.cli.study import subject_values
 
         arrays, problem, islands = self.arrays, self.problem, self.islands
-        axes = [{"name": axis.name, "unit": axis.unit, "values": axis.values} for axis in self.axes]
+        axes = [{"name": axis.name, "values": axis.values} for axis in self.axes]
         names = ("cells", "area", "x", "y", "modes", "still_rocking")
-        return {
-            **subject_facts(problem),
+        axis_of = dict(zip("xy", self.axes, strict=True))
+        return Answer({
+            **subject_values(problem),
             "restitution": arrays.attributes["restitution"],
             "engine": arrays.attributes["engine"],
-            "gravity_m_s2": problem.settings.gravity,
+            "gravity": problem.settings.gravity,
             "linear": problem.settings.linear,
             "x": axes[0],
             "y": axes[1],
@@ -217,13 +221,20 @@ class MapAnswer:
             "overturning": self.extent(),
             "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
-        }
+        }, {which: Quantity(which, axis.unit, axis.words) for which, axis in axis_of.items()})  # fmt: skip
 
     def _sensitivity(self) -> dict[str, Any] | None:
         if self.compared is None:
             return None
-        names = ("count", "gained", "lost", "compared", "unknown", "share", "low", "high")
-        pairs = [{"first": a, "second": b, **{n: getattr(flips, n) for n in names}} for a, b, flips in self._pairs()]
+        names = ("count", "compared", "unknown", "share")
+        pairs = [
+            {
+                "first": a, "second": b, "only_second": flips.gained, "only_first": flips.lost,
+                "share_low": flips.low, "share_high": flips.high,
+                **{name: getattr(flips, name) for name in names},
+            }
+            for a, b, flips in self._pairs()
+        ]  # fmt: skip
         return {"baseline": self.compared.baseline, "pairs": pairs}
 
     def _pairs(self) -> list[tuple[str, str, Any]]:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
+from rocking.answers import Answer, AnswerRows
 from rocking.cli import options
-from rocking.cli.exports import DRAWN, Export, Exports, write_columns
+from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
@@ -26,21 +27,20 @@ _SPOKEN = 4  # stretches of overturning that a sentence names
 _MOST_ROWS = 12  # crossings that the terminal lists
 
 
-_COLUMNS = {
-    "acceleration_m_s2": "acceleration [m/s2]", "acceleration_g": "acceleration [g]", "ratio": "ratio [1]",
-    "scale": "scale [1]", "width_m_s2": "width [m/s2]", "mode_below": "mode below [1]", "mode_above": "mode above [1]",
-}  # fmt: skip
-"""What there is of every transition: key in JSON, and head in CSV; width: of its bracket, ratio: over what lifts."""
-
-
-def _columns(transitions: "Transitions") -> tuple[Any, ...]:
-    acceleration, ratio, scale = transitions.acceleration, transitions.ratio, transitions.scale
-    return acceleration, acceleration / g, ratio, scale, transitions.width, *transitions.modes.T
+def _crossings(transitions: "Transitions") -> AnswerRows:
+    """Return every acceleration at which the outcome changes, and the modes below and above."""
+    below, above = (modes.tolist() for modes in transitions.modes.T)
+    columns = {
+        "peak_ground_acceleration": transitions.acceleration, "uplift_ratio": transitions.ratio,
+        "scale": transitions.scale, "bracket_width": transitions.width,
+    }  # fmt: skip
+    return AnswerRows(
+        {name: values.tolist() for name, values in columns.items()} | {"mode_below": below, "mode_above": above}
+    )
 
 
 def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
-    columns = zip(_COLUMNS.values(), _columns(answer.transitions), strict=True)
-    write_columns(path, {name: (values, "") for name, values in columns})
+    write_records(path, _crossings(answer.transitions).records)
 
 
 EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
@@ -112,23 +112,24 @@ class MinimumAnswer:
         asked = self.problem.restitution
         return COMPLEMENTARITY if asked is None else str(getattr(asked, "label", asked))
 
-    def facts(self) -> dict[str, Any]:
-        from rocking.cli.study import subject_facts
+    def answer(self) -> Answer:
+        """Return every crossing, and the intervals between them."""
+        from rocking.cli.study import subject_values
 
         transitions, problem = self.transitions, self.problem
-        return {
-            **subject_facts(problem),
+        return Answer({
+            **subject_values(problem),
             "restitution": self.label,
-            "gravity_m_s2": problem.settings.gravity,
+            "gravity": problem.settings.gravity,
             "linear": problem.settings.linear,
-            "crossings": transitions_facts(transitions),
-            "minimum_m_s2": transitions.minimum,
-            "certain_m_s2": transitions.certain,
-            "overturning_intervals_m_s2": transitions.overturning_intervals,
-            "safe_intervals_m_s2": transitions.safe_intervals,
-            "lowest_m_s2": transitions.lowest,
-            "highest_m_s2": transitions.highest,
-            "uplift_acceleration_m_s2": transitions.uplift_acceleration,
+            "crossings": _crossings(transitions),
+            "minimum_acceleration": transitions.minimum,
+            "certain_acceleration": transitions.certain,
+            "overturning_intervals": transitions.overturning_intervals,
+            "safe_intervals": transitions.safe_intervals,
+            "lowest_acceleration": transitions.lowest,
+            "highest_acceleration": transitions.highest,
+            "uplift_acceleration": transitions.uplift_acceleration,
             "resolution": transitions.resolution,
             "resolution_below": transitions.resolution_below if transitions.minimum is not None else None,
             "starts_overturned": transitions.starts_overturned,
@@ -136,7 +137,7 @@ class MinimumAnswer:
             "failed": transitions.failed,
             "contact": transitions.contact,
             "sentence": stretches(transitions),
-        }
+        })  # fmt: skip
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import body_lines, source_lines
@@ -157,7 +158,7 @@ class MinimumAnswer:
             page.line(f"The lowest at which it overturns is {share}, {_g(transitions.minimum)}.", "bold")
         page.line(sentence(stretches(transitions)), "bold")
         if len(transitions):
-            head, rows = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above"), transitions_facts(transitions)
+            head, rows = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above"), _crossings(transitions).records
             page.line()
             page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in rows[:_MOST_ROWS]])
             if len(rows) > _MOST_ROWS:
@@ -199,15 +200,10 @@ def _g(acceleration: float) -> str:
     return f"{acceleration / g:.4g} g"
 
 
-def transitions_facts(transitions: "Transitions") -> list[dict[str, float | int]]:
-    """Return every transition as plain values."""
-    rows = zip(*(values.tolist() for values in _columns(transitions)), strict=True)
-    return [dict(zip(_COLUMNS, row, strict=True)) for row in rows]
-
-
-def _row(one: dict[str, float | int], size: float) -> tuple[str, ...]:
-    numbers = one["acceleration_g"], one["acceleration_m_s2"] / size, one["ratio"]
-    return *(f"{value:.6f}" for value in numbers), _short(int(one["mode_below"])), _short(int(one["mode_above"]))
+def _row(crossing: dict[str, Any], size: float) -> tuple[str, ...]:
+    acceleration = crossing["peak_ground_acceleration"]
+    numbers = acceleration / g, acceleration / size, crossing["uplift_ratio"]
+    return *(f"{value:.6f}" for value in numbers), _short(crossing["mode_below"]), _short(crossing["mode_above"])
 
 
 def _short(mode: int) -> str:

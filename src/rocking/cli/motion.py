@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g, in_unit
@@ -34,15 +35,15 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
     from rocking.tables import Column, Table, to_csv
 
     motion, samples = answer.motion, answer.samples
-    columns: dict[str, Any] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
+    columns: dict[str, Any] = {"time": np.asarray(samples.time), "acceleration": samples.acceleration}
     if isinstance(motion, GroundMotion):
-        columns |= {"velocity_m_s": ground_velocity(motion), "displacement_m": ground_displacement(motion)}
+        columns |= {"velocity": ground_velocity(motion), "displacement": ground_displacement(motion)}
         if motion.vertical is not None:
-            columns["vertical_acceleration_m_s2"] = motion.vertical
+            columns["vertical_acceleration"] = motion.vertical
     else:
         fine = traces(motion)
-        columns |= {"velocity_m_s": fine.velocity, "displacement_m": fine.displacement}
-    to_csv(Table("sample", {name: Column(values, "") for name, values in columns.items()}), path, blank=False)
+        columns |= {"velocity": fine.velocity, "displacement": fine.displacement}
+    to_csv(Table("sample", {name: Column.of(name, values) for name, values in columns.items()}), path, blank=False)
 
 
 EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
@@ -125,11 +126,12 @@ class MotionPage:
 
         return ground_motion_picture(self.motion)
 
-    def facts(self) -> dict[str, Any]:
-        from rocking.reports.response_facts import motion_facts, spectrum_facts
+    def answer(self) -> Answer:
+        """Return the motion, its intensity measures and its spectrum."""
+        from rocking.reports.response_facts import record_answer, spectrum_answer
 
-        facts = motion_facts(self.motion, self.samples, self.measures)
-        return {**facts, "spectrum": spectrum_facts(self.spectrum)}
+        answer = record_answer(self.motion, self.samples, self.measures)
+        return answer | {"spectrum": spectrum_answer(self.spectrum)}
 
     def show(self, page: Page) -> None:
         unit, spectrum = beside_g(self.acceleration), self.spectrum

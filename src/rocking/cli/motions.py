@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError
+from rocking.quantities import Quantity
 
 if TYPE_CHECKING:
     from rocking.motions.flatfiles import Flatfile
@@ -117,20 +119,25 @@ class SetAnswer:
 
         return spectra_picture(self.flatfile) if self.chosen is None else selection_picture(self.chosen)
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return the measures of each record, and how they were chosen."""
         table, spectra = self.flatfile.table, self.flatfile.spectra
         rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
         for k, row in enumerate(rows):
-            row["spectra_m_s2"] = {name: values[k] for name, values in spectra.items()}
-        facts: dict[str, Any] = {"damping_ratio": self.flatfile.damping, "period_s": self.flatfile.periods}
+            row["spectra"] = {name: values[k] for name, values in spectra.items()}
+        facts: dict[str, Any] = {"damping_ratio": self.flatfile.damping, "period": self.flatfile.periods}
         if (chosen := self.chosen) is not None:
-            told = {"factor": chosen.factors, "misfit": chosen.misfits, "period_s": chosen.periods}
-            told |= {"mean_m_s2": chosen.mean, "target_m_s2": chosen.target(chosen.periods)}
+            told = {"factor": chosen.factors, "misfit": chosen.misfits, "period": chosen.periods}
+            told |= {"mean": chosen.mean, "target_spectrum": chosen.target(chosen.periods)}
             facts["selection"] = {
                 "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,
                 "sentence": chosen.sentence,
             }  # fmt: skip
-        return {**facts, "records": rows, "left_out": [{"file": name, "why": why} for name, why in self.left_out]}
+        left_out = [{"file": name, "why": why} for name, why in self.left_out]
+        measured = {name: Quantity(name, one.unit, one.meaning) for name, one in table.columns.items() if one.unit}
+        accelerations = ("spectra", "mean", "target_spectrum")
+        measured |= {name: Quantity(name, "m/s2", "spectral pseudo-acceleration") for name in accelerations}
+        return Answer({**facts, "records": rows, "left_out": left_out}, measured)
 
     def show(self, page: Page) -> None:
         columns, unit = self.flatfile.table.columns, beside_g(self.acceleration)

@@ -103,9 +103,9 @@ def side_line(side: Any, length: str) -> str:
     )
 
 
-def recommendation_facts(found: Any) -> dict[str, Any]:
-    """Return a recommendation as plain values; nothing where none was asked for."""
-    return {} if found is None else {"recommendation": found.as_dict()}
+def recommendation_values(found: Any) -> dict[str, Any]:
+    """Return a recommendation for an answer; nothing where none was asked for."""
+    return {} if found is None else {"recommendation": found.answer()}
 
 
 def show_recommendation(page: Page, found: Any) -> None:

@@ -79,6 +79,10 @@ Friction = Annotated[float | None, key(tables.StudySettingsTable, "friction", ri
 Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=HOW)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=OUTPUT)]
 
+Details = Annotated[
+    bool, typer.Option("--details", help="Print all models, tables and values.", rich_help_panel=OUTPUT)
+]
+
 _BODIES = "TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB"
 BodyFile = Annotated[str | None, typer.Argument(help=f"Body file: {_BODIES}; left out with --width.")]
 Record = Annotated[

@@ -10,16 +10,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from rocking.answers import Answer, AnswerRows, Display
     from rocking.cli.exports import Exports
 
 Facts = Iterable[tuple[str, str]]
+MOST_ROWS = 12  # rows of a table of an answer that are printed
 
 
 class CommandAnswer(Protocol):
     """What every command has to show."""
 
-    def facts(self) -> Any:
-        """Return everything as plain values: SI units, named in the keys, None where something does not exist."""
+    def answer(self) -> "Answer":
+        """Return everything that is shown: SI units, None where something does not exist."""
 
     def show(self, page: "Page") -> None:
         """Write it on a page."""
@@ -44,6 +46,13 @@ class Page:
         """Write a line for each fact, its name before it."""
         for name, value in facts:
             self.line(f"{name + ':':<{width}} {value}")
+
+    def values(self, values: Facts) -> None:
+        """Write a line for each value, its label before it."""
+        lines = list(values)
+        width = max([20, *(len(label) for label, _ in lines)]) + 2
+        for label, value in lines:
+            self.line(f"  {label[:1].upper() + label[1:]:<{width}}{value}")
 
     def warn(self, sentences: Iterable[str]) -> None:
         """Write what a reader should not miss."""
@@ -72,6 +81,25 @@ class Page:
             table.add_row(*map(Text, row), style="bold" if k in bold else None)
         self._console.print(table)
 
+    def rows(
+        self,
+        rows: "AnswerRows",
+        display: "Display",
+        names: Sequence[str] = (),
+        *,
+        bold: Container[int] = (),
+        most: int = MOST_ROWS,
+    ) -> None:
+        """Write the first rows of a table of an answer, and how many more there are; names: its columns."""
+        from rocking.quantities import QUANTITIES
+
+        head, cells = display.table(rows, names)
+        words = [QUANTITIES[name].is_text for name in names or rows.columns if name in rows.columns]
+        left = [text for text, is_text in zip(head, words, strict=True) if is_text]
+        self.table(head, cells[:most], left, bold=bold, dense=True)
+        if len(cells) > most:
+            self.line(f"... and {len(cells) - most} more; --json has them all", style="dim")
+
 
 def sentence(text: str) -> str:
     """Return a sentence that begins and ends as one."""
@@ -85,6 +113,8 @@ def print_json(facts: Any) -> None:
 
 def plain(values: Any) -> Any:
     """Return values as JSON knows them."""
+    if hasattr(values, "plain"):
+        return {name: value for name, value in values.plain().items() if name != "units"}
     if isinstance(values, dict):
         return {str(name): plain(one) for name, one in values.items()}
     if isinstance(values, (list, tuple)):
@@ -98,7 +128,7 @@ def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json:
     """Write the files that were asked for, and print an answer."""
     written: list[Path] = [] if exports is None else exports.write(answer)
     if as_json:
-        print_json(answer.facts())
+        print_json(answer.answer().plain() if hasattr(answer, "answer") else answer.facts())  # type: ignore[attr-defined]
         return
     answer.show(Page())
     for path in written:

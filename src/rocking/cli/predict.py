@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.codes import show_limits
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
@@ -110,8 +111,9 @@ class PredictionAnswer:
     found: "Prediction"
     name: str = ""  # of the body
 
-    def facts(self) -> dict[str, Any]:
-        return self.found.as_dict()
+    def answer(self) -> Answer:
+        """Return what is predicted."""
+        return self.found.answer()
 
     def draw(self) -> Any:
         from rocking.plots import prediction_picture
@@ -210,9 +212,9 @@ class AssessmentAnswer:
         date = told.date or f"{datetime.now(UTC):%d %B %Y}"
         return {"project": told.project or "", "author": told.author or "", "date": date}
 
-    def facts(self) -> dict[str, Any]:
-        words = {name: getattr(self.told, name) for name in ("project", "author", "date")}
-        return {**words, **self.found.as_dict()}
+    def answer(self) -> Answer:
+        """Return the assessment, and what stands beside the signature."""
+        return self.found.answer() | {name: getattr(self.told, name) for name in ("project", "author", "date")}
 
     def draw(self) -> Any:
         from rocking.plots import assessment_picture

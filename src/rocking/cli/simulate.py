@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import plausibility
+from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, numbers_in, parsed_sets, with_sets
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
@@ -90,6 +90,7 @@ def simulate(
     start_velocity: Annotated[str | None, options.key(ResponseTable, "start_velocity")] = None,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking simulate`."""
@@ -97,21 +98,20 @@ def simulate(
 
     exports = Exports.of(out, EXPORTS)
     in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
-    length: str | None = None
-    acceleration: str | None = None
+    display = Display(acceleration="g")
     if file := document_file(context, body, ("response",), has="has a table [body] and "):
         with located(str(file)):
             tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
             problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent), in_space=in_space)
     else:
         arguments = Arguments(context, *_TABLES)
-        length, acceleration = arguments.length, arguments.acceleration
+        display = Display(arguments.length or "m", arguments.acceleration or "g")
         if words := arguments.several:
             if out:
                 raise InvalidValueError(
                     f"--out is of one record, and {words[0][:100]} is of several: --json has them all"
                 )
-            deliver(_each(arguments, words, quiet=as_json), as_json=as_json)
+            deliver(_each(arguments, words, display, quiet=as_json), as_json=as_json)
             return
         problem = _problem(arguments, in_space)
     if problem.free is not None:
@@ -119,7 +119,7 @@ def simulate(
     if in_space and problem.mechanics.name != "hull":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     with bar("history", quiet=as_json):
-        answer = answer_of(problem, length or "m", acceleration or "m/s2", listed=file is not None)
+        answer = answer_of(problem, display, listed=file is not None, details=details)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -163,7 +163,7 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
         return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()), in_space=in_space)
 
 
-def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAnswer":
+def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bool) -> "SeveralAnswer":
     """Return the responses to motions, each by itself."""
     from rocking.cli.study import in_lists
 
@@ -188,7 +188,7 @@ def _each(arguments: Arguments, words: list[str], *, quiet: bool) -> "SeveralAns
             for k in range(len(motions)):
                 found.append(replace(problem, motion=motions[k]).answer())
                 progress(1)
-    return SeveralAnswer([motions[k] for k in range(len(motions))], found)
+    return SeveralAnswer([motions[k] for k in range(len(motions))], found, display)
 
 
 @dataclass(frozen=True)
@@ -197,35 +197,38 @@ class SeveralAnswer:
 
     motions: list[Any]
     responses: list[Any]
+    display: Display
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return each motion with its outcome, peak and number of impacts."""
         pairs = zip(self.motions, self.responses, strict=True)
         rows = [
-            {
-                **MotionSummary.of(motion).as_dict(), "motion": leading(motion).name,
-                "outcome": each.outcome.name.lower(), "peak_rotation_rad": _peak(each),
-                "impacts": int(each.impacts.size),
+            MotionSummary.of(motion).answer() | {
+                "name": leading(motion).name, "outcome": response.outcome.name.lower(), **_peak(response),
+                "impacts": int(response.impacts.size),
             }
-            for motion, each in pairs
+            for motion, response in pairs
         ]  # fmt: skip
-        return {"overturned": self._fell, "motions": rows}
+        return Answer({"overturned": self._overturned, "motions": rows})
 
     @property
-    def _fell(self) -> int:
+    def _overturned(self) -> int:
         return sum(each.outcome is Outcome.OVERTURNED for each in self.responses)
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines
 
-        count = len(self.motions)
-        page.line(f"It overturns under {self._fell} of {count} motion{'s' * (count != 1)}.", "bold")
+        count, display = len(self.motions), self.display
+        page.line(f"It overturns under {self._overturned} of {count} motion{'s' * (count != 1)}.", "bold")
         page.line()
-        head = ("motion", f"{peak_names(map(support_of, self.motions))[0]} g", "outcome", "peak deg", "impacts")
+        acceleration = peak_names(map(support_of, self.motions))[0]
+        head = ("motion", f"{acceleration} {display.acceleration}", "outcome", f"peak {display.angle}", "impacts")
         rows = []
-        for row in self.facts()["motions"]:
-            peak = "-" if row["outcome"] == "overturned" else f"{math.degrees(row['peak_rotation_rad']):.4g}"
-            pga, outcome = f"{row['peak_acceleration_m_s2'] / g:.3g}", row["outcome"].replace("_", " ")
-            rows.append((row["motion"], pga, outcome, peak, f"{row['impacts']}"))
+        for row in self.answer()["motions"]:
+            name = "peak_tilt" if "peak_tilt" in row else "peak_rotation"
+            peak = "-" if row["outcome"] == "overturned" else display.cell(name, row[name])
+            pga = display.cell("peak_ground_acceleration", row["peak_ground_acceleration"])
+            rows.append((row["name"], pga, display.cell("outcome", row["outcome"]), peak, f"{row['impacts']}"))
         page.table(head, rows, ("motion", "outcome"), dense=True)
         page.line()
         page.facts(source_lines([MotionSummary.of(motion) for motion in self.motions]))
@@ -234,9 +237,10 @@ class SeveralAnswer:
         )
 
 
-def _peak(response: Any) -> float:
+def _peak(response: Any) -> dict[str, float]:
     """Return the largest rotation of a plane body, or tilt of one in space [rad]."""
-    return abs(float(response.peak_tilt if hasattr(response, "peak_tilt") else response.peak_rotation))
+    name = "peak_tilt" if hasattr(response, "peak_tilt") else "peak_rotation"
+    return {name: abs(float(getattr(response, name)))}
 
 
 def _check_share(alpha: float, free: float, option: str) -> None:

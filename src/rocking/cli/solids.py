@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
-from rocking.cli.numbers import in_unit, recommendation_facts, show_recommendation
+from rocking.answers import Answer
+from rocking.bodies.solid import Corner, Edge, RoundBase, Solid, SupportPolygon
+from rocking.cli.numbers import in_unit, recommendation_values, show_recommendation
 from rocking.cli.page import Page
 from rocking.conventions import LENGTH_UNITS
-from rocking.errors import GeometryError
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3  # edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]
@@ -64,16 +64,16 @@ class SolidAnswer:
         unknown = needs if out and self.solid.known is not None else []
         return [ROUND_BASE, *unknown] if isinstance(self.solid.base, RoundBase) else unknown
 
-    def facts(self) -> dict[str, Any]:
-        return {
-            "body": body_facts(self.solid),
-            "base": base_facts(self.solid.base),
-            "gravity_m_s2": self.gravity,
+    def answer(self) -> Answer:
+        """Return the body, every edge and the coefficients from it."""
+        return Answer({
+            "body": self.solid.answer(),
+            "gravity": self.gravity,
             "edges": self.edges,
             "edges_left_out": self.left_out,
-            "repairs": list(self.solid.repairs),
             "notes": self.notes,
-        } | recommendation_facts(self.recommendation)
+            **recommendation_values(self.recommendation),
+        })  # fmt: skip
 
     def draw(self) -> Any:
         from rocking.plots.solid import solid_picture
@@ -159,12 +159,12 @@ def _edge(
     results = {m.name: impact_in_space(solid, -edge.direction, pivot=edge, onto=where, model=m) for m in models}
     return {
         "edge": name,
-        "from_m": start,
-        "to_m": start if end is None else end,
-        "slenderness_angle_rad": alpha,
+        "edge_start": start,
+        "edge_end": start if end is None else end,
+        "slenderness_angle": alpha,
         "slenderness_ratio": 1.0 / math.tan(alpha),
-        "semi_diagonal_m": semi_diagonal,
-        "frequency_parameter_rad_s": math.sqrt(solid.mass * gravity * semi_diagonal / inertia),
+        "semi_diagonal": semi_diagonal,
+        "frequency_parameter": math.sqrt(solid.mass * gravity * semi_diagonal / inertia),
         "lands_on": onto,
         "coefficients": {
             model: {
@@ -196,44 +196,15 @@ def _landing(base: SupportPolygon, which: int) -> tuple[str, Edge | Corner]:
     return f"corner {number}", base.corners[number]
 
 
-def body_facts(solid: Solid) -> dict[str, Any]:
-    """Return mass and geometry of a body in space."""
-    low, high = solid.box
-    return {
-        "kind": "Solid",
-        "name": solid.name,
-        "parts": len(solid.local_parts),
-        "mass_kg": solid.mass,
-        "assumed": list(solid.assumed),
-        "warnings": list(solid.doubts),
-        "volume_m3": solid.volume,
-        "size_m": (high - low).tolist(),
-        "centre_m": solid.centre.tolist(),
-        "centre_height_m": float(solid.centre[2] - solid.ground),
-        "inertia_kg_m2": solid.inertia.tolist(),
-    }
-
-
-def base_facts(base: Base) -> dict[str, Any]:
-    """Return on what a body stands: a polygon or a circle."""
-    if isinstance(base, SupportPolygon):
-        return {"kind": "polygon", "vertices_m": base.vertices.tolist()}
-    if isinstance(base, RoundBase):
-        return {"kind": "circle", "centre_m": base.centre.tolist(), "radius_m": base.radius}
-    raise GeometryError(f"a base is a polygon or a circle, got {base!r:.60}")
-
-
 def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
     """Return an edge under one model as a row of a table."""
-    result, start, end = edge["coefficients"][name], edge["from_m"], edge["to_m"]
+    result, start, end = edge["coefficients"][name], edge["edge_start"], edge["edge_end"]
     return {
-        **{key: value for key, value in edge.items() if key not in {"coefficients", "from_m", "to_m"}},
-        "from_x_m": start[0],
-        "from_y_m": start[1],
-        "to_x_m": end[0],
-        "to_y_m": end[1],
+        **{key: value for key, value in edge.items() if key not in {"coefficients", "edge_start", "edge_end"}},
+        "edge_start": ", ".join(map(repr, start)),
+        "edge_end": ", ".join(map(repr, end)),
         "model": name,
-        "coefficient_of_restitution": result["coefficient"],
+        "coefficient": result["coefficient"],
         "energy_ratio": result["energy_ratio"],
         "flags": " ".join(result["flags"]),
     }
@@ -274,13 +245,13 @@ def _rounded(place: float, length: str) -> str:
 
 
 def _geometry(edge: dict[str, Any], length: str) -> tuple[str, ...]:
-    alpha, unit = edge["slenderness_angle_rad"], LENGTH_UNITS[length]
+    alpha, unit = edge["slenderness_angle"], LENGTH_UNITS[length]
     return (
         edge["edge"],
-        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in (edge["from_m"], edge["to_m"])),
+        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in (edge["edge_start"], edge["edge_end"])),
         f"{alpha:.4f}",
         f"{math.degrees(alpha):.2f}",
         f"{edge['slenderness_ratio']:.3f}",
-        f"{edge['semi_diagonal_m'] / unit:.{4 if length == 'm' else 2}f}",
-        f"{edge['frequency_parameter_rad_s']:.4f}",
+        f"{edge['semi_diagonal'] / unit:.{4 if length == 'm' else 2}f}",
+        f"{edge['frequency_parameter']:.4f}",
     )

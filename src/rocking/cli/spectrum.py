@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
@@ -107,29 +108,30 @@ class SpectrumAnswer:
 
         return rocking_spectrum_picture(self.dataset)
 
-    def facts(self) -> dict[str, Any]:
+    def answer(self) -> Answer:
+        """Return every history, and what each curve shows."""
         dataset = self.dataset
-        return {
+        return Answer({
             "motions": [str(name) for name in dataset["motion"].values.tolist()],
             "restitution": dataset.attrs["restitution"],
             "scale": float(dataset.attrs["scale"]),
             "linear": bool(dataset.attrs["setting_linear"]),
-            "gravity_m_s2": float(dataset.attrs["setting_gravity"]),
-            "slenderness_angle_rad": dataset["slenderness_angle"].values,
-            "period_s": dataset["period"].values,
-            "semi_diagonal_m": dataset["semi_diagonal"].values,
+            "gravity": float(dataset.attrs["setting_gravity"]),
+            "slenderness_angle": dataset["slenderness_angle"].values,
+            "period": dataset["period"].values,
+            "semi_diagonal": dataset["semi_diagonal"].values,
             "mode": dataset["mode"].values,
             "peak_ratio": dataset["peak_ratio"].values,
             "curves": self.curves(),
             "contact": dataset.attrs["contact"],
-        }
+        })  # fmt: skip
 
     def curves(self) -> list[dict[str, Any]]:
         """Return what every curve shows: how many blocks end how, and the largest that stay standing or overturn."""
         return [
             {
                 "motion": str(name),
-                "slenderness_angle_rad": alpha,
+                "slenderness_angle": alpha,
                 **_curve(self.dataset.isel(motion=i, slenderness_angle=j)),
             }
             for i, name in enumerate(self.dataset["motion"].values.tolist())
@@ -169,12 +171,12 @@ def _curve(one: "xr.Dataset") -> dict[str, Any]:
         "overturned": int((mode >= 0).sum()),
         "failed": int((mode == -3).sum()),
         "largest_peak_ratio": float(peaks.max()) if peaks.size else None,
-        "largest_overturned_period_s": float(fallen.max()) if fallen.size else None,
+        "largest_overturned_period": float(fallen.max()) if fallen.size else None,
     }
 
 
 def _row(one: dict[str, Any]) -> tuple[str, ...]:
-    alpha, peak, last = (one[k] for k in ("slenderness_angle_rad", "largest_peak_ratio", "largest_overturned_period_s"))
+    alpha, peak, last = (one[k] for k in ("slenderness_angle", "largest_peak_ratio", "largest_overturned_period"))
     shape = (f"{1.0 / math.tan(alpha):.4g}", f"{math.degrees(alpha):.4g}")
     counts = tuple(str(one[name]) for name in ("not_lifted", "rocked", "overturned"))
     return *shape, *counts, *("-" if v is None else f"{v:.4g}" for v in (peak, last))

@@ -12,9 +12,7 @@ from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
-from rocking.motions.components import leading
-from rocking.motions.pulse import Pulse
-from rocking.motions.summary import MotionSummary, short_provenance
+from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
 from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
 from rocking.spec.study import StudyProblem
@@ -163,11 +161,9 @@ def body_lines(body: Any, settings: Settings, length: str = "m", *, varied: bool
 _GROUND = {"friction", "bounce", "bounce_law"}
 
 
-def subject_facts(problem: StudyProblem) -> dict[str, Any]:
-    """Return the body and the motion of a study of one of each as plain values for JSON."""
+def subject_values(problem: StudyProblem) -> dict[str, Any]:
+    """Return the body and the motion of a study of one of each for an answer."""
     body, motion = problem.bodies[0], problem.motions[0]
-    facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
-    kind = "pulse" if isinstance(leading(motion), Pulse) else "record"
     table = problem.document.map
     stated = problem.settings.stated
     varied: set[str] = set() if table is None else {table.x.axis, table.y.axis}
@@ -176,5 +172,5 @@ def subject_facts(problem: StudyProblem) -> dict[str, Any]:
         "body": repr(body),
         **ground,
         "assumed": list(getattr(body, "assumed", ())),
-        "motion": {"kind": kind, **MotionSummary.of(motion).as_dict(), **facts, "warnings": list(motion.doubts)},
+        "motion": motion_answer(motion),
     }

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import CSV, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
@@ -85,8 +86,9 @@ class ValidationAnswer:
 
     found: "FolderValidation"
 
-    def facts(self) -> dict[str, Any]:
-        return self.found.as_dict()
+    def answer(self) -> Answer:
+        """Return how good the predictions were."""
+        return self.found.answer()
 
     def draw(self) -> Any:
         from rocking.plots import reliability_picture

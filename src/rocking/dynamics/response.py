@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks, plausibility
+from rocking.answers import Answer, AnswerRows
 from rocking.bodies import Body
-from rocking.conventions import FEET, Assumed, FloatArray, given_or_assumed
+from rocking.conventions import DEFAULT_FRICTION, FEET, Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
@@ -21,6 +22,7 @@ from rocking.dynamics.settings import SHORTEST_STEP
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
+from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
 from rocking.restitution.from_file import origin_of
 
@@ -116,6 +118,16 @@ class Response(ResponseBase):
     def side(self) -> int:
         """Side to which it overturned: 1 right, -1 left, 0 if it did not; as `simulate_many` has it [-]."""
         return int(self.trajectory.side) if self.outcome is Outcome.OVERTURNED else 0
+
+    @property
+    def peak_ratio(self) -> float:
+        """Peak rotation over the slenderness angle of its side; beyond 1 is not overturning [-]."""
+        return self.peak_rotation / self.parameters.side(self.trajectory.peak_rotation).slenderness_angle
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """Coefficient of restitution by the foot landed on [-]."""
+        return {foot: getattr(self.parameters, foot).coefficient for foot in FEET}
 
     @property
     def least_force(self) -> float:
@@ -337,6 +349,58 @@ class Response(ResponseBase):
         x = (t - output.start[k]) / output.length[k]
         c = output.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
+
+    def answer(self, friction: float = DEFAULT_FRICTION) -> Answer:
+        """Return what is shown of the response.
+
+        Parameters
+        ----------
+        friction : float
+            Coefficient of friction between body and ground, with which the demand is compared [-].
+
+        Returns
+        -------
+        Answer
+            Body, motion, restitution, outcome, peaks, impacts, friction demand, accuracy, and doubts.
+        """
+        contact = self.contact
+        return super().answer() | {
+            "coefficient": self.coefficients,
+            "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
+            "initial_rotation": float(self.rotation[0]), "restitution": self.parameters.label,
+            "linear": self.settings.linear, "uplift_times": self.uplifts, "impacts": AnswerRows.of(self.impacts),
+            "energy_closure": self.energy.closure, "error_estimate": self.error_estimate, "friction": friction,
+            "friction_assumed": isinstance(friction, Assumed), "friction_demand": contact.friction_demand,
+            "friction_of_motion": contact.friction_of_motion, "friction_of_impacts": contact.friction_of_impacts,
+            "least_force": self.least_force, "warnings": self.doubts(friction),
+        }  # fmt: skip
+
+    def outcome_answer(self) -> Answer:
+        """Return what is shown of the response where it stands beside others.
+
+        Returns
+        -------
+        Answer
+            Coefficients, outcome and its side, peaks, number of impacts.
+        """
+        parts = super().answer()
+        names = ("outcome", "summary", "still_rocking", "last_state", "overturning_time")
+        return Answer({name: parts[name] for name in names}) | {
+            **self._values, "coefficient": self.coefficients, "impacts": int(self.impacts.size),
+        }  # fmt: skip
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        return {
+            "side": {1: "right", -1: "left"}.get(self.side), "peak_rotation": self.peak_rotation,
+            "peak_ratio": self.peak_ratio, "lost_contact": self.lost_contact,
+        }  # fmt: skip
+
+    @property
+    def _last_state(self) -> dict[str, Any]:
+        return {
+            "time": self.time[-1], "rotation": self.rotation[-1], "angular_velocity": self.angular_velocity[-1],
+        }  # fmt: skip
 
     @property
     def _samples(self) -> dict[str, FloatArray]:

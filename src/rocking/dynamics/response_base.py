@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
+from rocking.answers import Answer
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -122,6 +123,33 @@ class ResponseBase(Exported):
     @abstractmethod
     def _facts(self) -> dict[str, Any]:
         """What was computed from what, beside software, engine, outcome and settings, as plain values."""
+
+    def answer(self) -> Answer:
+        """Return what is shown of the response.
+
+        Returns
+        -------
+        Answer
+            What was computed, the outcome, peaks, energy, and tables of impacts and contacts.
+        """
+        time = self.overturning_time
+        return Answer({
+            "engine": self.engine, "gravity": self.settings.gravity, "outcome": self.outcome.name.lower(),
+            "summary": self.summary, "still_rocking": self.still_rocking,
+            "last_state": {"unfinished": self.unfinished, **self._last_state} if self.still_rocking else None,
+            "overturning_time": None if math.isnan(time) else time,
+            **self._values,
+        })  # fmt: skip
+
+    @property
+    @abstractmethod
+    def _values(self) -> dict[str, Any]:
+        """What an answer of these mechanics has beside what all have."""
+
+    @property
+    @abstractmethod
+    def _last_state(self) -> dict[str, Any]:
+        """State of a body that still rocks where the response ends."""
 
     def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
         """Draw the response.

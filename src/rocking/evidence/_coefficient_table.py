@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.conventions import NORMAL_95, Foot
 from rocking.evidence.calibration import CALIBRATED_RANGE, KEPT, PredictedCoefficient, fingerprint, geometry_of
@@ -103,20 +103,15 @@ class CoefficientRow:
         """Half the width of the interval [-]."""
         return 0.5 * (self.high - self.low)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values, for JSON and tables."""
-        return {
-            "model": self.name,
-            "coefficient_of_restitution": self.coefficient,
-            "low_95": self.low,
-            "high_95": self.high,
-            "impulse_ratio_k": self.implication.impulse_ratio,
-            "impulse_x_m": self.implication.impulse_x,
-            "energy_loss": self.implication.energy_loss,
-            "friction_demand": self.implication.friction_demand,
-            "admissible": self.implication.admissible,
-            "warnings": list(self.warnings),
-        }
+    def answer(self) -> Answer:
+        """Return the model's coefficient, its interval and what it implies."""
+        implied = self.implication
+        return Answer({
+            "model": self.name, "coefficient": self.coefficient, "low_95": self.low, "high_95": self.high,
+            "impulse_ratio": implied.impulse_ratio, "impulse_position": implied.impulse_x,
+            "energy_loss": implied.energy_loss, "friction_demand": implied.friction_demand,
+            "admissible": implied.admissible, "warnings": self.warnings,
+        })  # fmt: skip
 
 
 def default_models() -> list[RestitutionModel]:

@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.evidence import comparison
@@ -183,10 +183,10 @@ class LeagueRow:
         values = self.model.parameters
         return ", ".join(f"{name} = {values[name]:.4g}" for name in self.parameters)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values."""
+    def answer(self) -> Answer:
+        """Return what is shown of the model."""
         plain = {name: getattr(self, name) for name in self.__slots__ if name not in ("model", "parameters")}
-        return {**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}}
+        return Answer({**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}})
 
 
 def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None = None) -> tuple[LeagueRow, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.conventions import FEET, NORMAL_95, Foot, percent
 from rocking.evidence._coefficient_table import CALIBRATED
 from rocking.evidence.judgement import Judgement, Standing, TrackRecord
@@ -27,10 +28,6 @@ APART = 3.92  # standard errors between two values, so that 97.5 % of measuremen
 def product(coefficients: Mapping[str, float]) -> float:
     """Return the product of coefficients, by the foot landed on [-]."""
     return math.prod(coefficients.values())
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,27 +87,27 @@ class ModelForBody:
         half = f" +- {0.5 * (self.high[place] - self.low[place]):.3f}" if place in self.low else ""
         return f"{self.coefficients[place]:.4f}{half}"
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return the row as plain values, None where something does not exist."""
+    def answer(self) -> Answer:
+        """Return what is shown of the model."""
         record = self.record
-        return {
+        return Answer({
             "model": self.name,
             "title": self.title,
             "standing": self.standing.value,
-            "coefficient_of_restitution": dict(self.coefficients),
-            "low_95": dict(self.low),
-            "high_95": dict(self.high),
-            "energy_left_after_both_feet": _finite(self.energy_left),
-            "impacts_to_half_energy": _finite(self.impacts_to_half),
+            "coefficient": self.coefficients,
+            "low_95": self.low,
+            "high_95": self.high,
+            "energy_left": self.energy_left,
+            "impacts_to_half": self.impacts_to_half,
             "bias": None if record is None else record.bias,
             "rmse": None if record is None else record.rmse,
             "loss_rmse": None if record is None else record.loss_rmse,
             "behind_closest": None if record is None else [record.behind.value, record.behind.low, record.behind.high],
-            "reasons": list(self.reasons),
-            "concerns": list(self.concerns),
+            "reasons": self.reasons,
+            "concerns": self.concerns,
             "outcome": None if self.outcome is None else self.outcome.name.lower(),
-            "peak_rotation_over_alpha": _finite(self.peak_ratio),
-        }
+            "peak_ratio": self.peak_ratio,
+        })  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,26 +297,26 @@ class Recommendation(Exported):
         shown = [*lines, "", self._legend, ""] if rows else []
         return "\n".join([*shown, *(f"- {each}" for each in (*self.evidence, *self.advice))])
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return everything that is shown.
 
         Returns
         -------
-        dict
-            None where something does not exist.
+        Answer
+            Models, measurements that judge them, and advice.
         """
         judged = self.judgement
-        return {
+        return Answer({
             "prediction": self.prediction or None,
-            "envelope": list(self.envelope),
-            "judged_by": None if judged is None else {"rows": len(judged.rows), "rounding": judged.rounding},
-            "outside": list(self.outside),
-            "notes": list(self.notes),
-            "models": [each.as_dict() for each in self.models],
+            "envelope": self.envelope,
+            "judged_by": None if judged is None else {"measurements": len(judged.rows), "rounding": judged.rounding},
+            "outside": self.outside,
+            "notes": self.notes,
+            "models": [each.answer() for each in self.models],
             "overturned": None if self.overturned is None else [self.overturned.count, self.overturned.draws],
-            "evidence": list(self.evidence),
-            "advice": list(self.advice),
-        }
+            "evidence": self.evidence,
+            "advice": self.advice,
+        })  # fmt: skip
 
     def exported(self) -> "Table":
         """Return one row a model."""

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from rocking import plausibility
+from rocking.answers import Answer
 from rocking.conventions import g
 from rocking.motions.components import Components, leading
 from rocking.motions.intensity import measure, sampled
@@ -129,18 +131,33 @@ class MotionSummary:
         source = provenance_of(motion, lambda _: "analytical pulse")
         return cls(motion.name, support_of(motion), float(motion.peak), velocity, float(motion.duration), source)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return the summary as plain values.
+    def answer(self) -> Answer:
+        """Return what is shown of the motion.
 
         Returns
         -------
-        dict
-            Values in SI units, named in the keys.
+        Answer
+            Name, support, peak acceleration and velocity, duration, provenance.
         """
-        return {
-            "name": self.name, "support": self.support, "peak_acceleration_m_s2": self.peak,
-            "peak_velocity_m_s": self.peak_velocity, "duration_s": self.duration, "provenance": list(self.provenance),
-        }  # fmt: skip
+        return Answer({
+            "name": self.name, "support": self.support, "peak_ground_acceleration": self.peak,
+            "peak_ground_velocity": self.peak_velocity, "duration": self.duration, "provenance": self.provenance,
+        })  # fmt: skip
+
+
+def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
+    """Return what is shown of a motion times a scale factor [-]; None without a motion."""
+    if motion is None:
+        return None
+    summary, size = MotionSummary.of(motion), abs(scale)
+    return summary.answer() | {
+        "kind": "pulse" if isinstance(leading(motion), Pulse) else "record",
+        "scale": scale,
+        "peak_ground_acceleration": size * summary.peak,
+        "peak_ground_velocity": size * summary.peak_velocity,
+        "provenance": provenance_of(motion),
+        "warnings": plausibility.of_acceleration(size * summary.peak),
+    }
 
 
 def summaries_of(motions: Any) -> tuple[MotionSummary, ...]:

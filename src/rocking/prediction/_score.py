@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
+from rocking.answers import Answer
 from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
 from rocking.statistics.counts import LEAST_CLUSTERS
@@ -146,16 +147,16 @@ class Validation:
 
     __repr__ = __str__
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return everything that is shown.
 
         Returns
         -------
-        dict
+        Answer
             NaN where something does not exist, such as the balanced accuracy where all outcomes are alike.
         """
         names = (*MEASURES, "balanced_accuracy", "bias", "sureness")
-        return {
+        return Answer({
             "event": self.event, "finding": self.finding, "too_sure": self.too_sure, "verdict": self.verdict,
             "sentences": self.sentences,
             "outcomes": self.count, "happened": float(self.forecasts[PREDICTION].outcome.sum()),
@@ -169,7 +170,7 @@ class Validation:
                 for key, scores in self.differences.items()
             },
             "reliability": [vars(each) for each in self.forecasts[PREDICTION].reliability()],
-        }  # fmt: skip
+        })  # fmt: skip
 
 
 def score(  # noqa: PLR0913 - the outcomes and what shook each, beside how they are counted

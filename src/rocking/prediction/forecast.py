@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.conventions import FloatArray, percent
 from rocking.exported import Exported
 from rocking.motions.summary import MotionSummary, condition
@@ -193,30 +194,40 @@ class Prediction(Exported):
 
     __repr__ = __str__
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return everything that is shown.
 
         Returns
         -------
-        dict
+        Answer
             NaN where something does not exist.
         """
         plain = ("verdict", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs", "decides",
                  "count", "histories", "failed", "seed", "gravity")  # fmt: skip
-        return {
+        return Answer({
             **{name: getattr(self, name) for name in plain},
             "sentences": list(self.sentences),
             "likelihood": {name: likelihood(each.low, each.high) for name, each in self.chances.items()},
             "likelihood_scale": scale_words(),
             "body": repr(self.body),
-            "motions": [each.as_dict() for each in self.motions],
+            "motions": [each.answer() for each in self.motions],
             "software": SOFTWARE,
             "probability": {name: vars(chance) for name, chance in self.chances.items()},
             "beside": {name: vars(chance) for name, chance in self.beside.items()},
             "shares": {_told(name): asdict(share) for name, share in self.shares.items()},
-            "ends": {name: asdict(each) for name, each in self.ends.items()},
-            "growth": {**asdict(self.growth), "sentence": self.growth.sentence},
-        }
+            "ends": {
+                name: {
+                    "input_low": each.low, "input_high": each.high, "probability_low": each.probability_low,
+                    "probability_high": each.probability_high,
+                }
+                for name, each in self.ends.items()
+            },
+            "growth": {
+                "pairs": self.growth.pairs, "pairs_rocking": self.growth.rocking, "pairs_apart": self.growth.lost,
+                "motions_apart": self.growth.motions_lost, "motions": self.growth.motions,
+                "relative_change": self.growth.median, "sentence": self.growth.sentence,
+            },
+        })  # fmt: skip
 
     def exported(self) -> "Table":
         """Return one row a motion, the inputs beside it."""

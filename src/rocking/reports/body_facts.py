@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
+from rocking.answers import Answer, AnswerRows
 from rocking.bodies import Block, Body, MassPoints, Section
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import InvalidValueError
@@ -19,48 +20,17 @@ _MOST_VERTICES = 2000  # vertices of a ring that is drawn
 _RATIOS = np.geomspace(0.8, 12.0, 40)
 
 
-def body_facts(body: Body, gravity: float) -> dict[str, Any]:
-    """Return what is said of a body under a gravity [m/s2]."""
-    return {
-        "kind": type(body).__name__,
-        "mass_kg": body.mass,
-        "centre_m": body.centre,
-        "feet_m": body.feet,
-        "moment_of_inertia_kg_m2": body.moment_of_inertia,
-        "gravity_m_s2": gravity,
-        "assumed": list(body.assumed),
-        "warnings": list(body.doubts),
-        "sides": {foot: side_facts(body, foot, gravity) for foot in FEET},
-    }
-
-
-def side_facts(body: Body, foot: Foot, gravity: float) -> dict[str, float]:
-    """Return what one side of a body decides under a gravity [m/s2]."""
-    side = body.side(foot, gravity)
-    return {
-        "slenderness_ratio": side.slenderness_ratio,
-        "slenderness_angle_rad": side.slenderness_angle,
-        "semi_diagonal_m": side.semi_diagonal,
-        "frequency_parameter_rad_s": side.frequency_parameter,
-        "uplift_acceleration_m_s2": side.uplift_acceleration,
-    }
-
-
-def outline_facts(body: Body) -> dict[str, Any]:
-    """Return what draws a body, in the user's coordinates."""
-    # returns ``outline``: polygons with holes [m] and density [kg/m3], rings of more than 2000 vertices thinned;
-    # ``points``: x, y [m] and mass [kg] of mass points; ``centre``; ``base``: both feet; ``ground``: its height;
-    # ``contact``: stretches of the base that touch [m]
+def outline_answer(body: Body) -> Answer:
+    """Return what draws a body, in the user's coordinates: polygons, mass points, ground and where it is touched."""
+    # rings of more than 2000 vertices are thinned
     shift = body.origin_x
-    points = np.column_stack([body.points, body.masses]).tolist() if isinstance(body, MassPoints) else []
-    return {
+    return Answer({
         "outline": _polygons(body),
-        "points": points,
-        "centre": list(body.centre),
-        "base": list(body.feet),
+        "points": body.points if isinstance(body, MassPoints) else [],
+        "masses": body.masses if isinstance(body, MassPoints) else [],
         "ground": body.ground,
-        "contact": [[shift + a, shift + b] for a, b in body.local_contact],
-    }
+        "base_contact": [[shift + a, shift + b] for a, b in body.local_contact],
+    })  # fmt: skip
 
 
 def _polygons(body: Body) -> list[dict[str, Any]]:
@@ -107,18 +77,16 @@ class ImpactAnswer:
         checked = (models or default_models()) if identities else []
         return cls(body, tables, gravity, {each.label: identity_report(body, each, onto=foot) for each in checked})
 
-
-def impact_facts(answer: ImpactAnswer) -> dict[str, Any]:
-    """Return everything that is said of an impact."""
-    body = answer.body
-    return {
-        "body": body_facts(body, answer.gravity),
-        "ked_energy_shares": {foot: energy_balance(body, onto=foot).shares for foot in answer.tables},
-        "coefficients": {foot: [row.as_dict() for row in rows] for foot, rows in answer.tables.items()},
-        "identities": {
-            name: {check.name: check.holds for check in report} for name, report in answer.identities.items()
-        },
-    }
+    def answer(self) -> Answer:
+        """Return the body, KED's energy, and every model's coefficient with what it implies."""
+        return Answer({
+            "body": self.body.answer(self.gravity),
+            "ked_energy_shares": {foot: energy_balance(self.body, onto=foot).shares for foot in self.tables},
+            "coefficients": {foot: [row.answer() for row in rows] for foot, rows in self.tables.items()},
+            "identities": {
+                name: {check.name: check.holds for check in report} for name, report in self.identities.items()
+            },
+        })  # fmt: skip
 
 
 def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -> bool:
@@ -126,7 +94,7 @@ def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -
     return all(math.isclose(a.coefficient, b.coefficient, rel_tol=1e-12, abs_tol=1e-15) for a, b in pairs)
 
 
-def stages_facts(body: Body, onto: Foot, angular_velocity: float = 1.0) -> dict[str, Any]:
+def stages_answer(body: Body, onto: Foot, angular_velocity: float = 1.0) -> Answer:
     """Return the energy balance of an impact at a velocity [rad/s] with a field of velocities for each stage of KED."""
     from rocking.plots.energy_stages import STAGE_WORDS
 
@@ -134,16 +102,16 @@ def stages_facts(body: Body, onto: Foot, angular_velocity: float = 1.0) -> dict[
     points = _arrow_feet(body)
     fields = balance.velocities(points[:, 0], points[:, 1])
     stages = [
-        {"name": name, "words": STAGE_WORDS[name], "energy_J": energy, "share": balance.shares[name],
-         "velocity_m_s": fields[name].tolist()}
+        {"name": name, "words": STAGE_WORDS[name], "energy": energy, "share": balance.shares[name],
+         "velocity": fields[name]}
         for name, energy in balance.totals.items()
     ]  # fmt: skip
-    return {
-        "velocity_before_rad_s": balance.velocity_before,
-        "velocity_after_rad_s": balance.velocity_after,
-        "points_m": points.tolist(),
+    return Answer({
+        "velocity_before": balance.velocity_before,
+        "velocity_after": balance.velocity_after,
+        "points": points,
         "stages": stages,
-    }
+    })  # fmt: skip
 
 
 def _arrow_feet(body: Body) -> FloatArray:
@@ -157,23 +125,22 @@ def _arrow_feet(body: Body) -> FloatArray:
 
 
 @cache
-def measured_facts() -> dict[str, Any]:
+def measured_answer() -> Answer:
     """Return every independent published measurement; ``low`` and ``high`` are what the printed digits leave open."""
     data = all_measurements()
     columns = {
         "group": data.group,
         "label": data.labels,
         "slenderness_ratio": data.slenderness.tolist(),
-        "slenderness_angle_rad": np.arctan(1.0 / data.slenderness).tolist(),
+        "slenderness_angle": np.arctan(1.0 / data.slenderness).tolist(),
         "coefficient": data.coefficient.tolist(),
-        "low": data.low.tolist(),
-        "high": data.high.tolist(),
+        "coefficient_low": data.low.tolist(),
+        "coefficient_high": data.high.tolist(),
     }
-    rows = zip(*columns.values(), strict=True)
-    return {"source": data.source, "points": [dict(zip(columns, row, strict=True)) for row in rows]}
+    return Answer({"source": data.source, "measurements": AnswerRows(columns)})
 
 
-def curves_facts() -> list[dict[str, Any]]:
+def curves_answer() -> list[dict[str, Any]]:
     """Return the coefficient of homogeneous rectangles under every model [-]."""
     return _curves(*models().values())
 

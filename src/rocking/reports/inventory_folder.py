@@ -16,8 +16,8 @@ from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.table import (
     COLUMNS,
+    answer_of,
     as_csv,
-    as_plain,
     header,
     limits,
     plan_header,
@@ -108,8 +108,8 @@ def _write_whole(assessment: Assessment, path: Path) -> Path:
 
 
 def inventory_json(assessment: Assessment) -> str:
-    """Return an assessment as JSON: one object; SI units, named in the keys."""
-    return json.dumps(as_plain(assessment), indent=2, allow_nan=False, ensure_ascii=False)
+    """Return an assessment as JSON: one object; SI units."""
+    return json.dumps(answer_of(assessment).plain(), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def _document(assessment: Assessment, path: Path) -> None:

@@ -64,7 +64,7 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
         ],
         "errata": [asdict(erratum) for erratum in result.errata],
         "tables": {title: [_row(row) for row in rows] for title, rows in result.tables.items()},
-        "league": [row.as_dict() for row in result.league],
+        "league": [dict(row.answer().values) for row in result.league],
         "calibration": {
             "model": result.calibration.model().label,
             **result.calibration.summary,

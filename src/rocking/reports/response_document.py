@@ -20,7 +20,7 @@ from rocking.plots.body import body_picture, coefficient_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.labels import fine_samples
 from rocking.plots.response import response_picture
-from rocking.reports.body_facts import ImpactAnswer, side_facts
+from rocking.reports.body_facts import ImpactAnswer
 from rocking.reports.document import (
     Block,
     Cell,
@@ -35,7 +35,7 @@ from rocking.reports.document import (
 )
 from rocking.reports.document import table as report_table
 from rocking.reports.motion_sources import motion_sources
-from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, outcome_facts, restitution_words
+from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, restitution_words
 from rocking.version import SOFTWARE
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
@@ -115,14 +115,14 @@ def body_table(title: str, body: Body, gravity: float, *more: tuple[str, str]) -
 def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
     for foot in FEET if not body.is_symmetric else FEET[-1:]:
-        side = side_facts(body, foot, gravity)
+        side = body.side(foot, gravity)
         on = "" if body.is_symmetric else f", {foot} foot"
-        angle, uplift = side["slenderness_angle_rad"], side["uplift_acceleration_m_s2"]
+        angle, uplift = side.slenderness_angle, side.uplift_acceleration
         rows += [
-            (f"slenderness h/b{on}", f"{side['slenderness_ratio']:.4g}"),
+            (f"slenderness h/b{on}", f"{side.slenderness_ratio:.4g}"),
             (f"slenderness angle{on}", f"{angle:.5g} rad = {math.degrees(angle):.4g}\N{DEGREE SIGN}"),
-            (f"semi-diagonal R{on}", f"{side['semi_diagonal_m']:.5g} m"),
-            (f"frequency parameter p{on}", f"{side['frequency_parameter_rad_s']:.5g} rad/s"),
+            (f"semi-diagonal R{on}", f"{side.semi_diagonal:.5g} m"),
+            (f"frequency parameter p{on}", f"{side.frequency_parameter:.5g} rad/s"),
             (f"lifts from{on}", f"{uplift:.4g} m/s\N{SUPERSCRIPT TWO} = {uplift / g:.3g} g"),
         ]
     return rows
@@ -232,10 +232,10 @@ def _coefficient(row: CoefficientRow) -> list[object]:
 
 
 def _outcome(label: str, response: Response, friction: float) -> list[object]:
-    facts, contact = outcome_facts(response), response.contact
+    facts, contact = response.outcome_answer(), response.contact
     fell = response.outcome is Outcome.OVERTURNED
-    word = OUTCOME_WORDS[response.outcome] + (f" to the {facts['overturned_to']}" if fell else "")
-    peaks = math.degrees(response.peak_rotation), facts["peak_rotation_over_alpha"]
+    word = OUTCOME_WORDS[response.outcome] + (f" to the {facts['side']}" if fell else "")
+    peaks = math.degrees(response.peak_rotation), facts["peak_ratio"]
     return [
         restitution_words(label),
         *(f"{side.coefficient:.4f}" for side in (response.parameters.left, response.parameters.right)),

@@ -1,24 +1,19 @@
-"""A response and its motion in plain values: SI units, None where there is nothing; the API describes every key."""
+"""What several models say together, a restitution in words, and what is shown of a motion."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
 
-from rocking import plausibility
-from rocking.conventions import FEET, Assumed
+from rocking.answers import Answer
 from rocking.dynamics.response import Response
-from rocking.motions.intensity import Measure, intensity_measures, key_with_unit
+from rocking.motions.intensity import Measure, intensity_measures
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Motion, Pulse
+from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import ResponseSpectrum
-from rocking.motions.summary import provenance_of, support_of
+from rocking.motions.summary import provenance_of
 from rocking.outcome import Outcome
 from rocking.plots.labels import Traces, traces
+from rocking.quantities import Quantity
 from rocking.restitution import models
-
-if TYPE_CHECKING:
-    from rocking.dynamics.contact import ContactResponse
 
 OUTCOME_WORDS = {
     Outcome.OVERTURNED: "overturns",
@@ -26,113 +21,6 @@ OUTCOME_WORDS = {
     Outcome.NO_UPLIFT: "is never lifted",
 }
 _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
-
-
-def response_facts(response: Response, friction: float) -> dict[str, Any]:
-    """Return everything that is said of a response on a ground of a coefficient of friction [-]."""
-    keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
-    contact = response.contact
-    return {
-        "body": rocker_facts(response),
-        "motion": moved_facts(response.motion, response.scale),
-        "initial_rotation_rad": float(response.rotation[0]),
-        "restitution": response.parameters.label,
-        "engine": response.engine,
-        "gravity_m_s2": response.settings.gravity,
-        "linear": response.settings.linear,
-        **outcome_facts(response),
-        "uplifts_s": response.uplifts.tolist(),
-        "impacts": [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()],
-        "energy_closure": response.energy.closure,
-        "error_estimate_rad": finite(response.error_estimate),
-        # what rocking without slip and flight takes, beside the coefficient of friction that there is [-]
-        "friction": {
-            "given": friction,
-            "assumed": isinstance(friction, Assumed),
-            "of_motion": finite(contact.friction_of_motion),
-            "of_impacts": finite(contact.friction_of_impacts),
-        },
-        "least_vertical_force_N": contact.least_vertical,
-        "warnings": response.doubts(friction),
-    }
-
-
-def rocker_facts(response: Response) -> dict[str, Any]:
-    """Return the body as its equations of motion see it."""
-    body, parameters = response.body, response.parameters
-    sides = {foot: getattr(parameters, foot) for foot in FEET}
-    return {
-        "kind": type(body).__name__,
-        "mass_kg": body.mass,
-        "assumed": list(body.assumed),
-        "warnings": list(body.doubts),
-        "sides": {
-            foot: {
-                "slenderness_angle_rad": side.slenderness_angle,
-                "frequency_parameter_rad_s": side.frequency_parameter,
-                "semi_diagonal_m": side.semi_diagonal,
-                "coefficient": side.coefficient,
-            }
-            for foot, side in sides.items()
-        },
-    }
-
-
-def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
-    """Return what moved the ground, with the factor on it [-]."""
-    if motion is None:
-        return None
-    return {
-        "kind": "record" if isinstance(motion, GroundMotion) else "pulse",
-        "name": motion.name,
-        "support": support_of(motion),
-        "provenance": list(provenance_of(motion)),
-        "scale": scale,
-        "duration_s": motion.duration,
-        "peak_acceleration_m_s2": abs(scale) * motion.peak,
-        "warnings": list(plausibility.of_acceleration(abs(scale) * motion.peak)),
-    }
-
-
-def outcome_facts(response: Response) -> dict[str, Any]:
-    """Return how a response ended: outcome, its sentence, overturning, peak, and whether it still rocks."""
-    run = response.trajectory
-    return {
-        "outcome": response.outcome.name.lower(),
-        "summary": response.summary,
-        "overturned_to": {1: "right", -1: "left"}.get(int(run.side)),
-        "overturning_time_s": finite(response.overturning_time),
-        "peak_rotation_rad": response.peak_rotation,
-        "peak_rotation_over_alpha": response.peak_rotation
-        / response.parameters.side(run.peak_rotation).slenderness_angle,
-        "still_rocking": still_rocking_facts(response),
-        "lost_contact": response.lost_contact,
-    }
-
-
-def still_rocking_facts(response: "Response | ContactResponse") -> dict[str, float | str] | None:
-    """Return the last state of a body that does not yet rest; None if it rests or has overturned."""
-    if not response.still_rocking:
-        return None
-    return {
-        "time_s": float(response.time[-1]),
-        "rotation_rad": float(response.rotation[-1]),
-        "angular_velocity_rad_s": float(response.angular_velocity[-1]),
-        "sentence": response.unfinished,
-    }
-
-
-def other_facts(found: Response | str) -> dict[str, Any]:
-    """Return what another model says, in short."""
-    if isinstance(found, str):
-        return {"error": found}
-    coefficients = {foot: getattr(found.parameters, foot).coefficient for foot in FEET}
-    return {**outcome_facts(found), "impact_count": int(found.impacts.size), "coefficients": coefficients}
-
-
-def finite(value: float) -> float | None:
-    """Return a number, or None where it is infinite or does not exist."""
-    return float(value) if math.isfinite(value) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,33 +82,39 @@ def measures_of(
     return measures | {key: replace(measures[key], value=value) for key, value in exact.items()}
 
 
-def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> dict[str, Any]:
+def record_answer(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> Answer:
     """Return what a motion is and how strong."""
     record = isinstance(motion, GroundMotion)
     metadata = motion.metadata if isinstance(motion, GroundMotion) else {}
-    return {
-        "kind": "record" if record else "pulse",
-        "name": motion.name,
-        **{key: metadata.get(key) for key in ("format", "event", "station", "component")},
-        "vertical_component": metadata.get("vertical component"),
-        "file_unit": metadata.get("unit"),
-        "samples": len(samples) if record else None,
-        "time_step_s": samples.time_step if record else None,
-        "duration_s": motion.duration,
-        "warnings": list(motion.doubts),
-        "provenance": list(provenance_of(motion)),
-        "peak_vertical_acceleration_m_s2": None if samples.vertical is None else samples.peak_vertical,
-        "intensity": {key_with_unit(key, one.unit): one.value for key, one in measures.items()},
+    quantities = {
+        name: Quantity(name, "1" if one.unit == "-" else one.unit, one.name) for name, one in measures.items()
     }
+    return Answer(
+        {
+            "kind": "record" if record else "pulse",
+            "name": motion.name,
+            **{key: metadata.get(key) for key in ("format", "event", "station", "component")},
+            "vertical_component": metadata.get("vertical component"),
+            "file_unit": metadata.get("unit"),
+            "samples": len(samples) if record else None,
+            "time_step": samples.time_step if record else None,
+            "duration": motion.duration,
+            "warnings": motion.doubts,
+            "provenance": provenance_of(motion),
+            "peak_vertical_acceleration": None if samples.vertical is None else samples.peak_vertical,
+            "intensity": {name: one.value for name, one in measures.items()},
+        },
+        quantities,
+    )
 
 
-def spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
+def spectrum_answer(spectrum: ResponseSpectrum) -> Answer:
     """Return a response spectrum."""
-    return {
+    return Answer({
         "damping_ratio": spectrum.damping,
-        "period_s": spectrum.periods.tolist(),
-        "psa_m_s2": spectrum.pseudo_acceleration.tolist(),
-        "psv_m_s": spectrum.pseudo_velocity.tolist(),
-        "sd_m": spectrum.displacement.tolist(),
-        "absolute_acceleration_m_s2": spectrum.absolute_acceleration.tolist(),
-    }
+        "period": spectrum.periods,
+        "pseudo_acceleration": spectrum.pseudo_acceleration,
+        "pseudo_velocity": spectrum.pseudo_velocity,
+        "spectral_displacement": spectrum.displacement,
+        "absolute_acceleration": spectrum.absolute_acceleration,
+    })  # fmt: skip

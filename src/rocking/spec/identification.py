@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
+from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.bodies.formats import FORMATS
 from rocking.conventions import FEET, NORMAL_95
@@ -247,16 +248,16 @@ class IdentifiedTrials(Exported):
             f"{100.0 * spread:.2g} %."
         )
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values."""
-        return {
+    def answer(self) -> Answer:
+        """Return everything that is shown."""
+        return Answer({
             "verdict": self.verdict,
             "doubts": self.doubts,
             "mean": None if self.mean is None else vars(self.mean),
             "models": [vars(each) for each in self.models],
             "trials": self.rows,
             "passed_over": dict(self.passed_over),
-        }
+        })  # fmt: skip
 
     def exported(self) -> Table:
         """Return what files of it hold: one row a trial."""

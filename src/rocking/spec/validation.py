@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.formats import FORMATS
 from rocking.errors import InvalidValueError, RockingError
@@ -65,13 +66,13 @@ class FolderValidation(Exported):
     repairs: tuple[str, ...]  # what a scan needed
     found: dict[str, Validation]  # by event, overturning first
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values."""
-        return {
+    def answer(self) -> Answer:
+        """Return everything that is shown."""
+        return Answer({
             "body": repr(self.prediction.body),
             "assumed": self.prediction.assumed,
             "not_sampled": self.prediction.not_sampled,
-            "motions": [each.as_dict() for each in self.prediction.motions],
+            "motions": [each.answer() for each in self.prediction.motions],
             "inputs": self.prediction.inputs,
             "count": self.prediction.count,
             "histories": self.prediction.histories,
@@ -79,8 +80,8 @@ class FolderValidation(Exported):
             "trials": len(self.trials),
             "not_read": [f"{self.source}, line {each.line}: {each.reason}" for each in self.refused],
             "ignored": self.ignored,
-            "events": {event: each.as_dict() for event, each in self.found.items()},
-        }
+            "events": {event: each.answer() for event, each in self.found.items()},
+        })  # fmt: skip
 
     def exported(self) -> "Table":
         """Return what files of it hold: one row a trial and event."""

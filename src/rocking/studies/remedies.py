@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import plausibility
+from rocking.answers import Answer
 from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray, Foot, IntArray
 from rocking.dynamics.parameters import RockingParameters, coefficients_of, sides_of
@@ -188,6 +189,18 @@ class Remedies:
     # least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if there
     # is none up to 6 s
     isolation: tuple[float, float] | None
+
+    def answer(self) -> Answer:
+        """Return forces of anchors, changes of lengths, and isolation."""
+        period, displacement = (None, None) if self.isolation is None else self.isolation
+        lengths = {
+            name: {"no_overturning": each.stands, "no_uplift": each.lifts_not, "reason": each.why_not}
+            for name, each in (("wider", self.wider), ("lower", self.lower))
+        }
+        return Answer({
+            "margin": self.margin, "tension": self.tension, "shear": self.shear, **lengths,
+            "isolation_period": period, "isolation_displacement": displacement,
+        })  # fmt: skip
 
     @property
     def needed(self) -> bool:

@@ -28,14 +28,14 @@ def test_facts_of_a_block_are_those_of_the_formulas(client):
     facts = body_of(client, {"units": "cm", "width": 50, "height": 200, "depth": 40, "density": 700})
     side = facts["sides"]["left"]
     radius = math.hypot(0.25, 1.0)
-    assert math.isclose(facts["mass_kg"], 280.0)
-    assert facts["centre_m"] == [0.25, 1.0]
+    assert math.isclose(facts["mass"], 280.0)
+    assert facts["centre"] == [0.25, 1.0]
     assert side["slenderness_ratio"] == 4.0
-    assert math.isclose(side["frequency_parameter_rad_s"], math.sqrt(0.75 * 9.80665 / radius))
-    assert math.isclose(side["uplift_acceleration_m_s2"], 9.80665 / 4.0)
-    assert math.isclose(facts["moment_of_inertia_kg_m2"], 280.0 / 3.0 * radius**2)
+    assert math.isclose(side["frequency_parameter"], math.sqrt(0.75 * 9.80665 / radius))
+    assert math.isclose(side["uplift_acceleration"], 9.80665 / 4.0)
+    assert math.isclose(facts["moment_of_inertia"], 280.0 / 3.0 * radius**2)
     assert facts["outline"][0]["outline"] == [[0.0, 0.0], [0.5, 0.0], [0.5, 2.0], [0.0, 2.0]]
-    assert (facts["base"], facts["ground"]) == ([0.0, 0.5], 0.0)
+    assert (facts["foot_positions"], facts["ground"]) == ([0.0, 0.5], 0.0)
 
 
 def test_holes_and_densities_are_drawn(client):
@@ -53,15 +53,15 @@ def test_wkt_text_is_a_body(client):
     """Pasted WKT stands in the document as text; no file is named."""
     wkt = "POLYGON ((0 0, 1000 0, 1000 2000, 0 2000, 0 0))"
     facts = body_of(client, {"units": "mm", "section": {"region": [{"wkt": wkt, "density": 800.0}]}})
-    assert math.isclose(facts["mass_kg"], 1600.0)
+    assert math.isclose(facts["mass"], 1600.0)
 
 
 def test_gravity_goes_into_p(client):
     """On the moon p is smaller by the root of the ratio of gravities."""
     table = {"units": "m", "width": 1, "height": 4}
-    earth = body_of(client, table)["sides"]["left"]["frequency_parameter_rad_s"]
+    earth = body_of(client, table)["sides"]["left"]["frequency_parameter"]
     moon = client.post("/api/body", json={"body": table, "settings": {"gravity": 1.62}}).json()
-    assert math.isclose(moon["sides"]["left"]["frequency_parameter_rad_s"], earth * math.sqrt(1.62 / 9.80665))
+    assert math.isclose(moon["sides"]["left"]["frequency_parameter"], earth * math.sqrt(1.62 / 9.80665))
 
 
 def test_a_stout_body_is_warned_of(client):
@@ -87,7 +87,7 @@ def test_a_body_file_becomes_the_body_of_the_inputs(client, name):
     told = answer.json()
     again = body_of(client, told.pop("body"))
     assert again == told
-    assert math.isclose(again["mass_kg"], 4800.0)
+    assert math.isclose(again["mass"], 4800.0)
 
 
 def test_a_drawing_becomes_a_body(client, tmp_path):
@@ -126,18 +126,18 @@ def test_impact_has_every_model_with_evidence_and_stages(client):
     """Housner's coefficient is the formula; 39 measurements; the stages of KED lose energy one after the other."""
     answer = client.post("/api/impact", json={"body": {"units": "m", "width": 1, "height": 4}}).json()
     rows = {row["model"]: row for row in answer["coefficients"]["right"]}
-    assert math.isclose(rows["housner"]["coefficient_of_restitution"], 1.0 - 1.5 / 17.0)
-    assert rows["ked"]["low_95"] < rows["ked"]["coefficient_of_restitution"] < rows["ked"]["high_95"]
-    assert len(answer["measured"]["points"]) == 39
+    assert math.isclose(rows["housner"]["coefficient"], 1.0 - 1.5 / 17.0)
+    assert rows["ked"]["low_95"] < rows["ked"]["coefficient"] < rows["ked"]["high_95"]
+    assert len(answer["measured"]["measurements"]) == 39
     assert "doi:" in answer["measured"]["source"]
     stages = answer["stages"]["right"]
     shares = [stage["share"] for stage in stages["stages"]]
     assert shares[0] == 1.0
     assert shares == sorted(shares, reverse=True)
-    assert math.isclose(math.sqrt(shares[-1]), rows["ked"]["coefficient_of_restitution"])
-    vertical = [pair[1] for pair in stages["stages"][1]["velocity_m_s"]]
+    assert math.isclose(math.sqrt(shares[-1]), rows["ked"]["coefficient"])
+    vertical = [pair[1] for pair in stages["stages"][1]["velocity"]]
     assert not any(vertical)
-    assert len(stages["points_m"]) == len(vertical) > 50
+    assert len(stages["points"]) == len(vertical) > 50
     assert {curve["model"] for curve in answer["curves"]} <= {*rows, "calibrated"}
 
 
@@ -153,8 +153,8 @@ def test_mass_points_have_stages_too(client):
     """A body of mass points is drawn by its points, and its velocities are given there."""
     points = {"points": [[0.0, 1.0], [1.0, 1.0], [0.5, 3.0]], "masses": [10.0, 10.0, 5.0], "feet": [0.0, 1.0]}
     answer = client.post("/api/impact", json={"body": {"units": "m", "mass_points": points}}).json()
-    assert answer["body"]["points"] == [[0.0, 1.0, 10.0], [1.0, 1.0, 10.0], [0.5, 3.0, 5.0]]
-    assert answer["stages"]["right"]["points_m"] == points["points"]
+    assert (answer["body"]["points"], answer["body"]["masses"]) == (points["points"], points["masses"])
+    assert answer["stages"]["right"]["points"] == points["points"]
 
 
 def test_info_names_everything_that_can_be_chosen(client):
@@ -278,7 +278,7 @@ def test_the_contact_bed_answers_at_impact(client):
     rows = json.loads(answer.text, parse_constant=refuse_constant)["coefficients"]["right"]
     (bed,) = (row for row in rows if row["model"] == "contact-bed")
     block = rk.Block(width=0.6, height=1.8)
-    assert bed["coefficient_of_restitution"] == rk.coefficient_of_restitution(block, "contact-bed")
+    assert bed["coefficient"] == rk.coefficient_of_restitution(block, "contact-bed")
 
 
 def test_the_contact_bed_answers_in_a_response(client):
@@ -290,4 +290,4 @@ def test_the_contact_bed_answers_in_a_response(client):
     motion = rk.pulses.sine(6.0, 0.8)
     for name, one in zip(names, json.loads(answer.text, parse_constant=refuse_constant)["answers"], strict=True):
         response = rk.simulate(rk.Block(width=0.6, height=1.8), motion, restitution=name)
-        assert one["peak_rotation_rad"] == response.peak_rotation > 0.0
+        assert one["peak_rotation"] == response.peak_rotation > 0.0

@@ -49,7 +49,7 @@ def _check_answers(page, app):
             good = next(value for status, value in operation["responses"].items() if status.startswith("2"))
             assert all(kind in told for kind in good["content"] if kind != "application/json"), path
     words = page.locator("section[aria-label='post /api/response']").text_content()
-    assert "answers.series.velocity" in words
+    assert "answers.series.angular_velocity" in words
     assert "angular velocity [rad/s]" in words
     assert "body.outline.holes" in words
     found = page.locator("section[aria-label='get /api/studies/{study}/result']").text_content()

@@ -123,7 +123,7 @@ def test_a_scan_is_asked_in_two_ways(desk, client):
     moved = {"motion": {"y": {"pulse": "sine:amplitude=4,period=0.5"}}, "restitution": {"value": 0.5}}
     sent = desk.store.add(PLY.encode(), "spire.ply")
     files = {"spire.ply": sent.record}
-    for command, more, key in (("equilibria", {}, "stable"), ("simulate", moved, "contacts")):
+    for command, more, key in (("equilibria", {}, "stable"), ("simulate", moved, "intervals")):
         found = ended(desk, desk.ask(command, {**tables, **more}, files).id)
         assert (found.state, found.files) == ("done", ["picture.svg", "space.glb", "table.csv"]), found.message
         assert json.loads(desk.answer(found.id))[key]
@@ -241,7 +241,9 @@ def test_a_record_is_corrected(desk, tmp_path):
     assert answer["provenance"][1:] == list(expected.provenance)[1:]
     assert "integrated, it ends at" in answer["before"]["warnings"][0]
     assert answer["after"]["warnings"] == []
-    assert answer["before"]["pga_m_s2"] != pytest.approx(answer["after"]["pga_m_s2"], rel=0.01)
+    assert answer["before"]["peak_ground_acceleration"] != pytest.approx(
+        answer["after"]["peak_ground_acceleration"], rel=0.01
+    )
     for process, why in ((["mean", "bandpass:low=1,high=80"], "step bandpass: high must be in (1, 50) Hz, got 80"),
                          (["response:stations=no.xml"], "no.xml")):  # fmt: skip
         tables = {"motion": {"record": "hall.txt", "process": process}}
@@ -289,8 +291,8 @@ def test_crossings(desk):
     found = ended(desk, desk.ask("minimum", tables, {}).id)
     answer = json.loads(desk.answer(found.id))
     assert found.files == ["picture.svg", "table.csv"]
-    assert answer["minimum_m_s2"] == answer["crossings"][0]["acceleration_m_s2"]
-    assert answer["minimum_m_s2"] > answer["uplift_acceleration_m_s2"]
+    assert answer["minimum_acceleration"] == answer["crossings"][0]["peak_ground_acceleration"]
+    assert answer["minimum_acceleration"] > answer["uplift_acceleration"]
 
 
 def test_a_body_cannot_name_a_file_of_this_computer(desk, tmp_path):

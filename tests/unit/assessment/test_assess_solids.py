@@ -79,9 +79,9 @@ def test_what_is_said(found):
     said = " ".join(found.sentences)
     for words in ("It is weakest towards 180 deg", "falls towards", "Its centre must rise by", "As a plane body along"):
         assert words in said
-    values = found.as_dict()
+    values = found.answer().plain()
     assert values["body"] == repr(TOWER)
-    assert values["solid"]["barrier_m"] == pytest.approx(TOWER.equilibria().settling((0.0, 0.0, -1.0)).barrier)
+    assert values["solid"]["barrier"] == pytest.approx(TOWER.equilibria().settling((0.0, 0.0, -1.0)).barrier)
     assert values["with_friction"]["lowest"] == found.lowest.factor
     assert list(values["models"]) == ["ked", "calibrated", "calibrated, low", "calibrated, high"]
 

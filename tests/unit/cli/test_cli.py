@@ -41,9 +41,7 @@ def test_cor_json_and_csv(run, tmp_path):
     with path.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     flat = [row for side in answer["coefficients"].values() for row in side]
-    assert [float(row["coefficient_of_restitution"]) for row in rows] == [
-        row["coefficient_of_restitution"] for row in flat
-    ]
+    assert [float(row["coefficient"]) for row in rows] == [row["coefficient"] for row in flat]
 
 
 def test_cor_options(run, own, tmp_path):

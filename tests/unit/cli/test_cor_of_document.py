@@ -49,7 +49,7 @@ def test_its_gravity_holds_unless_another_is_given(run, tmp_path):
     path.write_text(f"[response]\n{BODY}[settings]\ngravity = 1.62\n")
     for words, gravity in (((), 1.62), (("--set", "settings.gravity=3.7"), 3.7)):
         answer = json.loads(run("cor", path, "--json", *words)[1])
-        assert answer["body"]["gravity_m_s2"] == gravity
+        assert answer["body"]["gravity"] == gravity
 
 
 @pytest.mark.parametrize(

@@ -33,14 +33,14 @@ def test_a_box_in_closed_form(answered, file):
     answer = answered(file(PRISM))
     assert (len(answer["stable"]), answer["saddles"], answer["summits"]) == (6, 12, 8)
     standing = answer["stable"][answer["stands_in"]]
-    assert standing["height_m"] == pytest.approx(1.5, abs=1e-12)
+    assert standing["centre_height"] == pytest.approx(1.5, abs=1e-12)
     narrow, wide = math.hypot(0.5, 1.5) - 1.5, math.hypot(1.0, 1.5) - 1.5
-    assert standing["barrier_m"] == pytest.approx(narrow, abs=1e-12)
-    assert answer["directions"][0]["straight_rise_m"] == pytest.approx(narrow, abs=1e-12)
-    assert answer["directions"][3]["straight_rise_m"] == pytest.approx(wide, abs=1e-12)
-    assert answer["directions"][0]["uplift_acceleration_m_s2"] == pytest.approx(G / 3.0, rel=1e-12)
-    assert answer["passes"][0]["energy_J"] == pytest.approx(6000.0 * G * narrow, rel=1e-12)
-    assert [row["nearest_edge_m"] for row in answer["base_tolerances"]] == pytest.approx([0.5] * 5, abs=1e-12)
+    assert standing["barrier"] == pytest.approx(narrow, abs=1e-12)
+    assert answer["directions"][0]["straight_rise"] == pytest.approx(narrow, abs=1e-12)
+    assert answer["directions"][3]["straight_rise"] == pytest.approx(wide, abs=1e-12)
+    assert answer["directions"][0]["uplift_acceleration"] == pytest.approx(G / 3.0, rel=1e-12)
+    assert answer["passes"][0]["energy"] == pytest.approx(6000.0 * G * narrow, rel=1e-12)
+    assert [row["nearest_edge"] for row in answer["base_tolerances"]] == pytest.approx([0.5] * 5, abs=1e-12)
 
 
 def test_the_page_says_it_in_words(printed, file):
@@ -65,7 +65,7 @@ def test_a_block_is_extruded(answered, file):
     """Over its depth, under the name of its file; points of mass have no surface."""
     told = answered(file('units = "m"\n[block]\nwidth = 1.0\nheight = 4.0\ndepth = 2.0\n'))
     assert (len(told["stable"]), told["saddles"], told["summits"]) == (6, 12, 8)
-    assert [pose["height_m"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
+    assert [pose["centre_height"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
 
 
 def test_points_of_mass_are_refused(refuses, file):

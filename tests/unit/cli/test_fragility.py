@@ -71,7 +71,7 @@ def test_keys_are_stable(answered):
     many, none = (
         answered(*SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
     )  # the second overturns nothing
-    keys = ["body", "assumed", "motions", "gravity_m_s2", "linear", "analysis", "measure", "measure_words", "unit",
+    keys = ["body", "assumed", "motions", "gravity", "linear", "analysis", "measure", "measure_words", "unit",
             "states", "uplift_threshold", "lowest_uplift", "levels", "crossing", "results", "comparison"]  # fmt: skip
     assert list(many) == list(none) == keys
     assert many["measure_words"] == "peak ground acceleration"

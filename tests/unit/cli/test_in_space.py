@@ -38,11 +38,11 @@ def test_a_plane_body_in_space(tmp_path, capsys, command):
     plane = asked(capsys, command, file)
     answer = asked(capsys, command, file, "--out", out)
     assert (plane["body"]["kind"] == "Solid", answer["body"]["kind"]) == (False, "Solid")
-    assert answer["body"]["mass_kg"] == pytest.approx(0.5 * 0.4 * 2.0 * 2400.0)
-    assert answer["body"]["size_m"] == pytest.approx([0.5, 0.4, 2.0])
+    assert answer["body"]["mass"] == pytest.approx(0.5 * 0.4 * 2.0 * 2400.0)
+    assert answer["body"]["size"] == pytest.approx([0.5, 0.4, 2.0])
     assert out.read_bytes().startswith(b"glTF")
     if command == "cor":
-        corners = {tuple(round(x, 9) for x in each) for each in answer["base"]["vertices_m"]}
+        corners = {tuple(round(x, 9) for x in each) for each in answer["body"]["base"]["base_vertices"]}
         assert corners == {(x, y) for x in (0.1, 0.45) for y in (-0.2, 0.2)}
     file.write_text(TABLES.replace("depth = 40\n", ""))
     assert "whose depth is given" in asked(capsys, command, file, "--out", tmp_path / "more.glb")

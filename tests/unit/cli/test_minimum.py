@@ -29,16 +29,16 @@ def test_json_is_the_python_call(answered):
     told = answered(*SIZE, PULSE, "--restitution", "0.85", "--highest", "5g")
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
     found = minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
-    assert [one["acceleration_m_s2"] for one in told["crossings"]] == found.acceleration.tolist()
+    assert [one["peak_ground_acceleration"] for one in told["crossings"]] == found.acceleration.tolist()
     assert [[one["mode_below"], one["mode_above"]] for one in told["crossings"]] == found.modes.tolist()
     assert [one["acceleration_g"] * G for one in told["crossings"]] == pytest.approx(
         found.acceleration, rel=1e-14, abs=0.0
     )
-    assert told["minimum_m_s2"] == found.minimum
-    assert told["certain_m_s2"] == found.certain
-    assert [tuple(pair) for pair in told["overturning_intervals_m_s2"]] == list(found.overturning_intervals)
+    assert told["minimum_acceleration"] == found.minimum
+    assert told["certain_acceleration"] == found.certain
+    assert [tuple(pair) for pair in told["overturning_intervals"]] == list(found.overturning_intervals)
     # g b / h is 0.25 g
-    assert told["uplift_acceleration_m_s2"] == pytest.approx(0.25 * G, rel=1e-14, abs=0.0)
+    assert told["uplift_acceleration"] == pytest.approx(0.25 * G, rel=1e-14, abs=0.0)
 
 
 def test_page_and_files(printed, tmp_path):
@@ -47,7 +47,7 @@ def test_page_and_files(printed, tmp_path):
     out = printed(*SIZE, PULSE, "--restitution", "0.85", *files)
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [(row["mode below [1]"], row["mode above [1]"]) for row in rows] == [("-1", "1"), ("1", "-1"), ("-1", "0")]
+    assert [(row["mode_below"], row["mode_above"]) for row in rows] == [("-1", "1"), ("1", "-1"), ("-1", "0")]
     a, b, c = (f"{float(row['acceleration [g]']):.4g}" for row in rows)
     assert f"Overturns from {a} g to {b} g, survives to {c} g, overturns above; scanned from 0.25 g" in out
     assert "stays standing  falls, no impact" in out
@@ -86,9 +86,11 @@ def test_range_with_units(run):
     for low, high in (("0.3g", "0.34g"), (str(0.3 * G), str(0.34 * G))):
         _, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", "--lowest", low, "--highest", high, "--json")
         told = json.loads(out)
-        assert (told["lowest_m_s2"], told["highest_m_s2"]) == pytest.approx((0.3 * G, 0.34 * G), rel=1e-14, abs=0.0)
+        assert (told["lowest_acceleration"], told["highest_acceleration"]) == pytest.approx(
+            (0.3 * G, 0.34 * G), rel=1e-14, abs=0.0
+        )
         assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")
-        assert (told["minimum_m_s2"], told["crossings"]) == (None, [])
+        assert (told["minimum_acceleration"], told["crossings"]) == (None, [])
 
 
 REFUSALS = [

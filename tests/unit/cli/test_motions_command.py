@@ -115,8 +115,8 @@ def test_simulate_has_a_row_for_each_record(run, folder):
     assert len(rows["motions"]) == 6
     assert rows["overturned"] == sum(row["outcome"] == "overturned" for row in rows["motions"])
     one = json.loads(run("simulate", *BLOCK, f"{folder}/RSN1_A000.AT2", "--json")[1])
-    peaks = [row["peak_rotation_rad"] for row in rows["motions"]]
-    assert any(peak == pytest.approx(abs(one["peak_rotation_rad"])) for peak in peaks)
+    peaks = [row["peak_rotation"] for row in rows["motions"]]
+    assert any(peak == pytest.approx(abs(one["peak_rotation"])) for peak in peaks)
     code, out, _ = run("simulate", *BLOCK, "sine:amplitude=1,period=0.8", "sine:amplitude=9,period=0.8")
     assert "It overturns under 1 of 2 motions." in out
     assert "no uplift" in out
@@ -218,7 +218,7 @@ def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
     many.write_text(f'[[motions]]\nrecords = ["{folder.name}"]\ntarget = "eurocode8:ag=0.2g"\ncount = 2\n')
     typed = json.loads(run("convert", source, "--set", f"motion.process={'; '.join(chain)}", "--json")[1])
     assert json.loads(run("convert", one, "--json")[1]) == typed
-    assert typed["before"]["pga_m_s2"] != typed["after"]["pga_m_s2"]
+    assert typed["before"]["peak_ground_acceleration"] != typed["after"]["peak_ground_acceleration"]
     assert typed["metadata"]["station"]
     one.unlink()
     words = ["--set", "motion.target=eurocode8:ag=0.2g", "--set", "motion.count=2"]
@@ -293,7 +293,7 @@ def test_options_of_single_files(run, mixed):
         options = ["--units", "m/s2", "--set", "motion.time_step=0.01", "--set", 'motion.files={"a.txt"={units="g"}}']
         code, out, _ = run("simulate", *BLOCK, "mixed/a.txt", word, *options, "--json")
         assert code == 0
-        peaks = [row["peak_acceleration_m_s2"] for row in json.loads(out)["motions"]]
+        peaks = [row["peak_ground_acceleration"] for row in json.loads(out)["motions"]]
         assert peaks[0] == pytest.approx(PEAKS[0], rel=1e-6)
         assert peaks[1] == pytest.approx(300.0 if word == "mixed/b.txt" else 3.0, rel=1e-6)
 

@@ -46,7 +46,7 @@ def test_json_is_the_python_call(run):
         base=(0, 0.01),
         count=16,
     )
-    assert json.loads(out) == plain(found.as_dict())
+    assert json.loads(out) == plain(found.answer().plain())
 
 
 def test_a_file_says_everything(printed, tmp_path):
@@ -57,7 +57,7 @@ def test_a_file_says_everything(printed, tmp_path):
         rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), friction={"mean": 0.5, "deviation": 0.1},
         restitution=0.9, count=16, seed=3,
     )  # fmt: skip
-    assert json.loads(out)["probability"] == plain(found.as_dict())["probability"]
+    assert json.loads(out)["probability"] == plain(found.answer().plain())["probability"]
 
 
 def test_what_is_printed_and_written(printed, tmp_path):

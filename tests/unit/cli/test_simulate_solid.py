@@ -20,14 +20,14 @@ MOTION = rk.pulses.sine(3.2, 0.8)
 
 def same(answer, response):
     """Whether a JSON holds a response in space to the last digit."""
-    contacts = [(row["start_s"], row["end_s"], row["contact"], tuple(row["vertices"])) for row in answer["contacts"]]
+    contacts = [(row["start"], row["end"], row["contact"], tuple(row["vertices"])) for row in answer["intervals"]]
     return (
-        answer["peak_tilt_rad"] == response.peak_tilt
+        answer["peak_tilt"] == response.peak_tilt
         and answer["summary"] == response.summary
         and answer["restitution"] == response.law.label
         and [tuple(row.values()) for row in answer["impacts"]] == response.impacts.tolist()
         and contacts == [(a, b, c.name.lower(), points) for a, b, c, points in response.intervals]
-        and tuple(answer["motion"].values()) == response.names
+        and tuple("none" if one is None else one["name"] for one in answer["motions"].values()) == response.names
     )
 
 
@@ -57,7 +57,7 @@ def test_json_is_python_to_the_last_digit(answered, body):
     for words in ((SINE,), ("--motion", SINE)):
         answer = answered(body, *words, "--motion", "y=sine:amplitude=2.9,period=0.6")
         assert same(answer, expected)
-    assert answer["body"]["mass_kg"] == pytest.approx(1200.0)
+    assert answer["body"]["mass"] == pytest.approx(1200.0)
     ked = ("--restitution", "ked", "--scale", "-1.1", "--set", "settings.gravity=9.81")
     found = answered(body, "--motion", "z=sine:amplitude=1,period=0.3", "--motion", f"y={SINE}", *ked)
     wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "ked-3d", scale=-1.1, gravity=9.81)
@@ -74,22 +74,22 @@ def test_three_components_of_one_file(answered, body, record):
     along = (f"{record}#{x}", *file, "--motion", f"y={record}#{y}")
     found = answered(body, *along, "--motion", f"z={record}#{z}")
     motions = [rk.read_motion(record, units="m/s2", component=name) for name in names]
-    assert found["peak_tilt_rad"] == rk.simulate(read_body(body), motions).peak_tilt
+    assert found["peak_tilt"] == rk.simulate(read_body(body), motions).peak_tilt
     other = answered(body, *along, "--set", f"motion.vertical={z}")
-    assert other["peak_tilt_rad"] == pytest.approx(found["peak_tilt_rad"], rel=1e-12, abs=0.0)
+    assert other["peak_tilt"] == pytest.approx(found["peak_tilt"], rel=1e-12, abs=0.0)
     # negative control: without the vertical motion it is another response
     level = answered(body, *along)
-    assert level["peak_tilt_rad"] != pytest.approx(found["peak_tilt_rad"], rel=1e-3)
+    assert level["peak_tilt"] != pytest.approx(found["peak_tilt"], rel=1e-3)
     mixed = answered(body, SINE, "--motion", f"y={record}#{y}", *file)
-    assert mixed["peak_tilt_rad"] == rk.simulate(read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
+    assert mixed["peak_tilt"] == rk.simulate(read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
 
 
 def test_page_and_files(printed, body, tmp_path):
     """Body, motions, outcome, contacts and impacts are on the page; every file is written and opens."""
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc", "html")}
     words = (word for path in files.values() for word in ("--out", path))
-    out = printed(body, SINE, "--motion", "y=sine:amplitude=2.9,period=0.6", *words)
-    for said in ("prism: 0.5 x 0.5 x 2 m, 1 part, mass 1200 kg", "ked-3d", "turning about a vertex", "peak tilt:"):
+    out = printed(body, SINE, "--motion", "y=sine:amplitude=2.9,period=0.6", "--details", *words)
+    for said in ("prism, 0.5 x 0.5 x 2 m, 1200 kg", "ked-3d", "turning about a vertex", "Peak tilt"):
         assert said in out
     for path in files.values():
         assert f"wrote {path}" in out
@@ -108,18 +108,18 @@ def test_meshes_rock_too(answered, tmp_path):
     path = tmp_path / "prism.stl"
     trimesh.Trimesh(faces.vertices * 1000.0, faces.faces, process=False).export(path)
     answer = answered(path, SINE, "--units", "mm", "--density", "1000")
-    assert answer["body"]["mass_kg"] == pytest.approx(500.0)
+    assert answer["body"]["mass"] == pytest.approx(500.0)
     plane = rk.simulate(rk.Block(width=0.5, height=2.0), MOTION)
-    assert answer["peak_tilt_rad"] == pytest.approx(plane.peak_rotation, rel=1e-9)
+    assert answer["peak_tilt"] == pytest.approx(plane.peak_rotation, rel=1e-9)
 
 
 def test_overturning_names_edge_and_direction(run, answered, body):
     """Shaken hard along y it lies along y, over one of the edges there; the direction is in radians."""
     answer = answered(body, "--motion", f"y={SINE}", "--scale", "2")
     assert answer["outcome"] == "overturned"
-    assert abs(answer["overturning_direction_rad"]) == pytest.approx(0.5 * math.pi, abs=1e-9)
+    assert abs(answer["direction"]) == pytest.approx(0.5 * math.pi, abs=1e-9)
     assert answer["overturned_over"] in {"edge 0-1", "edge 2-3"}
-    assert "it overturned" in run(body, "--motion", f"y={SINE}", "--scale", "2")[1]
+    assert "over edge" in run(body, "--motion", f"y={SINE}", "--scale", "2")[1]
 
 
 def test_a_history_without_a_result_is_refused(run, body, monkeypatch):
@@ -151,26 +151,26 @@ def test_free_rocking_of_a_solid(answered, tmp_path, friction, free):
         path, "--free", free, "--restitution", 0.5, *([] if friction is None else ["--friction", friction])
     )
     lever = {0.5: 0.25 - CENTRE_X, -0.5: 0.25 + CENTRE_X}
-    assert answer["initial_tilt_rad"] == pytest.approx(0.5 * math.atan2(lever[free], CENTRE_Z), rel=1e-12)
-    assert answer["initial_azimuth_rad"] == pytest.approx(0.0 if free > 0.0 else math.pi)
+    assert answer["initial_tilt"] == pytest.approx(0.5 * math.atan2(lever[free], CENTRE_Z), rel=1e-12)
+    assert answer["initial_azimuth"] == pytest.approx(0.0 if free > 0.0 else math.pi)
     outlines = [(-0.25, 0.25, 0.0, 2.0, 2400.0), (0.05, 0.15, 2.0, 3.0, 4800.0)]
     regions = [rk.Region([(a, c), (b, c), (b, d), (a, d)], density) for a, b, c, d, density in outlines]
     plane = rk.Section(regions)
     side = plane.side("right" if free > 0.0 else "left")
     first = rk.free_rocking(plane, free * side.slenderness_angle, 0.5).impacts["time"][0]
-    assert answer["impacts"][0]["time_s"] == pytest.approx(float(first), rel=1e-6)
+    assert answer["impacts"][0]["time"] == pytest.approx(float(first), rel=1e-6)
     other = rk.free_rocking(plane, -free * plane.side("left" if free > 0.0 else "right").slenderness_angle, 0.5)
-    assert answer["impacts"][0]["time_s"] != pytest.approx(float(other.impacts["time"][0]), rel=1e-3)
+    assert answer["impacts"][0]["time"] != pytest.approx(float(other.impacts["time"][0]), rel=1e-3)
 
 
 def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp_path):
     """The page has tilt, direction and balance; a file says the same; a motion has no initial tilt."""
     page = printed(body, "--free", "-0.5", "--friction", "0.8")
-    assert "none; released at 7.018 deg towards -x, where 14.04 deg is the balance" in page
+    assert "released at -7.018 deg, -0.5 of 14 deg" in page
     document = tmp_path / "question.toml"
     document.write_text('[body]\nfile = "prism.toml"\n[response]\nfree = -0.5\nfriction = 0.8\n', encoding="utf-8")
     assert answered(document)["impacts"] == answered(body, "--free", "-0.5", "--friction", "0.8")["impacts"]
-    assert "initial_tilt_rad" not in answered(body, SINE)
+    assert "initial_tilt" not in answered(body, SINE)
 
 
 REFUSED = {
@@ -221,7 +221,7 @@ def test_capitals_of_a_model_do_not_matter(run, answered, body):
     """`KED-3D` is `ked-3d`; what is no model is named as it was written."""
     words = (body, "--motion", "sine:amplitude=2.9,period=0.6", "--restitution")
     upper, lower = (answered(*words, name) for name in ("KED-3D", "ked-3d"))
-    assert upper["peak_tilt_rad"] == lower["peak_tilt_rad"]
+    assert upper["peak_tilt"] == lower["peak_tilt"]
     assert run(*words, "KED-3E")[0] == 2
 
 
@@ -240,8 +240,8 @@ def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answe
     words = (file, "--motion", "x=sine:amplitude=2.6,period=0.8", "--motion", "y=sine:amplitude=2.5,period=0.5")
     words += ("--restitution", "housner")
     told, page = answered(*words), printed(*words)
-    assert told["still_rocking"]["ends_early"] is True
-    for text in (told["still_rocking"]["sentence"], told["summary"], " ".join(page.split())):
+    assert told["ends_early"] is True
+    for text in (told["last_state"]["unfinished"], told["summary"], " ".join(page.split())):
         assert reason in text
         assert "duration= in Python follows it further" in text
     rolling = rk.simulate(solid, {"x": rk.pulses.sine(2.6, 0.8), "y": rk.pulses.sine(2.5, 0.5)}, "housner")

@@ -75,7 +75,7 @@ def test_a_level_is_an_option(run, record):
     few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.shares=false", "--json")
     _, text, _ = run("predict", *SIZE, record, "--pga", "0.3g", *few)
     motion = json.loads(text)["motions"][0]
-    assert motion["peak_acceleration_m_s2"] == pytest.approx(0.3 * 9.80665, rel=1e-12)
+    assert motion["peak_ground_acceleration"] == pytest.approx(0.3 * 9.80665, rel=1e-12)
     assert "so that PGA is 2.94199 m/s2 (0.3 g)" in motion["provenance"][-1]
     for level, why in (("0.3", "must be a number with its unit"), ("-1g", "PGA"), ("0.3gal2", "unit")):
         code, _, err = run("predict", *SIZE, record, "--pga", level, *few)

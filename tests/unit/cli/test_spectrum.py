@@ -26,7 +26,7 @@ def test_json_is_the_python_call(answered):
     assert told["mode"] == found["mode"].values.tolist()
     assert told["peak_ratio"] == found["peak_ratio"].values.tolist()
     assert told["motions"] == [motion.name for motion in motions]
-    assert told["semi_diagonal_m"] == pytest.approx(
+    assert told["semi_diagonal"] == pytest.approx(
         0.75 * G * (np.geomspace(1, 8, 9) / (2 * math.pi)) ** 2, rel=1e-12, abs=0.0
     )
     assert len(told["curves"]) == 4

@@ -405,7 +405,7 @@ def test_outside_of_what_was_measured_the_default_stays_the_number():
 def test_plain_values_are_of_json():
     """What is not known is None, and no NaN; where no model says anything there is no table of none."""
     for body in (STATUE, Solid(box(1.0, 1.0, 4.0)), Solid(cylinder(1.0, 4.0))):
-        json.dumps(recommend(body).as_dict(), allow_nan=False)
+        json.dumps(recommend(body).answer().plain(), allow_nan=False)
     words = str(recommend(Solid(cylinder(1.0, 4.0))))
     assert words.startswith("Extrapolation: it rocks in space")
     assert "|" not in recommend(Solid(cylinder(1.0, 4.0)))._repr_markdown_()
@@ -414,7 +414,7 @@ def test_plain_values_are_of_json():
 def test_every_form_says_the_same():
     """Words, Markdown, plain values and a dataset hold the same numbers."""
     found = recommend(STATUE)
-    text, markdown, plain = str(found), found._repr_markdown_(), json.loads(json.dumps(found.as_dict()))
+    text, markdown, plain = str(found), found._repr_markdown_(), json.loads(json.dumps(found.answer().plain()))
     for sentence in (*found.evidence, *found.advice):
         assert sentence in text
         assert sentence in markdown

@@ -69,8 +69,8 @@ def test_every_probability_has_its_condition():
     found = predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, shares=False)
     assert "PGA 0.204 g, 0.102 to 0.306 g; PGV" in found.verdict
     assert found.condition in found.verdict
-    assert found.as_dict()["condition"] == found.condition
-    assert [each["peak_acceleration_m_s2"] for each in found.as_dict()["motions"]] == [1.0, 3.0]
+    assert found.answer().plain()["condition"] == found.condition
+    assert [each["peak_ground_acceleration"] for each in found.answer().plain()["motions"]] == [1.0, 3.0]
 
 
 @pytest.mark.verifies("computed anew", "motions scaled by hand", within="1e-12")

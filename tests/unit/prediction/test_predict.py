@@ -97,7 +97,7 @@ def test_azimuths_of_two_components():
 def test_the_same_seed_gives_the_same_answer_on_any_number_of_threads():
     motions = [noise_motion(k, peak=5.0) for k in range(3)]
     one, two, other = (
-        predict(BLOCK, motions, count=32, seed=seed, threads=threads).as_dict()
+        predict(BLOCK, motions, count=32, seed=seed, threads=threads).answer().plain()
         for seed, threads in ((1, 1), (1, 2), (2, 1))
     )
     assert plain(one) == plain(two)
@@ -153,7 +153,7 @@ def test_small_differences_grow_under_a_long_motion_and_not_under_a_pulse():
 def test_results_out(tmp_path):
     found = predict(BLOCK, [PULSE, rk.pulses.sine(1.0, 0.8)], count=16)
     assert isinstance(found, Prediction)
-    facts = json.loads(json.dumps(plain(found.as_dict())))
+    facts = json.loads(json.dumps(plain(found.answer().plain())))
     assert facts["probability"]["overturning"]["per_motion"][1] == 0.0
     assert "motion" in facts["shares"]
     dataset = found.to_xarray()

@@ -111,7 +111,7 @@ def test_few_motions_resolve_nothing(motions):
     assert found.finding == "not resolved"
     assert f"of {motions} motions it overturned under" in found.verdict
     assert len(found.differences) == (0 if motions == 1 else 2)
-    assert found.as_dict()["motions"] == motions
+    assert found.answer().plain()["motions"] == motions
 
 
 @pytest.mark.parametrize(("yes", "resolved"), [(5, True), (4, False)])

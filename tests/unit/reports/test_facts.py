@@ -1,4 +1,4 @@
-"""Facts are plain values, JSON without NaN, that say what mechanics says; restitutions are called as on the pages."""
+"""Answers are JSON without NaN that says what mechanics says; restitutions are called as on the pages."""
 
 import json
 import math
@@ -7,28 +7,24 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.answers import Answer
 from rocking.errors import PureRockingWarning
 from rocking.evidence._coefficient_table import default_models
 from rocking.motions.spectrum import response_spectrum
 from rocking.plots.labels import fine_samples
 from rocking.reports.body_facts import (
     ImpactAnswer,
-    body_facts,
-    curves_facts,
-    impact_facts,
-    measured_facts,
-    outline_facts,
-    stages_facts,
+    curves_answer,
+    measured_answer,
+    outline_answer,
+    stages_answer,
 )
 from rocking.reports.response_facts import (
     ModelAgreement,
-    finite,
     measures_of,
-    motion_facts,
-    other_facts,
-    response_facts,
+    record_answer,
     restitution_words,
-    spectrum_facts,
+    spectrum_answer,
 )
 
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -42,11 +38,12 @@ def test_everything_is_plain_json(body):
     """Body, outline, impact, stages and response of every kind of body are JSON without NaN."""
     answer = ImpactAnswer.of(body, None, onto="both", gravity=9.81, identities=False)
     response = rk.simulate(body, MOTION)
-    facts = [
-        body_facts(body, 9.81), outline_facts(body), impact_facts(answer), stages_facts(body, "left"),
-        response_facts(response, 0.5), other_facts(response), measured_facts(), curves_facts(),
+    answers = [
+        body.answer(9.81), outline_answer(body), answer.answer(), stages_answer(body, "left"), response.answer(0.5),
+        response.outcome_answer(), measured_answer(), Answer({"curves": curves_answer()}),
     ]  # fmt: skip
-    json.dumps(facts, allow_nan=False)
+    for each in answers:
+        json.dumps(each.plain(), allow_nan=False)
 
 
 def test_an_overturning_response_has_no_infinite_number():
@@ -55,13 +52,13 @@ def test_an_overturning_response_has_no_infinite_number():
         response = rk.simulate(BLOCK, MOTION, scale=20.0)
     assert math.isinf(response.contact.friction_of_motion)
     assert response.outcome is rk.Outcome.OVERTURNED
-    json.dumps(response_facts(response, 0.5), allow_nan=False)
-    assert finite(math.inf) is finite(math.nan) is None
+    plain = json.loads(json.dumps(response.answer(0.5).plain(), allow_nan=False))
+    assert plain["friction_of_motion"] is None
 
 
 def test_a_large_outline_is_thinned():
     """An ellipse of 10000 sides is drawn with at most 2000 vertices, all of them on the ellipse."""
-    drawn = outline_facts(rk.Section.from_ellipse(1.0, 2.0, 10_000))["outline"][0]["outline"]
+    drawn = outline_answer(rk.Section.from_ellipse(1.0, 2.0, 10_000))["outline"][0]["outline"]
     assert 1000 < len(drawn) <= 2000
     x, y = np.array(drawn).T
     assert np.allclose(((x - x.mean()) / 0.5) ** 2 + (y - 1.0) ** 2, 1.0, atol=1e-3)
@@ -69,27 +66,27 @@ def test_a_large_outline_is_thinned():
 
 def test_the_stages_conserve_what_they_say():
     """Stage 1 leaves no vertical velocity, stage 2 none along the line to the new foot, the last one is a rotation."""
-    told = stages_facts(BLOCK, "right", angular_velocity=2.0)
-    points, (before, first, second, after) = np.array(told["points_m"]), (s["velocity_m_s"] for s in told["stages"])
+    told = stages_answer(BLOCK, "right", angular_velocity=2.0)
+    points, (before, first, second, after) = np.array(told["points"]), (s["velocity"] for s in told["stages"])
     assert not np.array(first)[:, 1].any()
     assert np.allclose((np.array(second) * (points - [0.5, 0.0])).sum(axis=1), 0.0, atol=1e-12)
     speed, reach = np.hypot(*np.array(after).T), np.hypot(*(points - [0.5, 0.0]).T)
-    assert np.allclose(speed / reach, told["velocity_after_rad_s"])
-    assert np.allclose(np.hypot(*np.array(before).T) / np.hypot(*points.T), told["velocity_before_rad_s"])
+    assert np.allclose(speed / reach, told["velocity_after"])
+    assert np.allclose(np.hypot(*np.array(before).T) / np.hypot(*points.T), told["velocity_before"])
     inertia = BLOCK.side("right").moment_of_inertia
-    assert math.isclose(told["stages"][0]["energy_J"], 0.5 * inertia * 4.0)
+    assert math.isclose(told["stages"][0]["energy"], 0.5 * inertia * 4.0)
 
 
-def test_motion_facts_of_a_record_and_a_pulse():
+def test_what_is_shown_of_a_record_and_a_pulse():
     """A record tells samples and step, a pulse has its peaks from its formula."""
     record = rk.GroundMotion([0.0, 1.0, -2.0, 0.5], 0.1, name="four")
-    facts = motion_facts(record, record, measures_of(record, record))
-    assert (facts["kind"], facts["samples"], facts["time_step_s"]) == ("record", 4, 0.1)
-    assert facts["intensity"]["pga_m_s2"] == 2.0
-    assert spectrum_facts(response_spectrum(record, [0.5, 1.0], 0.05))["period_s"] == [0.5, 1.0]
+    facts = record_answer(record, record, measures_of(record, record))
+    assert (facts["kind"], facts["samples"], facts["time_step"]) == ("record", 4, 0.1)
+    assert facts["intensity"]["pga"] == 2.0
+    assert spectrum_answer(response_spectrum(record, [0.5, 1.0], 0.05))["period"].tolist() == [0.5, 1.0]
     samples = fine_samples(MOTION)
-    exact = motion_facts(MOTION, samples, measures_of(MOTION, samples))["intensity"]
-    assert math.isclose(exact["pgv_m_s"], 3.2 * 0.8 / math.pi, rel_tol=1e-12)
+    exact = record_answer(MOTION, samples, measures_of(MOTION, samples))["intensity"]
+    assert math.isclose(exact["pgv"], 3.2 * 0.8 / math.pi, rel_tol=1e-12)
 
 
 def test_the_verdict_names_who_says_what():
@@ -115,7 +112,7 @@ def test_the_verdict_names_who_says_what():
 
 def test_curves_follow_the_formula_of_housner():
     """The curve of Housner is 1 - 3/2 sin(alpha)^2 at every slenderness, and zero where that is negative."""
-    curve = next(one for one in curves_facts() if one["model"] == "housner")
+    curve = next(one for one in curves_answer() if one["model"] == "housner")
     alpha = np.arctan(1.0 / np.array(curve["slenderness_ratio"]))
     assert np.allclose(curve["coefficient"], np.maximum(1.0 - 1.5 * np.sin(alpha) ** 2, 0.0), rtol=1e-12)
 

@@ -12,7 +12,7 @@ from rocking.reports.inventory_folder import thumbnails, write_inventory_file
 from rocking.studies.inventory import Inventory, InventoryObject, assess, parse_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.objects import NotAssessed
-from rocking.studies.inventory.table import as_plain
+from rocking.studies.inventory.table import answer_of
 
 OBJECTS = (
     InventoryObject(name="Vase", width=0.2, depth=0.22, height=0.95, base_width=0.14, count=2, consequence="high",
@@ -70,7 +70,7 @@ def test_files_are_in_the_language_and_keys_are_not(found, tmp_path):
     assert made["csv"].read_text("utf-8-sig").startswith("rank,light,inventory number,name,count,")
     assert ",red,,Vase," in made["csv"].read_text("utf-8-sig")
     plain = json.loads(made["json"].read_text("utf-8"))
-    assert plain.keys() == as_plain(replace(found, language="en")).keys()
+    assert plain.keys() == answer_of(replace(found, language="en")).plain().keys()
     assert plain["objects"][0]["light"] == "red"
     assert plain["plan"][0]["in_words"].startswith("Vase: Standfläche auf jeder Seite ")
 

@@ -10,7 +10,6 @@ from rocking.dynamics.parameters import cut_words
 from rocking.dynamics.space.batch import SpatialBatch
 from rocking.outcome import Outcome, Status, contact_words, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
-from rocking.reports.response_facts import response_facts
 from rocking.studies import fragility_analysis
 from rocking.studies.inventory import InventoryObject, assess
 from rocking.studies.inventory.hazard import Hazard
@@ -192,8 +191,8 @@ def test_inventories_say_it():
 
 @pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 def test_one_history_tells_both_verdicts():
-    """Commands, page and report take the warnings of `response_facts`: rocking alone, and with flight."""
-    (words, *_) = response_facts(rk.simulate(LEANING, HEAVY[0], 0.8), 0.5)["warnings"]
+    """Commands, page and report take the warnings of `Response.answer`: rocking alone, and with flight."""
+    (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).answer(0.5)["warnings"]
     assert "rocking alone: " in words
     assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
     # what nobody gave decides no flight, from whichever door it comes
@@ -201,4 +200,4 @@ def test_one_history_tells_both_verdicts():
     (none,) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts()
     assert assumed == none != words
     assert "with a coefficient of friction of 10, since none was given: " in none
-    assert not any("pull" in each for each in response_facts(rk.simulate(LEANING, LIGHT[0], 0.8), 0.5)["warnings"])
+    assert not any("pull" in each for each in rk.simulate(LEANING, LIGHT[0], 0.8).answer(0.5)["warnings"])

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 
-from rocking.app.answers import FILE_SENT, JsonAnswer, Point, answered, shape
+from rocking.answers import Answer
+from rocking.app.answers import FILE_SENT, JsonAnswer, Point, Units, answered, shape
 from rocking.app.errors import Refused, room_on_disk
 from rocking.app.inputs import BodyInput, BodyRequest, body_from, check_file, parsed_toml, size_of
 from rocking.app.plain_text import safe_name
@@ -20,38 +21,38 @@ from rocking.bodies.formats.words import blamed
 from rocking.conventions import FEET, g
 from rocking.errors import BodyFileError
 from rocking.evidence._coefficient_table import outside_evidence
-from rocking.reports.body_facts import body_facts, outline_facts
+from rocking.reports.body_facts import outline_answer
 
 router = APIRouter(prefix="/api", tags=["body"])
 
 SideFacts: Any = shape(
     "SideFacts",
     "What one side of a body decides: it stands on this foot and turns about it.",
-    slenderness_ratio=(float, "height of the centre over its lever, h/b [-]"),
-    slenderness_angle_rad=(float, "alpha = atan(b/h)"),
-    semi_diagonal_m=(float, "distance R of the centre from the foot"),
-    frequency_parameter_rad_s=(float, "p"),
-    uplift_acceleration_m_s2=(float, "ground acceleration that lifts it, g tan(alpha)"),
+    slenderness_ratio=float,
+    slenderness_angle=float,
+    semi_diagonal=float,
+    frequency_parameter=float,
+    uplift_acceleration=float,
 )
 Sides: Any = shape("Sides", "One entry for each foot.", left=SideFacts, right=SideFacts)
 Polygon: Any = shape(
     "Polygon",
     "A region of one density.",
-    outline=(list[Point], "vertices x, y [m]"),
-    holes=(list[list[Point]], "vertices x, y of every hole [m]"),
-    density=(float, "[kg/m3]"),
+    outline=list[Point],
+    holes=list[list[Point]],
+    density=float,
 )
 BodyFacts: Any = shape(
     "BodyFacts",
     "Mass, centre, feet, and what each side decides.",
     kind=(str, "class of the body in Python"),
-    mass_kg=(float, "mass"),
-    centre_m=(Point, "centre of mass, x and y"),
-    feet_m=(Point, "x of the left and of the right foot"),
-    moment_of_inertia_kg_m2=(float, "about the centre of mass"),
-    gravity_m_s2=(float, "acceleration of gravity"),
-    assumed=(list[str], "what nobody gave and was assumed, in sentences"),
-    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+    mass=float,
+    centre=Point,
+    foot_positions=Point,
+    moment_of_inertia=float,
+    gravity=float,
+    assumed=list[str],
+    warnings=list[str],
     sides=Sides,
 )
 DrawnBody: Any = shape(
@@ -60,18 +61,12 @@ DrawnBody: Any = shape(
     BodyFacts,
     name=(str | None, "what the user calls it"),
     outline=(list[Polygon], "polygons; none for mass points and for ellipses"),
-    points=(list[tuple[float, float, float]], "mass points: x [m], y [m], mass [kg]"),
-    centre=(Point, "centre of mass, x and y [m]"),
-    base=(Point, "x of the left and of the right foot [m]"),
-    ground=(float, "y of the ground [m]"),
-    contact=(list[Point], "stretches of the base that touch the ground, from x to x [m]"),
+    points=list[Point],
+    masses=list[float],
+    ground=float,
+    base_contact=list[Point],
 )
-DescribedBody: Any = shape(
-    "DescribedBody",
-    "A body, and what a user should know of it.",
-    DrawnBody,
-    warnings=(list[str], "sentences; none if all is well"),
-)
+DescribedBody: Any = shape("DescribedBody", "A body, and what a user should know of it.", DrawnBody, units=Units)
 BodyInFile: Any = shape(
     "BodyInFile", "What a body file holds.", DescribedBody, body=(BodyInput, "the body as it stands in the inputs")
 )
@@ -108,17 +103,17 @@ async def body_file(
     return JsonAnswer(await heavy(request, _of_file, content, name, units, density))
 
 
-def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
-    """Return what is said of a body; gravity: acceleration of gravity [m/s2]."""
-    facts = body_facts(body, gravity)
-    warnings = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]
+def described(body: Body, gravity: float, name: str | None) -> Answer:
+    """Return what is shown of a body; gravity: acceleration of gravity [m/s2]."""
+    answer = body.answer(gravity)
+    warnings = [*answer["warnings"], *(outside_evidence(body, foot) for foot in FEET)]
     warnings = list(dict.fromkeys(sentence for sentence in warnings if sentence))
-    return {"name": name, **facts, **outline_facts(body), "warnings": warnings}
+    return answer | outline_answer(body) | {"name": name, "warnings": warnings}
 
 
 def _of_file(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:
     table = body_in_file(content, name, units, density)
-    return {"body": table.table(), **described(body_from(table), g, table.name)}
+    return {"body": table.table(), **described(body_from(table), g, table.name).plain()}
 
 
 def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:

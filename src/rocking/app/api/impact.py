@@ -4,7 +4,8 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Request
 
-from rocking.app.answers import Foot, JsonAnswer, Point, answered, shape
+from rocking.answers import Answer
+from rocking.app.answers import Foot, JsonAnswer, Point, Units, answered, shape
 from rocking.app.api.body import DrawnBody
 from rocking.app.inputs import ImpactRequest, body_from, size_of
 from rocking.app.work import Remembered, sized
@@ -12,11 +13,10 @@ from rocking.bodies import Block
 from rocking.conventions import g
 from rocking.reports.body_facts import (
     ImpactAnswer,
-    curves_facts,
-    impact_facts,
-    measured_facts,
-    outline_facts,
-    stages_facts,
+    curves_answer,
+    measured_answer,
+    outline_answer,
+    stages_answer,
 )
 from rocking.restitution import models
 
@@ -37,31 +37,31 @@ CoefficientFacts: Any = shape(
     "CoefficientFacts",
     "One model's answer for one body.",
     model=(str, "name of the model with its parameters, or calibrated"),
-    coefficient_of_restitution=(float, "theta_dot_after / theta_dot_before, of velocities [-]"),
-    low_95=(float, "lower end of the 95 % interval for a single measured body [-]"),
-    high_95=(float, "upper end of the 95 % interval for a single measured body [-]"),
-    impulse_ratio_k=(float, "distance of the impulse over the lever of the new foot [-]"),
-    impulse_x_m=(float, "where the impulse acts on the ground"),
-    energy_loss=(float, "share of the kinetic energy that the impact costs [-]"),
-    friction_demand=(float, "friction coefficient below which the foot slips at the impact [-]"),
+    coefficient=float,
+    low_95=float,
+    high_95=float,
+    impulse_ratio=float,
+    impulse_position=float,
+    energy_loss=float,
+    friction_demand=(float, "friction coefficient below which the foot slips at the impact"),
     admissible=(bool, "whether one impulse on the base can do it without creating energy"),
-    warnings=(list[str], "sentences; none if all is well"),
+    warnings=list[str],
 )
 Stage: Any = shape(
     "Stage",
     "One stage of the impact.",
     name=Literal["before", "stage 1", "stage 2", "after"],
     words=str,
-    energy_J=(float, "kinetic energy that it leaves"),
-    share=(float, "the same over the energy before the impact [-]"),
-    velocity_m_s=(list[Point], "velocity x and y at each of the points"),
+    energy=(float, "kinetic energy that it leaves"),
+    share=(float, "the same over the energy before the impact"),
+    velocity=list[Point],
 )
 Stages: Any = shape(
     "Stages",
     "The three stages of KED for an impact at 1 rad/s.",
-    velocity_before_rad_s=(float, "angular velocity"),
-    velocity_after_rad_s=(float, "angular velocity"),
-    points_m=(list[Point], "where the velocities are given, x and y"),
+    velocity_before=float,
+    velocity_after=float,
+    points=(list[Point], "where the velocities are given, x and y"),
     stages=list[Stage],
 )
 MeasuredPoint: Any = shape(
@@ -69,19 +69,19 @@ MeasuredPoint: Any = shape(
     "One published measurement.",
     group=str,
     label=str,
-    slenderness_ratio=(float, "h/b [-]"),
-    slenderness_angle_rad=(float, ""),
-    coefficient=(float, "of restitution", "coefficient"),
-    low=(float, "least value that the printed digits leave open [-]"),
-    high=(float, "largest value that the printed digits leave open [-]"),
+    slenderness_ratio=float,
+    slenderness_angle=float,
+    coefficient=float,
+    coefficient_low=float,
+    coefficient_high=float,
 )
-Measured: Any = shape("Measured", "The published measurements.", source=str, points=list[MeasuredPoint])
+Measured: Any = shape("Measured", "The published measurements.", source=str, measurements=list[MeasuredPoint])
 ModelCurve: Any = shape(
     "ModelCurve",
     "The coefficient of homogeneous rectangles under one model.",
     model=str,
-    slenderness_ratio=(list[float], "h/b [-]"),
-    coefficient=(list[float], "of restitution", "coefficient"),
+    slenderness_ratio=list[float],
+    coefficient=list[float],
 )
 ImpactWarning: Any = shape("ImpactWarning", "A sentence, and the models that it is about.", words=str, models=list[str])
 ImpactAnswered: Any = shape(
@@ -96,6 +96,7 @@ ImpactAnswered: Any = shape(
     curves=list[ModelCurve],
     stages=dict[Foot, Stages],
     warnings=list[ImpactWarning],
+    units=Units,
 )
 
 
@@ -119,24 +120,23 @@ def answer(inputs: ImpactRequest) -> JsonAnswer:
     return _HELD.get(key, lambda: JsonAnswer(_facts(inputs)))
 
 
-def _facts(inputs: ImpactRequest) -> dict[str, Any]:
+def _facts(inputs: ImpactRequest) -> Answer:
     body = body_from(inputs.body)
     # a homogeneous block is the same on both sides; what is the same is told once
     same = isinstance(body, Block) and body.known is None and body.stands_on_corners
     onto = "right" if inputs.onto == "both" and same else inputs.onto
     coefficients = ImpactAnswer.of(body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False)
-    facts = impact_facts(coefficients)
-    facts["body"] |= {"name": inputs.body.name, **outline_facts(body)}
+    facts = coefficients.answer()
     rows = [row for table in coefficients.tables.values() for row in table]
     warned: dict[str, dict[str, None]] = {}  # by sentence the models, each once
     for row in rows:
         for sentence in row.warnings:
             warned.setdefault(sentence, {})[row.name] = None
-    return {
-        **facts,
+    return facts | {
+        "body": facts["body"] | outline_answer(body) | {"name": inputs.body.name},
         "titles": {row.name: row.title for row in rows},
-        "measured": measured_facts(),
-        "curves": curves_facts(),
-        "stages": {foot: stages_facts(body, foot) for foot in coefficients.tables},
+        "measured": measured_answer(),
+        "curves": curves_answer(),
+        "stages": {foot: stages_answer(body, foot) for foot in coefficients.tables},
         "warnings": [{"words": sentence, "models": list(names)} for sentence, names in warned.items()],
     }

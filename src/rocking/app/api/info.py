@@ -65,7 +65,7 @@ FamilyFacts: Any = shape(
     title=str,
     summary=str,
     generator=str,
-    time_step_s=(float, ""),
+    time_step=float,
 )
 FormatFacts: Any = shape(
     "FormatFacts",
@@ -99,7 +99,7 @@ Info: Any = shape(
     "What there is to choose from.",
     version=str,
     engine=EngineFacts,
-    gravity_m_s2=(float, "where nothing else is said"),
+    gravity=(float, "where nothing else is said"),
     models=list[ModelFacts],
     pulses=dict[str, PulseFacts],
     families=list[FamilyFacts],
@@ -141,7 +141,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
         "engine": {
             "name": "fast" if fast else "reference", "instruction_set": fast_engine.instruction_set() if fast else None,
         },
-        "gravity_m_s2": g,
+        "gravity": g,
         "models": _models(),
         "pulses": {
             name: {"summary": (inspect.getdoc(one) or "").partition("\n")[0], "parameters": _parameters(one)}
@@ -150,7 +150,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
         "families": [
             {
                 "name": name, "title": one.title, "summary": f"{one.title}; {one.origin}", "generator": one.generator,
-                "time_step_s": one.time_step,
+                "time_step": one.time_step,
             }
             for name, one in families().items()
         ],

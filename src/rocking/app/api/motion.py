@@ -6,7 +6,8 @@ import numpy as np
 from fastapi import APIRouter, Request
 from pydantic import Field
 
-from rocking.app.answers import JsonAnswer, answered, shape
+from rocking.answers import Answer
+from rocking.app.answers import JsonAnswer, Units, answered, shape
 from rocking.app.api.response import thinned
 from rocking.app.inputs import MotionRequest, motion_from
 from rocking.app.records import RecordStore
@@ -15,7 +16,7 @@ from rocking.app.work import Remembered, heavy
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import SHORTEST_PERIOD, ResponseSpectrum, response_spectrum
 from rocking.plots.labels import fine_samples, traces
-from rocking.reports.response_facts import measures_of, motion_facts
+from rocking.reports.response_facts import measures_of, record_answer, spectrum_answer
 
 router = APIRouter(prefix="/api", tags=["motion"])
 _HELD: Remembered[JsonAnswer] = Remembered(32)
@@ -27,30 +28,28 @@ _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 MotionSeries: Any = shape(
     "MotionSeries",
     "The curves of a motion, as many samples of each, every extreme among them.",
-    time=(list[float], "", "time"),
-    acceleration=(list[float], "", "ground_acceleration"),
-    velocity=(list[float], "[m/s]"),
-    displacement=(list[float], "[m]"),
-    vertical=(list[float] | None, Field(None, description="vertical acceleration, where there is one [m/s2]")),
-    shown=(int, "samples here"),
-    of=(int, "samples of the motion"),
+    time=list[float],
+    acceleration=list[float],
+    velocity=(list[float], "velocity"),
+    displacement=(list[float], "displacement"),
+    vertical_acceleration=(list[float] | None, Field(None, description="where there is one [m/s2]")),
+    samples_shown=int,
+    samples=int,
 )
 SpectrumFacts: Any = shape(
     "SpectrumFacts",
     "The response of oscillators to a motion.",
-    damping_ratio=(float, "[-]"),
-    period=(list[float], "[s]"),
-    acceleration=(list[float], "pseudo-acceleration [m/s2]"),
-    velocity=(list[float], "pseudo-velocity [m/s]"),
-    displacement=(list[float], "[m]"),
-    absolute_acceleration=(list[float], "[m/s2]"),
+    damping_ratio=float,
+    period=list[float],
+    pseudo_acceleration=list[float],
+    pseudo_velocity=list[float],
+    spectral_displacement=list[float],
+    absolute_acceleration=list[float],
 )
 MeasureFacts: Any = shape(
     "MeasureFacts",
     "One intensity measure.",
     name=(str, "short name: pga, pgv, ..."),
-    value=(float, "in `unit`"),
-    unit=str,
     words=str,
 )
 MotionAnswered: Any = shape(
@@ -65,17 +64,18 @@ MotionAnswered: Any = shape(
     vertical_component=str | None,
     file_unit=(str | None, "unit of the file; the answer is in SI"),
     samples=(int | None, "of a record"),
-    time_step_s=(float | None, "of a record"),
-    duration_s=(float, ""),
-    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
-    provenance=(list[str], "what was done to it, in order"),
-    peak_vertical_acceleration_m_s2=(float | None, ""),
-    intensity=(dict[str, float], "measures, with their units in the names"),
-    scale=(float, "factor on the motion, which is in every number here [-]"),
-    peak_acceleration_m_s2=(float, ""),
+    time_step=(float | None, "of a record"),
+    duration=float,
+    warnings=list[str],
+    provenance=list[str],
+    peak_vertical_acceleration=float | None,
+    intensity=(dict[str, float], "measures by their names, in their units"),
+    scale=(float, "factor on the motion, which is in every number here"),
+    peak_ground_acceleration=float,
     series=MotionSeries,
     spectrum=(SpectrumFacts | None, "null where it was not asked for"),
     measures=list[MeasureFacts],
+    units=Units,
 )
 
 
@@ -95,30 +95,27 @@ def _answer(inputs: MotionRequest, records: RecordStore) -> JsonAnswer:
     return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs, records)))
 
 
-def _facts(inputs: MotionRequest, records: RecordStore) -> dict[str, Any]:
+def _facts(inputs: MotionRequest, records: RecordStore) -> Answer:
     motion = motion_from(inputs.motion, records)
     moved = motion if inputs.motion.scale == 1.0 else motion.scaled(inputs.motion.scale)
     samples, curves = fine_samples(moved), traces(moved)
     measures = measures_of(moved, samples, curves)
     columns = {name: getattr(curves, name) for name in ("acceleration", "velocity", "displacement")}
     if isinstance(moved, GroundMotion) and samples.vertical is not None:
-        columns["vertical"] = np.interp(curves.time, moved.time, samples.vertical)
+        columns["vertical_acceleration"] = np.interp(curves.time, moved.time, samples.vertical)
     kept = thinned(curves.time, list(columns.values()), inputs.points, inputs.window)
     columns = {"time": curves.time, **columns}
-    return {
-        **motion_facts(moved, samples, measures),
+    return record_answer(moved, samples, measures) | {
         "name": motion.name,  # before it is scaled
         "scale": inputs.motion.scale,
-        "peak_acceleration_m_s2": moved.peak,
+        "peak_ground_acceleration": moved.peak,
         "series": {
-            **{name: values[kept].tolist() for name, values in columns.items()},
-            "shown": int(kept.size),
-            "of": int(curves.time.size),
+            **{name: values[kept] for name, values in columns.items()},
+            "samples_shown": int(kept.size),
+            "samples": int(curves.time.size),
         },
-        "spectrum": _spectrum_facts(spectrum_of(samples)) if inputs.spectrum else None,
-        "measures": [
-            {"name": key, "value": one.value, "unit": one.unit, "words": one.name} for key, one in measures.items()
-        ],
+        "spectrum": spectrum_answer(spectrum_of(samples)) if inputs.spectrum else None,
+        "measures": [{"name": key, "words": one.name} for key, one in measures.items()],
     }
 
 
@@ -126,14 +123,3 @@ def spectrum_of(samples: GroundMotion) -> ResponseSpectrum:
     """Return the response spectrum that is drawn: at 100 periods, for 5 % damping."""
     shortest = max(_SHORTEST, SHORTEST_PERIOD * samples.time_step)
     return response_spectrum(samples, np.geomspace(shortest, max(_LONGEST, 2.0 * shortest), _COUNT), DAMPING)
-
-
-def _spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
-    return {
-        "damping_ratio": spectrum.damping,
-        "period": spectrum.periods,
-        "acceleration": spectrum.pseudo_acceleration,
-        "velocity": spectrum.pseudo_velocity,
-        "displacement": spectrum.displacement,
-        "absolute_acceleration": spectrum.absolute_acceleration,
-    }

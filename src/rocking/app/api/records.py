@@ -45,9 +45,9 @@ ComponentFacts: Any = shape(
     name=str,
     samples=int,
     unit=(str | None, "of acceleration in the file"),
-    time_step_s=(float | None, ""),
-    duration_s=(float | None, ""),
-    peak_m_s2=(float | None, "largest acceleration"),
+    time_step=float | None,
+    duration=float | None,
+    peak_ground_acceleration=(float | None, "largest acceleration"),
 )
 RecordFacts: Any = shape(
     "RecordFacts",
@@ -187,9 +187,9 @@ def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:
         "name": component.name,
         "samples": int(component.acceleration.size),
         "unit": component.unit if unit else None,
-        "time_step_s": component.time_step if step else None,
-        "duration_s": (component.acceleration.size - 1) * component.time_step if step else None,
-        "peak_m_s2": component.peak * ACCELERATION_UNITS[component.unit] if unit else None,
+        "time_step": component.time_step if step else None,
+        "duration": (component.acceleration.size - 1) * component.time_step if step else None,
+        "peak_ground_acceleration": component.peak * ACCELERATION_UNITS[component.unit] if unit else None,
     }
 
 

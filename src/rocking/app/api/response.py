@@ -6,8 +6,9 @@ from typing import Any, Literal
 import numpy as np
 from fastapi import APIRouter, Request
 
-from rocking.app.answers import Foot, JsonAnswer, answered, shape
-from rocking.app.api.body import DrawnBody
+from rocking.answers import Answer
+from rocking.app.answers import Foot, JsonAnswer, Units, answered, shape
+from rocking.app.api.body import BodyFacts, DrawnBody
 from rocking.app.errors import TooLarge
 from rocking.app.inputs import ResponseRequest, problem_from
 from rocking.app.records import RecordStore
@@ -20,10 +21,11 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement
 from rocking.motions.pulse import Pulse
+from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape, fall_of
-from rocking.reports.body_facts import body_facts, outline_facts
-from rocking.reports.response_facts import ModelAgreement, finite, moved_facts, response_facts
+from rocking.reports.body_facts import outline_answer
+from rocking.reports.response_facts import ModelAgreement
 from rocking.spec.response import ResponseProblem
 
 router = APIRouter(prefix="/api", tags=["response"])
@@ -35,119 +37,97 @@ MOST_TOGETHER = 3_000_000
 _NEWTON_STEPS = 8
 
 
-RockingSideAnswer: Any = shape(
-    "RockingSideAnswer",
-    "One side of the body as its equation of motion has it.",
-    slenderness_angle_rad=(float, "alpha"),
-    frequency_parameter_rad_s=(float, "p"),
-    semi_diagonal_m=(float, "R"),
-    coefficient=(float, "of restitution where it lands on this foot", "coefficient"),
-)
-RockingSides: Any = shape("RockingSides", "One entry for each foot.", left=RockingSideAnswer, right=RockingSideAnswer)
-RockingBody: Any = shape(
-    "RockingBody",
-    "The body as its equations of motion have it.",
-    kind=(str, "class of the body in Python"),
-    mass_kg=(float, ""),
-    assumed=(list[str], "what nobody gave and was assumed, in sentences"),
-    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
-    sides=RockingSides,
-)
-MovedFacts: Any = shape(
-    "MovedFacts",
+MotionSummaryAnswer: Any = shape(
+    "MotionSummaryAnswer",
     "What moved the ground.",
     kind=Literal["record", "pulse"],
     name=str,
-    support=(str, "what moves: the ground, or a floor of a building"),
-    provenance=(list[str], "its source and each processing step, in order"),
-    scale=(float, "factor on the motion [-]"),
-    duration_s=(float, ""),
-    peak_acceleration_m_s2=(float, "scaled"),
-    warnings=(list[str], "what was hardly meant, in sentences; none if all is well"),
+    support=str,
+    provenance=list[str],
+    scale=float,
+    duration=float,
+    peak_ground_acceleration=float,
+    peak_ground_velocity=float,
+    warnings=list[str],
 )
-StillRocking: Any = shape(
-    "StillRocking",
+LastState: Any = shape(
+    "LastState",
     "The last state of a body that does not yet rest when the computation ends.",
-    time_s=(float, ""),
-    rotation_rad=(float, "theta"),
-    angular_velocity_rad_s=(float, ""),
-    sentence=(str, "the same in words"),
+    time=float,
+    rotation=float,
+    angular_velocity=float,
+    unfinished=str,
 )
-ImpactFacts: Any = shape(
-    "ImpactFacts",
+Impact: Any = shape(
+    "Impact",
     "One impact.",
-    time_s=(float, ""),
-    velocity_before_rad_s=(float, ""),
-    velocity_after_rad_s=(float, ""),
-    coefficient=(float, "of restitution", "coefficient"),
+    time=float,
+    velocity_before=float,
+    velocity_after=float,
+    coefficient=float,
     onto=(str, "foot on which the body lands"),
-)
-FrictionFacts: Any = shape(
-    "FrictionFacts",
-    "Friction that rocking without slip takes.",
-    given=(float, "coefficient of friction that was given, or assumed", "friction_demand"),
-    assumed=(bool, "whether nobody gave it"),
-    of_motion=(float | None, "demand while it rocks; null if no friction suffices", "friction_demand"),
-    of_impacts=(float | None, "demand at impacts; null if no friction suffices", "friction_demand"),
 )
 ResponseSeries: Any = shape(
     "ResponseSeries",
     "The curves of a response: one entry of each for every time; every dot of a picture has its extremes.",
-    time=(list[float], "", "time"),
-    rotation=(list[float], "theta", "rotation"),
-    velocity=(list[float], "angular velocity", "angular_velocity"),
-    kinetic=(list[float], "kinetic energy", "kinetic_energy"),
-    potential=(list[float], "potential energy over that at rest", "potential_energy"),
-    work=(list[float], "work of the ground so far", "work_of_ground"),
-    lost=(list[float], "energy that impacts have cost so far", "energy_lost"),
-    friction_demand=(list[float | None], "null where no friction suffices", "friction_demand"),
-    vertical_force=(list[float], "of the ground on the body", "vertical_force"),
-    ground_acceleration=(list[float], "", "ground_acceleration"),
-    ground_displacement=(list[float], "", "displacement"),
-    shown=(int, "samples here"),
-    of=(int, "states of the response: samples, events, and where it turns round"),
+    time=list[float],
+    rotation=list[float],
+    angular_velocity=list[float],
+    kinetic_energy=list[float],
+    potential_energy=list[float],
+    work_of_ground=list[float],
+    energy_lost=list[float],
+    friction_demand=(list[float | None], "friction demand; null where no friction suffices"),
+    vertical_force=list[float],
+    ground_acceleration=list[float],
+    ground_displacement=list[float],
+    samples_shown=int,
+    samples=(int, "states of the response: samples, events, and where it turns round"),
 )
 FallAnswer: Any = shape(
     "FallAnswer",
     "How a fall goes on after the curves end, by the same equation of motion, until a corner meets the ground.",
-    time=(list[float], "", "time"),
-    rotation=(list[float], "theta", "rotation"),
-    lying=(tuple[float, float], "theta where it lies on its left and on its right side", "rotation"),
+    time=list[float],
+    rotation=list[float],
+    lying=tuple[float, float],
 )
 ResponseFacts: Any = shape(
     "ResponseFacts",
     "The response under one restitution: the keys of `rocking simulate --json`, with label and curves.",
     label=(str, "the restitution"),
-    body=RockingBody,
-    motion=(MovedFacts | None, "null for free rocking"),
-    initial_rotation_rad=(float, ""),
+    body=BodyFacts,
+    motion=(MotionSummaryAnswer | None, "null for free rocking"),
+    initial_rotation=float,
     restitution=str,
-    engine=(str, "which one ran"),
-    gravity_m_s2=(float, ""),
-    linear=(bool, "whether the equations were linearised"),
-    outcome=Literal["no_uplift", "rocked", "overturned"],
-    summary=(str, "the outcome in a sentence"),
-    overturned_to=Foot | None,
-    overturning_time_s=(float | None, "null if it stands"),
-    peak_rotation_rad=(float, "a quarter turn if it overturned"),
-    peak_rotation_over_alpha=(float, "over the slenderness angle of that side", "peak_ratio"),
-    still_rocking=(StillRocking | None, "null where it rests or has overturned at the end"),
-    lost_contact=(bool, "whether the ground would have to pull, so that the verdict assumes contact"),
-    uplifts_s=(list[float], "times at which it leaves the ground"),
-    impacts=list[ImpactFacts],
-    energy_closure=(float, "energy that does not add up, over the largest energy [-]"),
-    error_estimate_rad=(float | None, "of the peak; null if another step changes the outcome"),
-    friction=FrictionFacts,
-    least_vertical_force_N=(float, "of the ground on the body"),
-    warnings=(list[str], "sentences; none if pure rocking is credible"),
+    coefficient=(dict[Foot, float], "coefficient of restitution by the foot landed on"),
+    engine=str,
+    gravity=float,
+    linear=bool,
+    outcome=(Literal["no_uplift", "rocked", "overturned"], "outcome"),
+    summary=str,
+    side=(Foot | None, "side to which the body overturned; null if it did not"),
+    overturning_time=(float | None, "null if the body does not overturn"),
+    peak_rotation=float,
+    peak_ratio=float,
+    still_rocking=bool,
+    last_state=(LastState | None, "null where it rests or has overturned at the end"),
+    lost_contact=bool,
+    uplift_times=list[float],
+    impacts=list[Impact],
+    energy_closure=float,
+    error_estimate=(float | None, "null if another step changes the outcome"),
+    friction=float,
+    friction_assumed=bool,
+    friction_demand=(float | None, "null if no friction suffices"),
+    friction_of_motion=(float | None, "null if no friction suffices"),
+    friction_of_impacts=(float | None, "null if no friction suffices"),
+    least_force=(float | None, "null if the body does not rock"),
+    warnings=list[str],
     series=ResponseSeries,
     fall=FallAnswer,
 )
 NoResponse: Any = shape(
-    "NoResponse",
-    "Why one of the restitutions has no response.",
-    label=(str, "the restitution"),
-    error=(str, "one sentence"),
+    "NoResponse", "Why one of the restitutions has no response.", label=(str, "the restitution"), error=str
 )
 VerdictFacts: Any = shape("VerdictFacts", "Whether the choice of the model decides.", decides=bool, sentence=str)
 ResponseAnswered: Any = shape(
@@ -156,7 +136,8 @@ ResponseAnswered: Any = shape(
     answers=list[ResponseFacts | NoResponse],
     verdict=VerdictFacts,
     body=DrawnBody,
-    motion=(MovedFacts | None, "null for free rocking"),
+    motion=(MotionSummaryAnswer | None, "null for free rocking"),
+    units=Units,
 )
 
 
@@ -176,30 +157,28 @@ async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
 
-def _answer(inputs: ResponseRequest, records: RecordStore) -> dict[str, Any]:
-    return answers_facts(problem_from(inputs, records), inputs.points, inputs.body.name, inputs.window)
+def _answer(inputs: ResponseRequest, records: RecordStore) -> Answer:
+    return responses_answer(problem_from(inputs, records), inputs.points, inputs.body.name, inputs.window)
 
 
-def answers_facts(
+def responses_answer(
     problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
-) -> dict[str, Any]:
+) -> Answer:
     """Return what every restitution makes of one question; window: the part of the time that is drawn [s]."""
     assert not isinstance(problem.motion, dict)  # the page has one component
     answers = responses_of(problem)
     verdict = ModelAgreement.of({label: one for label, one in answers.items() if isinstance(one, Response)})
-    return {
+    return Answer({
         "answers": [
             {"label": label, "error": one}
             if isinstance(one, str)
-            else answer_facts(label, one, problem, points, window)
+            else response_answer(label, one, problem, points, window)
             for label, one in answers.items()
         ],
         "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
-        "body": {
-            "name": name, **body_facts(problem.body, problem.settings.gravity), **outline_facts(problem.body),
-        },
-        "motion": moved_facts(problem.motion, problem.scale),
-    }  # fmt: skip
+        "body": problem.body.answer(problem.settings.gravity) | outline_answer(problem.body) | {"name": name},
+        "motion": motion_answer(problem.motion, problem.scale),
+    })  # fmt: skip
 
 
 def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
@@ -221,17 +200,16 @@ def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
     return answers
 
 
-def answer_facts(
+def response_answer(
     label: str, response: Response, problem: ResponseProblem, points: int, window: tuple[float, float] | None = None
-) -> dict[str, Any]:
-    """Return one response as the API tells it: its facts, with label, curves and fall."""
+) -> Answer:
+    """Return one response with label, curves and fall."""
     lying = DrawnShape.of(response.body).lying
     fall = fall_of(response, lying)
-    return {
+    return response.answer(problem.assumed_friction) | {
         "label": label,
-        **response_facts(response, problem.assumed_friction),
         "series": response_series(response, points, window),
-        "fall": {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)},
+        "fall": {"time": fall.time[1:], "rotation": fall.rotation[1:], "lying": lying},
     }
 
 
@@ -254,14 +232,13 @@ def response_series(response: Response, points: int, window: tuple[float, float]
     """Return the curves of a response, `ResponseSeries`; window: the part of the time that is drawn [s]."""
     whole, curves = _states(response)
     kept = thinned(whole, list(curves.values()), points, window)
-    time, columns = whole[kept], {name: values[kept].tolist() for name, values in curves.items()}
+    time = whole[kept]
     return {
-        "time": time.tolist(),
-        **columns,
-        "friction_demand": [finite(value) for value in columns["friction_demand"]],
-        "ground_displacement": _moved(response, time).tolist(),
-        "shown": int(time.size),
-        "of": int(whole.size),
+        "time": time,
+        **{name: values[kept] for name, values in curves.items()},
+        "ground_displacement": _moved(response, time),
+        "samples_shown": int(time.size),
+        "samples": int(whole.size),
     }
 
 
@@ -278,7 +255,7 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
     time, chosen = np.unique(time, return_index=True)
     turned = {
         "rotation": (dense_output.quintics()[turns] * x[:, None] ** np.arange(6)).sum(axis=1),
-        "velocity": np.zeros(x.size),
+        "angular_velocity": np.zeros(x.size),
     }
     columns = {}
     for name, each in curves.items():
@@ -294,11 +271,11 @@ def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, Fl
     _, vertical, demand = forces(dense_output, settings.gravity)
     return {
         "rotation": dense_output.rotation,
-        "velocity": dense_output.velocity,
-        "kinetic": kinetic,
-        "potential": potential,
-        "work": work,
-        "lost": lost,
+        "angular_velocity": dense_output.velocity,
+        "kinetic_energy": kinetic,
+        "potential_energy": potential,
+        "work_of_ground": work,
+        "energy_lost": lost,
         "friction_demand": demand,
         "vertical_force": mass * vertical,
         "ground_acceleration": dense_output.push,

@@ -12,7 +12,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
-from rocking.app.answers import UNITS, answered_with_file, attachment
+from rocking.app.answers import answered_with_file, attachment
 from rocking.app.api.motion import DAMPING, spectrum_of
 from rocking.app.downloads.evaluation import Evaluation
 from rocking.app.errors import NotFound
@@ -21,14 +21,16 @@ from rocking.app.plain_text import LONGEST_CELL, plain_line
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.bodies import Body
+from rocking.conventions import FEET
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.plots.labels import fine_samples, traces
-from rocking.reports.body_facts import ImpactAnswer, body_facts
-from rocking.reports.response_facts import measures_of, outcome_facts
+from rocking.quantities import QUANTITIES
+from rocking.reports.body_facts import ImpactAnswer
+from rocking.reports.response_facts import measures_of, spectrum_answer
 from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, to_excel, to_mat, to_netcdf
 
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
@@ -97,13 +99,16 @@ def _one_table(what: str, evaluation: Evaluation) -> Table:
 
 def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
     """Return what a body is; gravity: acceleration of gravity [m/s2]."""
-    facts = body_facts(body, gravity)
-    (left, right), (x, y) = facts["feet_m"], facts["centre_m"]
+    answer = body.answer(gravity)
+    (left, right), (x, y) = answer["foot_positions"], answer["centre"]
     rows = [
         ("centre_x", "", x, "m"), ("centre_y", "", y, "m"), ("foot_x", "left", left, "m"),
         ("foot_x", "right", right, "m"),
-        *(_fact(key, "", value) for key, value in facts.items() if isinstance(value, float)),
-        *(_fact(key, foot, value) for foot, side in facts["sides"].items() for key, value in side.items()),
+        *((key, "", answer[key], QUANTITIES[key].unit) for key in ("mass", "moment_of_inertia", "gravity")),
+        *(
+            (key, foot, value, QUANTITIES[key].unit)
+            for foot, side in answer["sides"].items() for key, value in side.items()
+        ),
     ]  # fmt: skip
     quantity, foot, value, unit = zip(*rows, strict=True)
     return as_table(about, {
@@ -112,30 +117,17 @@ def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> 
     })  # fmt: skip
 
 
-def _fact(key: str, foot: str, value: float) -> tuple[str, str, float, str]:
-    for ending, unit in UNITS.items():
-        if key.endswith(ending):
-            return key.removesuffix(ending), foot, value, unit
-    return key, foot, value, "1"  # "-" alone in a cell would be taken for the start of a formula
-
-
 def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
     """Return the coefficients of a body under every model."""
-    rows = [(foot, row) for foot, each in answer.tables.items() for row in each]
-    plain = [row for _, row in rows]
-    return as_table(about, {
-        "onto": ("", [foot for foot, _ in rows]),
-        "model": ("", [row.name for row in plain]),
-        "coefficient_of_restitution": ("-", [row.coefficient for row in plain]),
-        "low_95": ("-", [row.low for row in plain]),
-        "high_95": ("-", [row.high for row in plain]),
-        "impulse_ratio_k": ("-", [row.implication.impulse_ratio for row in plain]),
-        "impulse_x": ("m", [row.implication.impulse_x for row in plain]),
-        "energy_loss": ("-", [row.implication.energy_loss for row in plain]),
-        "friction_demand": ("-", [row.implication.friction_demand for row in plain]),
-        "admissible": ("1 yes, 0 no", [int(row.implication.admissible) for row in plain]),
-        "warnings": ("", ["; ".join(row.warnings) for row in plain]),
-    })  # fmt: skip
+    rows = [{"onto": foot, **row.answer().values} for foot, each in answer.tables.items() for row in each]
+    joined = [{**row, "warnings": "; ".join(row["warnings"]), "admissible": int(row["admissible"])} for row in rows]
+    return as_table(about, {name: (_unit(name), [row[name] for row in joined]) for name in joined[0]})
+
+
+def _unit(name: str) -> str:
+    """Return the unit of a quantity as headings have it; empty for words."""
+    unit = QUANTITIES[name].unit
+    return "-" if unit == "1" else unit
 
 
 def motion_table(motion: Motion, about: dict[str, str]) -> Table:
@@ -145,11 +137,10 @@ def motion_table(motion: Motion, about: dict[str, str]) -> Table:
     else:
         fine = traces(motion)
         curves = fine.time, fine.acceleration, fine.velocity, fine.displacement
-    names = {"time": "s", "acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
-    columns = {name: (unit, values) for (name, unit), values in zip(names.items(), curves, strict=True)}
+    columns = dict(zip(("time", "acceleration", "velocity", "displacement"), curves, strict=True))
     if isinstance(motion, GroundMotion) and motion.vertical is not None:
-        columns["vertical_acceleration"] = ("m/s2", motion.vertical)
-    return as_table(about, columns)
+        columns["vertical_acceleration"] = motion.vertical
+    return as_table(about, {name: (_unit(name), values) for name, values in columns.items()})
 
 
 def measures_table(motion: Motion, about: dict[str, str]) -> Table:
@@ -166,14 +157,9 @@ def measures_table(motion: Motion, about: dict[str, str]) -> Table:
 
 def spectrum_table(motion: Motion, about: dict[str, str]) -> Table:
     """Return the response spectrum of a motion for 5 % damping, at the periods of the picture on the screen."""
-    spectrum = spectrum_of(fine_samples(motion))
-    return as_table({**about, "damping ratio": repr(DAMPING)}, {
-        "period": ("s", spectrum.periods),
-        "pseudo_acceleration": ("m/s2", spectrum.pseudo_acceleration),
-        "pseudo_velocity": ("m/s", spectrum.pseudo_velocity),
-        "displacement": ("m", spectrum.displacement),
-        "absolute_acceleration": ("m/s2", spectrum.absolute_acceleration),
-    })  # fmt: skip
+    answer = spectrum_answer(spectrum_of(fine_samples(motion)))
+    columns = {name: (_unit(name), values) for name, values in answer.values.items() if name != "damping_ratio"}
+    return as_table({**about, "damping ratio": repr(DAMPING)}, columns)
 
 
 def response_table(response: Response, about: dict[str, str]) -> Table:
@@ -183,33 +169,24 @@ def response_table(response: Response, about: dict[str, str]) -> Table:
 
 def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
     """Return the impacts of every response, one a row; none if there is no impact."""
+    names = ("time", "velocity_before", "velocity_after", "coefficient", "onto")
     rows = [
         (label, number, *row)
         for label, response in responses.items()
         for number, row in enumerate(response.impacts.tolist(), start=1)
     ]
-    units = {
-        "restitution": "", "impact": "-", "time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s",
-        "coefficient": "-", "onto": "",
-    }  # fmt: skip
+    units = {"restitution": "", "impact": "-", **{name: _unit(name) for name in names}, "onto": ""}
     return as_table(about, {name: (unit, [row[k] for row in rows]) for k, (name, unit) in enumerate(units.items())})
 
 
 def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
     """Return how every response ended."""
-    outcomes = [outcome_facts(response) for response in responses.values()]
-    rockers = [response.parameters for response in responses.values()]
-    return as_table(about, {
-        "restitution": ("", list(responses)),
-        "coefficient_onto_left": ("-", [rocker.left.coefficient for rocker in rockers]),
-        "coefficient_onto_right": ("-", [rocker.right.coefficient for rocker in rockers]),
-        "outcome": ("", [one["outcome"] for one in outcomes]),
-        "summary": ("", [one["summary"] for one in outcomes]),
-        "peak_rotation": ("rad", [one["peak_rotation_rad"] for one in outcomes]),
-        "peak_over_slenderness_angle": ("-", [one["peak_rotation_over_alpha"] for one in outcomes]),
-        "overturning_time": ("s", [one["overturning_time_s"] for one in outcomes]),
-        "impacts": ("-", [int(response.impacts.size) for response in responses.values()]),
-    })  # fmt: skip
+    answers = [response.outcome_answer() for response in responses.values()]
+    names = ("outcome", "summary", "peak_rotation", "peak_ratio", "overturning_time", "impacts")
+    columns: dict[str, Any] = {"restitution": ("", list(responses))}
+    columns |= {f"coefficient_{foot}": ("-", [one["coefficient"][foot] for one in answers]) for foot in FEET}
+    columns |= {name: (_unit(name), [one[name] for one in answers]) for name in names}
+    return as_table(about, {**columns, "outcome": ("", columns["outcome"][1])})
 
 
 def as_table(about: dict[str, str], columns: "Mapping[str, tuple[str, Iterable[Cell] | np.ndarray]]") -> Table:

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rocking.app.answers import QuantityAnswer, shape
+from rocking.app.answers import QuantityAnswer, Units, shape
 from rocking.app.api.response import ResponseFacts
 from rocking.app.inputs import Inputs
 
@@ -269,9 +269,9 @@ StoredHistory: Any = shape(
     outcome=int,
     mode=(int, _MODE),
     impacts=int,
-    peak_rotation_rad=(float | None, "null if it was not computed"),
-    peak_rotation_over_alpha=(float | None, "null if it was not computed", "peak_ratio"),
-    overturning_time_s=(float | None, "null if it stands"),
+    peak_rotation=(float | None, "null if it was not computed"),
+    peak_ratio=(float | None, "null if it was not computed"),
+    overturning_time=(float | None, "null if it stands"),
 )
 HistoryAnswer: Any = shape(
     "HistoryAnswer",
@@ -279,6 +279,7 @@ HistoryAnswer: Any = shape(
     stored=StoredHistory,
     inputs=(Inputs | None, "what to ask for the same history; null where inputs cannot say it"),
     answer=(ResponseFacts | None, "null where there is no response"),
-    difference_rad=(float | None, "between the peaks of `stored` and `answer`"),
+    difference=(float | None, "between the peaks of `stored` and `answer`"),
     note=(str, "on what is missing; empty if nothing is"),
+    units=Units,
 )

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.app.api.response import answer_facts
+from rocking.answers import Answer
+from rocking.app.api.response import response_answer
 from rocking.app.errors import NotFound
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.job_document import motions_in
@@ -50,14 +51,7 @@ _STARTS = {"rotation": "rotation", "angular_velocity": "velocity"}
 _CLOSE = 1e-12
 POINTS = 1000  # samples of the curves
 
-_STORED = {
-    "outcome": "outcome",
-    "mode": "mode",
-    "impacts": "impacts",
-    "peak_rotation": "peak_rotation_rad",
-    "peak_ratio": "peak_rotation_over_alpha",
-    "overturning_time": "overturning_time_s",
-}
+_STORED = ("outcome", "mode", "impacts", "peak_rotation", "peak_ratio", "overturning_time")
 
 
 @dataclass(frozen=True)
@@ -204,9 +198,11 @@ def stretched_words(words: str, stretch: float) -> str:
 
 def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
     """Return the history behind a point of a picture, `HistoryAnswer`."""
-    # ``difference_rad`` is of the peak rotations of the study and of the response here, which take other steps to the
+    # ``difference`` is of the peak rotations of the study and of the response here, which take other steps to the
     # same accuracy
-    cell: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
+    cell: dict[str, Any] = {
+        **Answer({"stored": stored(study, place), "answer": None, "difference": None}).plain(), "inputs": None,
+    }  # fmt: skip
     if "friction" in study.job.problem.settings.stated:
         return cell | {
             "note": "with friction the page has the study's numbers alone; ask `rocking simulate --friction`"
@@ -228,15 +224,16 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
     cell["note"] = note
     if response.outcome is Outcome.FAILED:
         return cell | {"note": f"there is no response: {response.status.value}"}
-    difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation_rad"]))
-    answer = answer_facts(variation.label, response, problem, points)
-    return cell | {"answer": answer, "difference_rad": difference}
+    difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation"]))
+    answer = response_answer(variation.label, response, problem, points)
+    told = Answer({"stored": cell["stored"], "answer": answer, "difference": difference}).plain()
+    return cell | told
 
 
 def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
     """Return what a study has of a history, as it was computed, `StoredHistory`."""
     history = study.history(place.number)
-    results = {key: plain(history[name]) for name, key in _STORED.items()}
+    results = {name: plain(history[name]) for name in _STORED}
     return {"history": place.number, "meaning": mode_words(results["mode"]), **results}
 
 

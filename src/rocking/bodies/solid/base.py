@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -50,6 +51,10 @@ class Base(ABC):
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "Base":
         """Return the base under a similarity of the plane: (2, 2) matrix [-], then (3,) shift [m]."""
 
+    @abstractmethod
+    def answer(self) -> dict[str, Any]:
+        """Return what is shown of the base."""
+
 
 @dataclass(frozen=True, eq=False)
 class RoundBase(Base):
@@ -75,6 +80,9 @@ class RoundBase(Base):
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "RoundBase":
         scale = math.sqrt(abs(_area_factor(matrix)))
         return RoundBase(applied(matrix, self.centre) + shift[:2], self.radius * scale, self.height * scale + shift[2])
+
+    def answer(self) -> dict[str, Any]:
+        return {"kind": "circle", "base_centre": self.centre, "base_radius": self.radius}
 
 
 def _area_factor(matrix: FloatArray) -> float:
@@ -130,6 +138,9 @@ class SupportPolygon(Base):
         moved, area = times(self.vertices, matrix.T) + shift[:2], _area_factor(matrix)
         scale = math.sqrt(abs(area))
         return SupportPolygon(moved if area > 0.0 else moved[::-1], self.height * scale + shift[2])
+
+    def answer(self) -> dict[str, Any]:
+        return {"kind": "polygon", "base_vertices": self.vertices}
 
 
 def hull(points: ArrayLike) -> SupportPolygon:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking import checks, plausibility
+from rocking.answers import Answer
 from rocking.bodies._known import density_of
 from rocking.bodies.block import Block
 from rocking.bodies.body import assumed_density
@@ -241,6 +242,22 @@ class Solid:
         boxes = np.array([part.box() for part in self.local_parts])
         box: FloatArray = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)]) + self.origin
         return box
+
+    def answer(self) -> Answer:
+        """Return what is shown of the body.
+
+        Returns
+        -------
+        Answer
+            Mass, volume, size, centre, inertia, base, assumptions, doubts and repairs.
+        """
+        low, high = self.box
+        return Answer({
+            "kind": "Solid", "name": self.name, "parts": len(self.local_parts), "mass": self.mass,
+            "volume": self.volume, "size": high - low, "centre": self.centre,
+            "centre_height": self.centre[2] - self.ground, "inertia": self.inertia, "base": self.base.answer(),
+            "assumed": self.assumed, "warnings": self.doubts, "repairs": self.repairs,
+        })  # fmt: skip
 
     def in_plane(self, azimuth: float = 0.0) -> Section:
         """Return the plane body that rocks in one direction, from one end of the base to the other.

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks, plausibility
+from rocking import checks, conventions, plausibility
+from rocking.answers import AnswerRows
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
@@ -22,6 +23,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
+from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
 from rocking.tables import Column
 
@@ -237,6 +239,31 @@ class ContactResponse(ResponseBase):
             If a time is not finite, or before the start or after the end by more than rounding.
         """
         return places_of(self.trajectory, self._known(time, self.trajectory.end))
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        law, energy = self.law, self.energy
+        imposed = None if law.restitution is None else dict(zip(("left", "right"), law.restitution, strict=True))
+        return {
+            "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
+            "initial_rotation": float(self.rotation[0]), "friction": law.friction,
+            "friction_assumed": isinstance(law.friction, conventions.Assumed), "bounce": law.bounce,
+            "bounce_law": law.bounce_law, "coefficient": imposed, "peak_rotation": self.peak_rotation,
+            "sliding_distance": self.sliding_distance, "residual_displacement": float(self.displacement[-1]),
+            "friction_usage": self.friction_usage, "lost": float(energy.lost_in_impacts[-1]),
+            "lost_in_friction": float(energy.lost_in_friction[-1]), "energy_closure": energy.closure,
+            "intervals": AnswerRows({
+                **AnswerRows.of(self.regimes).columns,
+                "regime": [name.lower() for name in self.regimes["regime"].tolist()],
+            }),
+            "impacts": AnswerRows.of(self.impacts),
+        }  # fmt: skip
+
+    @property
+    def _last_state(self) -> dict[str, Any]:
+        return {
+            "time": self.time[-1], "rotation": self.rotation[-1], "angular_velocity": self.angular_velocity[-1],
+        }  # fmt: skip
 
     @property
     def _samples(self) -> dict[str, FloatArray]:

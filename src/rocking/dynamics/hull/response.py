@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks, plausibility
+from rocking.answers import AnswerRows
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.engine import HullEngine
@@ -22,6 +23,7 @@ from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import Component, ground_of
 from rocking.dynamics.space.response import samples, started
 from rocking.motions.motion import GroundMotion
+from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
 from rocking.portable import applied
 
@@ -299,6 +301,29 @@ class HullResponse(ResponseBase):
         rate = np.column_stack([scalar, 0.5 * (s * w + attitude.cross(v, w))])
         places, velocities = (np.array([getattr(one, name) for one in states]) for name in ("place", "velocity"))
         return np.array(self.trajectory.time), places, q, velocities, rate
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        direction, intervals = self.overturning_direction, self.intervals
+        starts, ends, touching, sliding = zip(*intervals, strict=True) if intervals else ((),) * 4
+        return {
+            "motions": {
+                axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
+            },
+            "restitution": self.restitution, "friction": self.settings.friction, "peak_tilt": self.peak_tilt,
+            "direction": None if math.isnan(direction) else direction, "sliding_distance": self.sliding_distance,
+            "pose": self.pose, "lost": self.trajectory.lost,
+            "intervals": AnswerRows({"start": starts, "end": ends, "vertices": touching, "sliding_vertices": sliding}),
+            "impacts": AnswerRows.of(self.impacts),
+        }  # fmt: skip
+
+    @property
+    def _last_state(self) -> dict[str, Any]:
+        last = self.at(self.end)
+        return {
+            "time": self.end, "quaternion": last.quaternion[0],
+            "angular_velocity": dict(zip(_AXES, last.angular_velocity[0].tolist(), strict=True)),
+        }  # fmt: skip
 
     @property
     def _samples(self) -> dict[str, FloatArray]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks, conventions, plausibility
+from rocking.answers import AnswerRows
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
 from rocking.dynamics.response_base import ResponseBase, check_samples, motion_provenance
@@ -23,6 +24,7 @@ from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, pivots, states_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.motions.summary import motion_answer
 from rocking.outcome import ContactMode, Outcome
 from rocking.portable import applied, dot, gauss_legendre, norm
 from rocking.tables import Column
@@ -65,6 +67,8 @@ class SpatialResponse(ResponseBase):
         Motions along x, y and upwards; None where there is none.
     ends_early : bool
         Whether it was followed for 15 / p after the motion only, because no impact cost energy in that time.
+    scale : float
+        Factor on the motion [-].
     """
 
     body: SpatialBody
@@ -76,6 +80,7 @@ class SpatialResponse(ResponseBase):
     end: float
     components: tuple[Component, Component, Component] = (None, None, None)
     ends_early: bool = False
+    scale: float = 1.0
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -304,6 +309,32 @@ class SpatialResponse(ResponseBase):
         return states_of(self.body, self.trajectory, times)
 
     @property
+    def _values(self) -> dict[str, Any]:
+        direction, intervals = self.overturning_direction, self.intervals
+        starts, ends, modes, points = zip(*intervals, strict=True) if intervals else ((),) * 4
+        return {
+            "motions": {
+                axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
+            },
+            "restitution": self.law.label, "peak_tilt": self.peak_tilt,
+            "direction": None if math.isnan(direction) else direction,
+            "overturned_over": self.overturned_over or None, "ends_early": self.ends_early,
+            "energy_closure": self.energy.closure,
+            "intervals": AnswerRows({
+                "start": starts, "end": ends, "contact": [mode.name.lower() for mode in modes], "vertices": points,
+            }),
+            "impacts": AnswerRows.of(self.impacts),
+        }  # fmt: skip
+
+    @property
+    def _last_state(self) -> dict[str, Any]:
+        last = self.at(self.end)
+        return {
+            "time": self.end, "quaternion": last.quaternion[0],
+            "angular_velocity": dict(zip(_AXES, last.angular_velocity[0].tolist(), strict=True)),
+        }  # fmt: skip
+
+    @property
     def _samples(self) -> dict[str, FloatArray]:
         def axes(name: str, rows: FloatArray) -> dict[str, FloatArray]:
             return {f"{name}_{axis}": rows[:, k] for k, axis in enumerate(_AXES)}
@@ -398,7 +429,7 @@ def response_in_space(
     end = min(length, max(least, last.start + _FINE / p) if rests else last.end)
     steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
-    return SpatialResponse(made, ground, law, settings, time, found, end, components, ends_early=ends_early)
+    return SpatialResponse(made, ground, law, settings, time, found, end, components, ends_early, scale)
 
 
 def _rocks(history: SpatialTrajectory) -> bool:

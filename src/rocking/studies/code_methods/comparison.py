@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
+from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
@@ -186,20 +187,20 @@ class CodeComparison:
             scatter = 0.5 * math.log(high / low) if low > 0.0 else math.inf
         return Bias(middle, interval, scatter, int(good.sum()), int((good & np.isinf(truth)).sum()))
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return everything that is shown.
 
         Returns
         -------
-        dict
+        Answer
             By method: where it stands, and for every body its bias and what it calls safe at every level.
         """
         numbers = range(len(self.bodies))
-        return {
+        return Answer({
             "bodies": list(self.bodies),
             "worse_side_counts": self.asymmetric.tolist(),
             "motions": list(self.motions),
-            "sources": [each.as_dict() for each in self.sources],
+            "sources": [each.answer() for each in self.sources],
             "levels": list(self.levels),
             "restitution": self.restitution,
             "motions_with_vertical": self.vertical,
@@ -217,7 +218,7 @@ class CodeComparison:
                 }
                 for one in self.methods
             },
-        }  # fmt: skip
+        })  # fmt: skip
 
     def _place(self, method: str) -> int:
         names = [each.name for each in self.methods]
@@ -232,7 +233,10 @@ class CodeComparison:
 
 
 def _facts(called: CalledSafe) -> dict[str, Any]:
-    return {**vars(called), "share": called.share}
+    return {
+        "histories_known": called.total, "safe": called.safe, "overturned": called.overturned,
+        "limit_ratio": called.ratio, "share": called.share, "share_95": called.interval,
+    }  # fmt: skip
 
 
 def _ends(values: FloatArray) -> tuple[float, float]:

@@ -5,6 +5,7 @@ import io
 import math
 from typing import Any
 
+from rocking.answers import Answer
 from rocking.conventions import g
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.language import Language, language
@@ -143,41 +144,45 @@ def as_csv(assessment: Assessment) -> str:
     return text.getvalue()
 
 
-def as_plain(assessment: Assessment) -> dict[str, Any]:
-    """Return everything as plain values, for JSON: SI units, named in the keys; text as it was typed."""
+def answer_of(assessment: Assessment) -> Answer:
+    """Return everything that is shown of an assessment; text as it was typed."""
     hazard, thresholds = assessment.hazard, assessment.thresholds
     low, high = hazard.velocity()
-    return {
-        "inventory": assessment.source,
-        "hazard": {
-            # the description comes first: its pgv_m_s is the level asked for, not the range that came out
-            **hazard.description,
-            "level": hazard.words(),
-            "motions": hazard.source,
-            "number_of_motions": len(hazard.motions),
-            "pgv_range_m_s": [low, high],
-        },
-        "restitution": assessment.restitution,
-        "restitution_drawn": assessment.drawn,
-        "comparisons": list(assessment.comparisons),
-        "language": assessment.language,
-        "thresholds": dict(vars(thresholds))
-        | {light.word: words for light, words in thresholds.sentences(assessment.language).items()},
-        "counts": {light.word: count for light, count in assessment.counts().items()}
-        | {"not_assessed": len(assessment.not_assessed)},
-        "pieces": {light.word: count for light, count in assessment.pieces().items()},
-        "objects": [_plain(rank, each, assessment) for rank, each in enumerate(assessment.verdicts, start=1)],
-        "plan": [_plan(each, words_of(assessment)) for each in assessment.plan],
-        "not_assessed": [
-            {"row": each.row, "number": each.number, "name": each.name, "note": each.note, "reason": each.reason}
-            for each in assessment.not_assessed
-        ],
-        "not_objects": [{"row": each.row, "text": each.name, "reason": each.reason} for each in assessment.not_objects],
-        "columns_not_read": list(assessment.ignored),
-        "stated": list(assessment.stated),
-        "header_lines": list(assessment.header_lines),
-        "assumptions": limits(assessment),
-    }
+    return Answer(
+        {
+            "inventory": assessment.source,
+            "hazard": {
+                # the description comes first: its pgv is the level asked for, not the range that came out
+                **{_STATED.get(key, key): value for key, value in hazard.description.items()},
+                "level": hazard.words(),
+                "motions": hazard.source,
+                "number_of_motions": len(hazard.motions),
+                "pgv_range": [low, high],
+            },
+            "restitution": assessment.restitution,
+            "restitution_drawn": assessment.drawn,
+            "comparisons": list(assessment.comparisons),
+            "language": assessment.language,
+            "thresholds": dict(vars(thresholds))
+            | {light.word: words for light, words in thresholds.sentences(assessment.language).items()},
+            "counts": {light.word: count for light, count in assessment.counts().items()}
+            | {"not_assessed": len(assessment.not_assessed)},
+            "pieces": {light.word: count for light, count in assessment.pieces().items()},
+            "objects": [_plain(rank, each, assessment) for rank, each in enumerate(assessment.verdicts, start=1)],
+            "plan": [_plan(each, words_of(assessment)) for each in assessment.plan],
+            "not_assessed": [
+                {"row": each.row, "number": each.number, "name": each.name, "note": each.note, "reason": each.reason}
+                for each in assessment.not_assessed
+            ],
+            "not_objects": [
+                {"row": each.row, "text": each.name, "reason": each.reason} for each in assessment.not_objects
+            ],
+            "columns_not_read": list(assessment.ignored),
+            "stated": list(assessment.stated),
+            "header_lines": list(assessment.header_lines),
+            "assumptions": limits(assessment),
+        }
+    )
 
 
 def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
@@ -188,11 +193,11 @@ def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
         "pieces_spared": entry.spared,
         "gain": entry.gain,
         "directions": list(entry.directions),
-        "base_wider_each_side_m": entry.wider,
-        "centre_lower_m": entry.lower,
-        "ballast_kg": entry.ballast,
+        "base_wider_each_side": entry.wider,
+        "centre_lower": entry.lower,
+        "ballast": entry.ballast,
         "anchors_of_one_edge_over_weight": entry.pull,
-        "anchors_of_one_edge_n": entry.force,
+        "anchors_of_one_edge": entry.force,
         "anchors_across_over_weight": entry.shear,
         "moved_to_share_of_shaking": entry.weaker,
         "in_words": plan_words(entry, say),
@@ -210,12 +215,12 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "note": item.note,
         "consequence": item.consequence,
         "shape": item.shape,
-        "approximate_m": dict(item.approximate),
+        "approximate": dict(item.approximate),
         "remarks": list(item.remarks),
         "noted": noted(verdict, assessment),
         "light": verdict.light.word,
         "worse_direction": verdict.worse.direction,
-        "uplift_acceleration_m_s2": verdict.uplift_acceleration,
+        "uplift_acceleration": verdict.uplift_acceleration,
         "overturned_interval": list(verdict.interval),
         "friction": verdict.friction if math.isfinite(verdict.friction) else None,
         "directions": [_direction(each) for each in verdict.results],
@@ -231,9 +236,12 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
     }
 
 
+# quantities by the keys of a stored description
+_STATED = {"pga_m_s2": "pga", "pgv_m_s": "pgv", "time_step_s": "time_step"}
+
 # names of a direction's results in JSON where they are not their own
 _PLAIN = {
-    "uplift_acceleration": "uplift_acceleration_m_s2", "count": "motions",
+    "count": "motions",
     "median_rotation": "median_rotation_over_angle", "high_rotation": "high_rotation_over_angle",
 }  # fmt: skip
 

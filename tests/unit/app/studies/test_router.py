@@ -41,9 +41,9 @@ def test_a_study_from_launch_to_file(client, map_job):
     assert result["kind"] == "overturning-map"
     cell = client.get(f"/api/studies/{study}/cell", params={"x": 2, "y": 4, "restitution": 1}).json()
     assert cell["stored"]["outcome"] == result["outcome"][1][4][2]
-    assert cell["stored"]["peak_rotation_over_alpha"] == result["peak"][1][4][2]
+    assert cell["stored"]["peak_ratio"] == result["peak"][1][4][2]
     answer = client.post("/api/response", json=cell["inputs"]).json()["answers"][0]
-    for name in ("outcome", "peak_rotation_rad", "impacts", "summary"):
+    for name in ("outcome", "peak_rotation", "impacts", "summary"):
         assert answer[name] == cell["answer"][name]
     file = client.get(f"/api/studies/{study}/export.csv")
     assert file.headers["content-disposition"] == 'attachment; filename="b-Kuste-b.csv"'

@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.formats import read_motion
 from rocking.studies.inventory import Thresholds, assess, read_inventory
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.table import as_plain
+from rocking.studies.inventory.table import answer_of
 
 OBJECTS = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,note
 tall vase,20,20,100,55,
@@ -50,7 +50,7 @@ def job(tmp_path):
 
 def wanted_of(path, hazard, **options):
     """The verdicts of the Python call, as plain values."""
-    return as_plain(assess(read_inventory(path.parent / "objects.csv"), hazard, **options))
+    return answer_of(assess(read_inventory(path.parent / "objects.csv"), hazard, **options)).plain()
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_campaign_is_assess(job, tmp_path, chunk, how):
     folder = JobFolder.create(tmp_path / "c", Job.read(path))
     folder.run(**how)
     hazard = Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.3g"), count=12, seed=4)
-    found = as_plain(assessment(folder))
+    found = answer_of(assessment(folder)).plain()
     assert found == wanted_of(path, hazard)
     assert (len(found["objects"]), len(found["not_assessed"])) == (3, 1)
 
@@ -83,12 +83,12 @@ def test_records_thresholds_and_gravity(job, records, tmp_path):
     motions = [read_motion(records / f"{name}.txt", units="m/s2") for name in ("one", "two")]
     options = {"restitution": 0.9, "thresholds": Thresholds(rocking=0.1, overturning_red=0.5), "gravity": 3.7}
     wanted = wanted_of(path, Hazard.of_records(motions, IntensityLevel.of("PGA", "0.1g")), **options)
-    assert as_plain(assessment(folder)) == wanted
+    assert answer_of(assessment(folder)).plain() == wanted
     unscaled = JobFolder.create(
         tmp_path / "d", Job.of_text(path.read_text().replace('pga = "0.1g"\n', ""), folder=tmp_path)
     )
     unscaled.run(workers=1)
-    assert as_plain(assessment(unscaled)) == wanted_of(path, Hazard.of_records(motions), **options)
+    assert answer_of(assessment(unscaled)).plain() == wanted_of(path, Hazard.of_records(motions), **options)
 
 
 def test_unfinished_and_damaged(job, tmp_path):
@@ -97,13 +97,13 @@ def test_unfinished_and_damaged(job, tmp_path):
     with pytest.raises(CampaignIncompleteError, match="go on with"):
         assessment(folder)
     folder.run(workers=1)
-    before = as_plain(assessment(folder))
+    before = answer_of(assessment(folder)).plain()
     shard = sorted((tmp_path / "c" / "histories" / "shards").glob("*.shard"))[3]
     flip(shard, -8 * 40)
     with pytest.raises(CampaignDamagedError):
         assessment(folder)
     assert len(folder.run(workers=1).set_aside) == 1
-    assert as_plain(assessment(folder)) == before
+    assert answer_of(assessment(folder)).plain() == before
 
 
 def test_every_history(job, tmp_path):
@@ -216,7 +216,7 @@ def test_bodies_in_space_beside_plane_ones(mixed, tmp_path):
     path, hazard = mixed
     folder = JobFolder.create(tmp_path / "c", Job.read(path))
     folder.run(workers=2, order_seed=3)
-    found = as_plain(assessment(folder))
+    found = answer_of(assessment(folder)).plain()
     assert found == wanted_of(path, hazard, restitution=0.9)
     assert (len(found["objects"]), len(found["not_assessed"])) == (3, 1)
     assert found != wanted_of(path, hazard, restitution=0.9, friction=0.1)

@@ -18,7 +18,7 @@ from rocking.studies.inventory import InventoryObject, Thresholds, assess, parse
 from rocking.studies.inventory import assessment as module
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light
-from rocking.studies.inventory.table import COLUMNS, as_csv, as_plain, rows
+from rocking.studies.inventory.table import COLUMNS, answer_of, as_csv, rows
 from rocking.tables import escaped
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -190,7 +190,7 @@ def test_failed_motions_are_said_and_forbid_green(monkeypatch, quakes):
     assert (verdict.light, verdict.worse.failed, verdict.worse.count) == (Light.AMBER, 1, 59)
     assert "1 of 60 motions could not be computed" in table.sentence(verdict, found)
     assert "no motion could be computed" in found.not_assessed[0].reason
-    json.dumps(as_plain(found), allow_nan=False)
+    json.dumps(answer_of(found).plain(), allow_nan=False)
 
 
 def test_progress_and_threads(quakes):
@@ -220,7 +220,7 @@ def test_thresholds_of_ones_own(quakes):
     strict = assess([item], quakes, restitution="ked", thresholds=Thresholds(0.2, 0.001, 0.002))
     assert usual.verdicts[0].light is Light.AMBER
     assert strict.verdicts[0].light is Light.RED
-    assert as_plain(strict)["thresholds"]["overturning_red"] == 0.002
+    assert answer_of(strict).plain()["thresholds"]["overturning_red"] == 0.002
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@cmd", "\t=1", " =1", "\r=1"])
@@ -242,13 +242,13 @@ def test_table_and_plain_values_agree(quakes):
     text = "name,width_cm,depth_cm,height_cm\nvase,20,20,90\nchest,200,200,50\nbad,?,1,1"
     found = assess(parse_inventory(text), quakes)
     lines = list(csv.DictReader(io.StringIO(as_csv(found))))
-    plain = json.loads(json.dumps(as_plain(found), allow_nan=False))
+    plain = json.loads(json.dumps(answer_of(found).plain(), allow_nan=False))
     assert [line["name"] for line in lines] == ["vase", "chest", "bad"]
     for line, item in zip(lines[:2], plain["objects"], strict=True):
         worse = next(each for each in item["directions"] if each["direction"] == item["worse_direction"])
         assert int(line["overturned"]) == worse["overturned"]
         assert float(line["overturned, high [%]"]) == pytest.approx(100.0 * item["overturned_interval"][1], abs=0.005)
-        assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration_m_s2"] / G, abs=5e-5)
+        assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration"] / G, abs=5e-5)
         assert line["in words"] == item["in_words"]
     assert lines[2]["in words"].startswith("not assessed: width_cm is '?'")
     assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
@@ -258,14 +258,14 @@ def test_table_and_plain_values_agree(quakes):
 
 def test_the_range_of_velocities_is_not_overwritten(quakes):
     """JSON gives the range of the motions' own velocities beside the level asked for, under names of their own."""
-    plain = as_plain(assess([COLUMN], quakes))["hazard"]
+    plain = answer_of(assess([COLUMN], quakes)).plain()["hazard"]
     own = [np.abs(motion.time_step * np.cumsum(motion.acceleration)).max() for motion in quakes.motions]
     # a running sum instead of trapezoids
     assert plain["pgv_range_m_s"] == pytest.approx([min(own), max(own)], rel=0.05)
-    assert (plain["pga_m_s2"], plain["pgv_m_s"]) == (pytest.approx(0.3 * G), None)
+    assert (plain["pga"], plain["pgv"]) == (pytest.approx(0.3 * G), None)
     scaled = Hazard.of_family("point-source", IntensityLevel.of("PGV", "15cm/s"), count=3, seed=1)
-    plain = as_plain(assess([COLUMN], scaled))["hazard"]
-    assert plain["pgv_m_s"] == 0.15
+    plain = answer_of(assess([COLUMN], scaled)).plain()["hazard"]
+    assert plain["pgv"] == 0.15
     assert plain["pgv_range_m_s"] == pytest.approx([0.15, 0.15], rel=1e-9)
 
 

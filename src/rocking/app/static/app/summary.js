@@ -37,17 +37,17 @@ const Facts = ({ facts }) => html`
   <dl class="facts compact" data-testid="summary">${rows(facts).map(([term, text]) => html`<dt key=${term}>${term}</dt><dd>${text}</dd>`)}</dl>`;
 
 /** @param {Server.DescribedBody} facts */
-const rows = ({ sides, mass_kg: mass }) => {
+const rows = ({ sides, mass }) => {
   const { left, right } = sides;
   /** @param {keyof Server.SideFacts} key @param {(value: number) => string} show */
   const both = (key, show) =>
     show(left[key]) === show(right[key]) ? show(right[key]) : `${show(left[key])} | ${show(right[key])}`;
   return [
     ["h/b", both("slenderness_ratio", (value) => number(value))],
-    ["\u03b1", both("slenderness_angle_rad", (value) => quantity((value * 180) / Math.PI, "\u00b0"))],
-    ["R", both("semi_diagonal_m", (value) => quantity(value, "m"))],
-    ["p", both("frequency_parameter_rad_s", (value) => quantity(value, "rad/s"))],
-    ["uplift", both("uplift_acceleration_m_s2", (value) => quantity(value, "m/s2"))],
+    ["\u03b1", both("slenderness_angle", (value) => quantity((value * 180) / Math.PI, "\u00b0"))],
+    ["R", both("semi_diagonal", (value) => quantity(value, "m"))],
+    ["p", both("frequency_parameter", (value) => quantity(value, "rad/s"))],
+    ["uplift", both("uplift_acceleration", (value) => quantity(value, "m/s2"))],
     ["mass", quantity(mass, "kg")],
   ];
 };

@@ -20,10 +20,10 @@ export const bodyPicture = (body, { width = 208, height = 360, plain = false } =
   },
     groundLine(6, width - 6, floor),
     regionPaths(body.outline, view),
-    massDots(body.points ?? [], view),
+    massDots(body.points ?? [], body.masses ?? [], view),
     plain ? null : sidesOf(body).map(([side, foot, sign]) => sideDrawing(body, side, foot, sign, view)),
-    body.feet_m.map((foot) => footMark(view.x(foot), floor)),
-    centreMark(view.x(body.centre_m[0]), view.y(body.centre_m[1])),
+    body.foot_positions.map((foot) => footMark(view.x(foot), floor)),
+    centreMark(view.x(body.centre[0]), view.y(body.centre[1])),
     plain ? null : scaleBar(view, width, height));
 };
 
@@ -32,7 +32,7 @@ export const groundOf = (body) => body.ground ?? 0;
 
 /** @param {Drawn} body */
 const everything = (body) => [
-  ...pointsOf(body.outline), ...(body.points ?? []), body.centre_m, ...body.feet_m.map(
+  ...pointsOf(body.outline), ...(body.points ?? []), body.centre, ...body.foot_positions.map(
     (foot) => [foot, groundOf(body)]
   ),
 ];
@@ -43,7 +43,7 @@ export const sameSides = ({ left, right }) =>
 
 // Equal sides are drawn once, over the right foot.
 /** @param {Drawn} body @returns {[Server.SideFacts, number, number][]} */
-const sidesOf = ({ sides, feet_m: feet }) => {
+const sidesOf = ({ sides, foot_positions: feet }) => {
   /** @type {[Server.SideFacts, number, number]} */
   const right = [sides.right, feet[1], -1];
   return sameSides(sides) ? [right] : [[sides.left, feet[0], 1], right];
@@ -52,7 +52,7 @@ const sidesOf = ({ sides, feet_m: feet }) => {
 /** @param {Drawn} body @param {Server.SideFacts} side @param {number} foot @param {number} sign @param {Viewport} view */
 const sideDrawing = (body, side, foot, sign, view) => {
   const [x, y] = [view.x(foot), view.y(groundOf(body))];
-  const centre = [view.x(body.centre_m[0]), view.y(body.centre_m[1])];
+  const centre = [view.x(body.centre[0]), view.y(body.centre[1])];
   const rise = y - centre[1];
   const radius = Math.max(18, Math.min(0.55 * rise, 90));
   const outside = { "text-anchor": sign > 0 ? "end" : "start" };
@@ -60,18 +60,18 @@ const sideDrawing = (body, side, foot, sign, view) => {
   return svg("g", {},
     svg("path", { class: "thin dashed", d: `M${x} ${y}V${centre[1] - 10}` }),
     svg("path", { class: "accent-line", d: `M${x} ${y}L${centre[0]} ${centre[1]}` }),
-    arc(x, y, radius, sign * side.slenderness_angle_rad),
-    words(beside, y - radius - 8, `\u03b1 = ${degrees(side.slenderness_angle_rad)}`, outside),
-    words(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal_m, "m")}`, outside));
+    arc(x, y, radius, sign * side.slenderness_angle),
+    words(beside, y - radius - 8, `\u03b1 = ${degrees(side.slenderness_angle)}`, outside),
+    words(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal, "m")}`, outside));
 };
 
-/** @param {number[][]} points @param {Viewport} view */
-const massDots = (points, view) => {
-  const heaviest = highest(points.map((each) => each[2]));
-  return points.map(([x, y, mass]) =>
+/** @param {number[][]} points @param {number[]} masses @param {Viewport} view */
+const massDots = (points, masses, view) => {
+  const heaviest = highest(masses);
+  return points.map(([x, y], k) =>
     svg(
       "circle",
-      { class: "region", cx: view.x(x), cy: view.y(y), r: Math.max(2, 9 * Math.sqrt(mass / heaviest)) },
+      { class: "region", cx: view.x(x), cy: view.y(y), r: Math.max(2, 9 * Math.sqrt(masses[k] / heaviest)) },
     ));
 };
 
@@ -91,9 +91,9 @@ const scaleBar = (view, width, height) => {
 /** @param {Drawn} body */
 const inWords = (body) => {
   const { left, right } = body.sides;
-  const [x, y] = body.centre_m;
-  const [leftAngle, rightAngle] = [left, right].map((side) => degrees(side.slenderness_angle_rad));
-  const feet = body.feet_m.map((each) => number(each)).join(" and ");
+  const [x, y] = body.centre;
+  const [leftAngle, rightAngle] = [left, right].map((side) => degrees(side.slenderness_angle));
+  const feet = body.foot_positions.map((each) => number(each)).join(" and ");
   return `Body to scale: centre of mass at x ${number(x)} m, y ${number(y)} m, feet at ${feet} m, `
     + `slenderness angle ${leftAngle} to the left and ${rightAngle} to the right.`;
 };

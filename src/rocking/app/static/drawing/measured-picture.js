@@ -7,7 +7,7 @@ import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis, leftAxis } from "/drawing/axis.js";
 import { marker } from "/drawing/markers.js";
 
-/** Draw {measured: [{slenderness_ratio, coefficient, low, high, group}], curves, rows, slenderness}.
+/** Draw {measured: [{slenderness_ratio, coefficient, coefficient_low, coefficient_high, group}], curves, rows, slenderness}.
  * @param {{ measured: Server.MeasuredPoint[], curves: Server.ModelCurve[], rows: { model: string, value: number }[], slenderness: number }} facts @param {{ width: number, height?: number }} size */
 export const measuredPicture = ({ measured, curves, rows, slenderness }, { width, height = 380 }) => {
   const all = [...measured.map((each) => each.slenderness_ratio), slenderness];
@@ -49,9 +49,9 @@ const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
 const point = (each, x, y) => {
   const { marker: shape, words } = GROUPS[each.group] ?? { marker: "circle", words: each.group };
   const [px, py] = [x.at(each.slenderness_ratio), y.at(each.coefficient)];
-  const bar = each.low === undefined || each.low === null || each.low === each.high ? null
+  const bar = each.coefficient_low === undefined || each.coefficient_low === null || each.coefficient_low === each.coefficient_high ? null
     : svg(
-      "path", { class: "marker-bar", d: `M${px} ${y.at(each.low)}V${y.at(Math.min(each.high, y.high))}` },
+      "path", { class: "marker-bar", d: `M${px} ${y.at(each.coefficient_low)}V${y.at(Math.min(each.coefficient_high, y.high))}` },
     );
   return svg("g", {}, bar, marker(shape, px, py),
     svg("title", {}, `${words}: h/b ${number(each.slenderness_ratio)}, r ${number(each.coefficient)}`));

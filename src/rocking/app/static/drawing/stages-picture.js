@@ -36,14 +36,14 @@ export const stagesPicture = (body, field, foot, { width }) => {
 const onePanel = (body, points, { name, share, velocities }, foot, { width, pixels }) => {
   const height = Math.min(320, Math.max(220, width * 1.3));
   const view = viewport(boxOf(
-    [...pointsOf(body.outline), ...(body.points ?? []), ...body.feet_m.map((each) => [each, groundOf(body)])]
+    [...pointsOf(body.outline), ...(body.points ?? []), ...body.foot_positions.map((each) => [each, groundOf(body)])]
   ), {
     width, height, margin: { left: 26, right: 26, top: 26, bottom: 26 },
   });
   const floor = view.y(groundOf(body));
   const [title, words] = STAGE_WORDS[name] ?? [name, ""];
   const lands = foot === "right" ? 1 : 0;
-  const foothold = body.feet_m[name === "before" ? 1 - lands : lands];
+  const foothold = body.foot_positions[name === "before" ? 1 - lands : lands];
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",

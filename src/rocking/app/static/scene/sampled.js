@@ -16,16 +16,16 @@ export const actorOf = (answer, style) => {
     falls: answer.outcome === "overturned",
     rotation: new Track(time, seen),
     share: new Track(time, sharesOf(seen, answer.body)),
-    impactTimes: Float64Array.from(impacts, (one) => one.time_s),
+    impactTimes: Float64Array.from(impacts, (one) => one.time),
     impactFeet: Float64Array.from(impacts, (one) => (one.onto === "right" ? 1 : 0)),
     impactWords: impacts.map((one) => `r = ${one.coefficient.toFixed(3)}`),
   };
 };
 
 /** Returns rotations over the slenderness angle of the side that the body leans to.
- * @param {number[]} rotation @param {{ sides: Server.Sides | Server.RockingSides }} body */
+ * @param {number[]} rotation @param {{ sides: Server.Sides }} body */
 export const sharesOf = (rotation, body) => {
-  const right = body.sides.right.slenderness_angle_rad;
-  const left = body.sides.left.slenderness_angle_rad;
+  const right = body.sides.right.slenderness_angle;
+  const left = body.sides.left.slenderness_angle;
   return rotation.map((theta) => theta / (theta > 0 ? right : left));
 };

@@ -10,12 +10,12 @@ const ringOf = (ring) => `M${ring.map((point) => point.join(" ")).join("L")}Z`;
  * Returns the shape of a body of the API: regions with their shade, mass points, feet and centre in metres, the
  * ground at y = 0 and the middle between the feet at x = 0.
  * @param {Server.DrawnBody} body @returns {Shape} */
-export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
+export const shapeOf = ({ outline, foot_positions: base, ground = 0, points = [], masses = [], centre }) => {
   const middle = 0.5 * (base[0] + base[1]);
   /** @param {number[][]} ring */
   const moved = (ring) => ring.map(([x, y]) => [x - middle, y - ground]);
   const densest = highest(outline.map(({ density }) => density || 0), 0);
-  const heaviest = highest(points.map(([, , mass]) => mass || 0), 0);
+  const heaviest = highest(masses, 0);
   const regions = outline.map(({ outline: ring, holes, density }) => ({
     outline: moved(ring),
     holes: (holes || []).map(moved),
@@ -23,7 +23,7 @@ export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
   }));
   return {
     regions: regions.map((region) => ({ ...region, path: pathOf([region.outline, ...region.holes].map(ringOf).join("")) })),
-    points: points.map(([x, y, mass]) => [x - middle, y - ground, heaviest > 0 ? mass / heaviest : 1]),
+    points: points.map(([x, y], k) => [x - middle, y - ground, heaviest > 0 ? masses[k] / heaviest : 1]),
     feet: base.map((x) => x - middle),
     centre: [centre[0] - middle, centre[1] - ground],
   };

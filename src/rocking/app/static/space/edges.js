@@ -7,7 +7,7 @@ import { Scene } from "/space/scene.js";
 
 /** The edges of a question's body. @param {{ question: Server.WholeQuestion, answer: any, children: any }} props */
 export const Edges = ({ question, answer, children }) => {
-  const round = answer.base.kind !== "polygon";
+  const round = answer.body.base.kind !== "polygon";
   const models = Object.keys(answer.edges[0].coefficients);
   const doubts = [...new Set(answer.edges.flatMap((/** @type {any} */ { coefficients }) => Object.entries(coefficients)
     .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
@@ -23,7 +23,7 @@ export const Edges = ({ question, answer, children }) => {
       legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}
     <${Rows} caption="Edges and corners" head=${[round ? "from" : "from edge", "onto", "slenderness [\u00b0]", ...models]}
-      rows=${answer.edges.map((/** @type {any} */ each) => [each.edge, each.lands_on, number((each.slenderness_angle_rad * 180) / Math.PI, 3),
+      rows=${answer.edges.map((/** @type {any} */ each) => [each.edge, each.lands_on, number((each.slenderness_angle * 180) / Math.PI, 3),
         ...models.map((name) => number(each.coefficients[name].coefficient, 4))])} />
     ${[...doubts, ...answer.notes].map((words) => html`<p class="field-help" key=${words}>${words}</p>`)}`;
 };

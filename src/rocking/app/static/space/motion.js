@@ -17,11 +17,11 @@ const STRIDES = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 const LEGEND = [["holds", "touches the ground and holds"], ["slides", "slides"], ["plumb", "centre of mass and plumb line"]];
 
 // Impacts that are marked: of thousands, only those that lose something worth seeing.
-/** @param {{ time_s: number, energy_before_J: number, energy_after_J: number }[]} impacts */
+/** @param {{ time: number, energy_before: number, energy_after: number }[]} impacts */
 const marked = (impacts) => {
-  const losses = impacts.map((each) => each.energy_before_J - each.energy_after_J);
+  const losses = impacts.map((each) => each.energy_before - each.energy_after);
   const most = highest(losses);
-  return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time_s: at }) => at);
+  return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time: at }) => at);
 };
 
 /** The motion that a question found, with its controls.

@@ -20,11 +20,11 @@ export class Played {
   constructor(three, stage, answer) {
     this.stage = stage;
     this.motion = /** @type {SpaceMotion} */ (stage.model.motion);
-    this.contacts = answer.contacts;
-    this.fell = answer.outcome === "overturned" ? (answer.overturning_time_s ?? Infinity) : Infinity;
+    this.contacts = answer.intervals;
+    this.fell = answer.outcome === "overturned" ? (answer.overturning_time ?? Infinity) : Infinity;
     this.end = this.motion.time.at(-1) ?? 0;
     this.tilt = 0;
-    this.interval = /** @type {{ vertices: number[], sliding: number[] } | null} */ (null);
+    this.interval = /** @type {{ vertices: number[], sliding_vertices?: number[] } | null} */ (null);
     this.one = new three.Quaternion();
     this.other = new three.Quaternion();
     this.centre = [0, 0, 0];
@@ -48,16 +48,16 @@ export class Played {
 
   /** @param {number} instant */
   touch(instant) {
-    const interval = this.contacts[lastBefore(this.contacts.length, (i) => this.contacts[i].start_s, instant)] ?? null;
+    const interval = this.contacts[lastBefore(this.contacts.length, (i) => this.contacts[i].start, instant)] ?? null;
     if (interval === this.interval) return;
     this.interval = interval;
-    const { vertices = [], sliding = [] } = interval ?? {};
+    const { vertices = [], sliding_vertices: sliding = [] } = interval ?? {};
     this.stage.touch(vertices.filter((/** @type {number} */ each) => !sliding.includes(each)), sliding);
   }
 
   /** What is seen at an instant that was shown. @param {number} instant */
   words(instant) {
-    const { vertices = [], sliding = [] } = this.interval ?? {};
+    const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
     const points = `on ${vertices.length} point${vertices.length === 1 ? "" : "s"}`;
     const slides = sliding.length ? `, ${sliding.length === vertices.length ? "all" : sliding.length} sliding` : "";
     const touches = vertices.length ? `${points}${slides}` : "in the air";

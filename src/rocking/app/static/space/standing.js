@@ -30,7 +30,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
   const stage = useRef(null);
   const shown = Number(pose.value);
   // the hardest to leave first
-  const poses = [...answer.stable].sort((one, other) => (other.barrier_m ?? Infinity) - (one.barrier_m ?? Infinity));
+  const poses = [...answer.stable].sort((one, other) => (other.barrier ?? Infinity) - (one.barrier ?? Infinity));
   /** @param {string} number_ */
   const settle = (number_) => {
     pose.value = number_;
@@ -47,12 +47,12 @@ export const Standing = ({ question, answer, onPose, children }) => {
     stage.current.setIn(made.model.poses[shown]);
   };
   const here = answer.stable[shown];
-  const most = answer.stable.at(-1).energy_J;
-  const low = answer.stable[0].height_m;
-  const words = `Pose ${shown}: its centre ${millimetres(here.height_m)} mm over the ground, ${joules(here.energy_J, most)} J above the lowest pose; `
-    + `the plumb line ${millimetres(here.nearest_edge_m)} mm inside the nearest edge of the support polygon. `
-    + (here.barrier_m === null || !Number.isFinite(here.barrier_m) ? "It knows no other pose."
-      : `To leave it the centre must rise ${millimetres(here.barrier_m)} mm.`);
+  const most = answer.stable.at(-1).energy;
+  const low = answer.stable[0].centre_height;
+  const words = `Pose ${shown}: its centre ${millimetres(here.centre_height)} mm over the ground, ${joules(here.energy, most)} J above the lowest pose; `
+    + `the plumb line ${millimetres(here.nearest_edge)} mm inside the nearest edge of the support polygon. `
+    + (here.barrier === null || !Number.isFinite(here.barrier) ? "It knows no other pose."
+      : `To leave it the centre must rise ${millimetres(here.barrier)} mm.`);
   const ways = answer.stable.length === 1 ? "one way" : `${answer.stable.length} ways`;
   return html`
     <p class="verdict" data-testid="verdict">It can stand in ${ways}; as it is set down it stands in pose ${answer.stands_in}.</p>
@@ -64,14 +64,14 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <div class="space-choices">
       <${Choice} label="Set down in" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
         options=${poses.filter((each, k) => k < FEW || each.pose === shown).map((each) => [String(each.pose),
-          `pose ${each.pose}: ${millimetres(each.barrier_m)} mm to leave it`])} />
+          `pose ${each.pose}: ${millimetres(each.barrier)} mm to leave it`])} />
       <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
         colours.value = next;
         stage.current?.colourful(next === "rise");
       } }} options=${COLOURS} />
     </div>
-    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt_rad}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
-      its axis ${number((each.tilt_rad * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.height_m)} mm high.</p>`)}
+    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
+      its axis ${number((each.tilt * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.centre_height)} mm high.</p>`)}
     ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
@@ -81,14 +81,14 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <h3>What it takes to topple it, by direction</h3>
     <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
       rows=${answer.directions.map((/** @type {any} */ each) => [
-        number((each.azimuth_rad * 180) / Math.PI, 3), millimetres(each.straight_rise_m), millimetres(each.lowest_rise_m),
-        number(each.uplift_acceleration_m_s2, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
+        number((each.azimuth * 180) / Math.PI, 3), millimetres(each.straight_rise), millimetres(each.lowest_rise),
+        number(each.uplift_acceleration, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
     <h3>Its poses, the hardest to leave first</h3>
     <${Rows} caption="Poses" head=${["pose", "rise to leave [mm]", "centre [mm]", "energy [J]", "nearest edge [mm]"]}
-      rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier_m), millimetres(each.height_m),
-        joules(each.energy_J, most), millimetres(each.nearest_edge_m)])} />
+      rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier), millimetres(each.centre_height),
+        joules(each.energy, most), millimetres(each.nearest_edge)])} />
     ${poses.length > FEW && html`<p class="field-help">And ${poses.length - FEW} more, which a rise of
-      ${millimetres(poses[FEW].barrier_m)} mm or less leaves.</p>`}
+      ${millimetres(poses[FEW].barrier)} mm or less leaves.</p>`}
     ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${ofThePage(note)}</p>`)}`;
 };
 

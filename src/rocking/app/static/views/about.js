@@ -6,7 +6,7 @@ import { plainWords } from "/views/studies-words.js";
 /** The body as it is called, or else its size, and the motion, for what stands around figures.
  * @param {{ name?: string | null, sides?: Server.Sides }} body @param {any} [motion] @param {string[]} [more] */
 export const aboutOf = ({ name, sides }, motion = null, more = []) => {
-  const size = name || !sides ? [] : [`h/b = ${quantity(sides.right.slenderness_ratio, "")}, R = ${quantity(sides.right.semi_diagonal_m, "m")}`];
+  const size = name || !sides ? [] : [`h/b = ${quantity(sides.right.slenderness_ratio, "")}, R = ${quantity(sides.right.semi_diagonal, "m")}`];
   const factor = motion && motion.scale !== undefined && motion.scale !== 1 ? `${quantity(motion.scale, "")} \u00d7 ` : "";
   const moved = motion ? [factor + plainWords(motion.name)] : [];
   return { "data-own": name ?? "", "data-about": [...size, ...moved, ...more].join("\n") };

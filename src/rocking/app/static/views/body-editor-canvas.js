@@ -265,8 +265,8 @@ const statics = (editor, view) => {
   if (!facts || editor.refusalWords()) return null; // of a body that is refused nothing is known
   const metres = editor.metres();
   return svg("g", { class: "board-facts", "aria-hidden": "true" },
-    facts.feet_m.map((foot) => footMark(view.x(foot / metres), view.y(groundOf(facts) / metres))),
-    centreMark(view.x(facts.centre_m[0] / metres), view.y(facts.centre_m[1] / metres)));
+    facts.foot_positions.map((foot) => footMark(view.x(foot / metres), view.y(groundOf(facts) / metres))),
+    centreMark(view.x(facts.centre[0] / metres), view.y(facts.centre[1] / metres)));
 };
 
 /** @param {Region[]} regions @param {Viewport} view */

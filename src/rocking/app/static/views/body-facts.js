@@ -19,20 +19,20 @@ export const Facts = ({ app, facts: body }) => {
   const row = (label, unit, read) => [label, ...sides.map(read), unit];
   /** @param {string} label @param {string} unit @param {number} value */
   const whole = (label, unit, value) => [label, ...sides.map(() => value), unit];
-  const feet = body.feet_m.map((foot) => settled(foot, body));
+  const feet = body.foot_positions.map((foot) => settled(foot, body));
   const rows = [
     row("Slenderness h/b", "", (side) => side.slenderness_ratio),
-    row("Slenderness angle \u03b1", "rad", (side) => side.slenderness_angle_rad),
-    row("Slenderness angle \u03b1", "\u00b0", (side) => (side.slenderness_angle_rad * 180) / Math.PI),
-    row("Semi-diagonal R", "m", (side) => side.semi_diagonal_m),
-    row("Frequency parameter p", "rad/s", (side) => side.frequency_parameter_rad_s),
-    row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration_m_s2),
-    row("Uplift acceleration", "g", (side) => side.uplift_acceleration_m_s2 / body.gravity_m_s2),
+    row("Slenderness angle \u03b1", "rad", (side) => side.slenderness_angle),
+    row("Slenderness angle \u03b1", "\u00b0", (side) => (side.slenderness_angle * 180) / Math.PI),
+    row("Semi-diagonal R", "m", (side) => side.semi_diagonal),
+    row("Frequency parameter p", "rad/s", (side) => side.frequency_parameter),
+    row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration),
+    row("Uplift acceleration", "g", (side) => side.uplift_acceleration / body.gravity),
     ["Foot, x", ...(differ ? feet : [feet.map((foot) => number(foot)).join(", ")]), "m"],
-    whole("Centre of mass, x", "m", settled(body.centre_m[0], body)),
-    whole("Centre of mass, y", "m", settled(body.centre_m[1], body)),
-    whole("Mass", "kg", body.mass_kg),
-    whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia_kg_m2),
+    whole("Centre of mass, x", "m", settled(body.centre[0], body)),
+    whole("Centre of mass, y", "m", settled(body.centre[1], body)),
+    whole("Mass", "kg", body.mass),
+    whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia),
   ];
   return html`<${Table} columns=${columns} rows=${rows} testid="facts-table"
     caption=${differ ? "By the foot that it rocks about" : "The same for both feet"}
@@ -42,7 +42,7 @@ export const Facts = ({ app, facts: body }) => {
 // What rounding left of a zero is a zero: smaller than the body by fifteen powers of ten.
 /** @param {number} length @param {Server.DescribedBody} body */
 const settled = (length, { sides }) =>
-  (Math.abs(length) < 1e-14 * sides.right.semi_diagonal_m ? 0 : length);
+  (Math.abs(length) < 1e-14 * sides.right.semi_diagonal ? 0 : length);
 
 /** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
@@ -50,8 +50,8 @@ export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) =>
   ${!warnings.length && html`<${Note} kind="good" words=${`It uplifts at ${upliftWords(body)} of ground acceleration.`} />`}
   ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
 
-/** @param {Pick<Server.DescribedBody, "sides" | "gravity_m_s2">} body */
-const upliftWords = ({ sides, gravity_m_s2: gravity }) => {
-  const least = Math.min(sides.left.uplift_acceleration_m_s2, sides.right.uplift_acceleration_m_s2);
+/** @param {Pick<Server.DescribedBody, "sides" | "gravity">} body */
+const upliftWords = ({ sides, gravity }) => {
+  const least = Math.min(sides.left.uplift_acceleration, sides.right.uplift_acceleration);
   return `${quantity(least, "m/s2", 3)} (${quantity(least / gravity, "g", 3)})`;
 };

@@ -43,11 +43,11 @@ const Evidence = ({ found, name }) => {
   const rows = Object.entries(found.coefficients)
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
   if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
-  return html`${rows.map(({ foot, row }) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient_of_restitution, 4)};
+  return html`${rows.map(({ foot, row }) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient, 4)};
       of a measured body 95 % lie from ${number(row.low_95, 4)} to ${number(row.high_95, 4)}.${" "}
       ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
-    <p class="field-help">${found.measured.points.length} published measurements. ${found.measured.source}</p>`;
+    <p class="field-help">${found.measured.measurements.length} published measurements. ${found.measured.source}</p>`;
 };
 
 /** @param {{ of: string[] }} props */

@@ -133,7 +133,7 @@ const sentencesOf = (found, there) => {
   const [verb, other] = most === fallen ? ["overturns", "stands"] : ["stands", "overturns"];
   const names = fewer.map(({ label }) => wordsOf(label)).join(", ");
   const words = fewer.length ? `it ${other} with ${names}. The model matters.` : "the choice of the model does not change that.";
-  const peaks = standing.map((one) => one.peak_rotation_over_alpha);
+  const peaks = standing.map((one) => one.peak_ratio);
   const ends = [...new Set([lowest(peaks), highest(peaks)].map((peak) => number(peak, 3)))].join(" to ");
   const lean = highest(peaks, 0) > 0 ? [`Where it stands it leans to ${ends} of the angle at which it would fall by itself.`] : [];
   const doubts = found.verdict.sentence.split(/(?<=\.) (?=Still|The ground)/).slice(1);
@@ -166,7 +166,7 @@ const Model = ({ answer, shown, opened, toggle, margin }) => {
       <${Swatch} label=${label} />${name}</button></th>
     ${answer.error ? html`<td colspan="5" class="text">${answer.error}</td>` : html`
       <td class=${`outcome-${kind} text`}><span class="outcome-word"><span aria-hidden="true">${sign}</span>${SHORT[answer.outcome] ?? word}</span></td>
-      <td class="number">${answer.outcome === "overturned" ? "\u2013" : number(answer.peak_rotation_over_alpha, 3)}</td>
+      <td class="number">${answer.outcome === "overturned" ? "\u2013" : number(answer.peak_ratio, 3)}</td>
       <td class="number">${answer.impacts.length}</td>
       <td class="number">${coefficients(answer.body.sides)}</td>
       <td class="number">${margin}</td>`}

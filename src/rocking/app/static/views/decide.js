@@ -136,12 +136,12 @@ const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "
 
 /** @param {Given} given */
 const Crossings = ({ answer, question }) => html`
-  <p class=${`verdict ${answer.minimum_m_s2 === null ? "good" : "bad"}`} data-testid="verdict">
-    ${answer.minimum_m_s2 === null ? "It overturns nowhere" : `It first overturns at a PGA of ${number(answer.minimum_m_s2 / G, 4)} g, ${number(answer.minimum_m_s2 / answer.motion.peak_acceleration_m_s2, 4)} times this motion`}.</p>
+  <p class=${`verdict ${answer.minimum_acceleration === null ? "good" : "bad"}`} data-testid="verdict">
+    ${answer.minimum_acceleration === null ? "It overturns nowhere" : `It first overturns at a PGA of ${number(answer.minimum_acceleration / G, 4)} g, ${number(answer.minimum_acceleration / answer.motion.peak_ground_acceleration, 4)} times this motion`}.</p>
   <p>${sentence(answer.sentence)}</p>
   <${Drawing} question=${question} alt="Where the body overturns, by the acceleration of the ground" />
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
-    rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.acceleration_g, 6), number(each.scale, 6), number(each.ratio, 4),
+    rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.peak_ground_acceleration / G, 6), number(each.scale, 6), number(each.uplift_ratio, 4),
       modeOf(each.mode_below), modeOf(each.mode_above)])} />
   <p class="field-help">Restitution: ${answer.restitution}.
     ${answer.crossings.length > MOST && ` The first ${MOST} of ${answer.crossings.length} crossings; the CSV has all of them.`}</p>`;
@@ -153,9 +153,9 @@ const Verdict = ({ answer, question }) => {
   /** @param {any} each */
   const fallen = (each) => each.overturned.filter((/** @type {number} */ one) => one === 1).length;
   const rows = Object.entries(answer.models).map(([name, each]) => [
-    name, number(each.coefficients.left), number(each.coefficients.right),
+    name, number(each.coefficient.left), number(each.coefficient.right),
     [`${fallen(each)} of ${each.overturned.length}`, fallen(each) ? "bad" : "good"],
-    each.lowest === null ? "none found" : number(each.lowest, 3),
+    each.min_factor === null ? "none found" : number(each.min_factor, 3),
   ]);
   const some = Object.values(answer.models).some(fallen);
   return html`
@@ -213,8 +213,8 @@ const Forecast = ({ answer, question }) => {
         rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
       <p class="field-help">Shares of the variance of whether it overturns (Sobol indices), with 95 % intervals.</p>
       <${Rows} caption="Ends of the ranges" head=${["input", "overturns at its low end", "overturns at its high end"]}
-        rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.low, 3)})`,
-          `${percent(e.probability_high)} (${number(e.high, 3)})`])} />`}
+        rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.input_low, 3)})`,
+          `${percent(e.probability_high)} (${number(e.input_high, 3)})`])} />`}
     <details><summary>What was assumed</summary>
       <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
     <${Sources} of=${answer} />`;

@@ -31,11 +31,11 @@ export const Evidence = ({ answer, foot, about }) => html`
 export const slendernessOf = ({ body: { sides } }, foot) => sides[foot === "right" ? "left" : "right"].slenderness_ratio;
 
 /** @param {Server.ImpactAnswered} answer */
-const pointsOf = ({ measured }) => measured.points ?? measured;
+const pointsOf = ({ measured }) => measured.measurements;
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot */
 const rowsOf = (answer, foot) => answer.coefficients[foot].map((row) => ({
-  model: row.model, value: row.coefficient_of_restitution, low: row.low_95, high: row.high_95,
+  model: row.model, value: row.coefficient, low: row.low_95, high: row.high_95,
 }));
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */

@@ -7,7 +7,7 @@ import { footMark } from "/drawing/symbols.js";
 
 /** Rows of models over the base. @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 export const impulseRows = (answer, foot, width) => {
-  const rows = answer.coefficients[foot].map((row) => ({ model: row.model, value: row.impulse_ratio_k }));
+  const rows = answer.coefficients[foot].map((row) => ({ model: row.model, value: row.impulse_ratio }));
   const values = rows.map((row) => row.value).filter((value) => value !== null);
   /** @type {Point} */
   const domain = [lowest(values, 0), highest(values, 1.22)];

@@ -18,11 +18,11 @@ export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
   const shown = rows.map((row) => [
     html`<span class="model-name" title=${answer.titles?.[row.model]}><${Swatch} label=${row.model} />${wordsOf(row.model)}</span>`,
-    row.coefficient_of_restitution, `${row.low_95.toFixed(4)} \u2026 ${row.high_95.toFixed(4)}`, row.impulse_ratio_k,
+    row.coefficient, `${row.low_95.toFixed(4)} \u2026 ${row.high_95.toFixed(4)}`, row.impulse_ratio,
     percent(row.energy_loss), row.friction_demand, row.admissible ? "yes" : html`<strong class="bad">no</strong>`,
   ]);
   const copied = () => rows.map((row) => [
-    row.model, row.coefficient_of_restitution, `${row.low_95} to ${row.high_95}`, row.impulse_ratio_k, row.energy_loss,
+    row.model, row.coefficient, `${row.low_95} to ${row.high_95}`, row.impulse_ratio, row.energy_loss,
     row.friction_demand, row.admissible ? "yes" : "no",
   ]);
   return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"

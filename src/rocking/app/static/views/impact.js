@@ -83,12 +83,12 @@ const ledgerOf = (answer, foot, width) => ledgerPicture(answer.ked_energy_shares
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const stagesOf = ({ body, stages: of }, foot, width) => {
-  const { points_m: points, stages } = of[foot];
-  const shown = stages.map(({ name, share, velocity_m_s: velocities }) => ({ name, share, velocities }));
+  const { points, stages } = of[foot];
+  const shown = stages.map(({ name, share, velocity: velocities }) => ({ name, share, velocities }));
   return stagesPicture(body, { points, stages: shown }, foot, { width });
 };
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot */
 const blockLike = (answer, foot) => ({
-  slenderness: slendernessOf(answer, foot), width: answer.body.base[1] - answer.body.base[0],
+  slenderness: slendernessOf(answer, foot), width: answer.body.foot_positions[1] - answer.body.foot_positions[0],
 });

@@ -13,7 +13,7 @@ const TRACES = [
   { key: "acceleration", label: "acceleration", unit: "m/s2", colour: "#0070B2" },
   { key: "velocity", label: "velocity", unit: "m/s", colour: "#009960" },
   { key: "displacement", label: "displacement", unit: "m", colour: "#D96C00" },
-  { key: "vertical", label: "vertical acceleration", unit: "m/s2", colour: "#AC8191" },
+  { key: "vertical_acceleration", label: "vertical acceleration", unit: "m/s2", colour: "#AC8191" },
 ];
 const G = 9.80665;
 const LOOK = "Drag across a trace to look into it with every sample; a double click shows all of it again.";
@@ -25,10 +25,10 @@ const titled = (text) => text[0].toUpperCase() + text.slice(1);
 /** The part of the view that shows the answer of the server; `part` is what of the time is looked into.
  * @param {{ app: App, answer: Server.MotionAnswered, part: any, time: Time, stale: boolean }} props */
 export const Result = ({ app, answer, part, time, stale }) => {
-  const { shown, of } = answer.series;
+  const { samples_shown: shown, samples: of } = answer.series;
   /** @type {any} */
   const series = useMemo(() => (part?.series ? detailed(answer.series, part.series) : answer.series), [answer, part]);
-  const measures = answer.measures.map(({ name, words, value, unit }) => [words || name, value, unit === "-" ? "" : pretty(unit)]);
+  const measures = answer.measures.map(({ name, words }) => [words, answer.intensity[name], answer.units[name] === "1" ? "" : pretty(answer.units[name])]);
   /** @param {string} path @param {string} [name] */
   const save = (path, name = path.replaceAll("/", "-")) => app.download(path, app.inputs.get(), name);
   /** @param {string} text @param {string} path @param {string} label */
@@ -64,18 +64,18 @@ const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
 
 /** @param {Server.MotionAnswered} answer */
 const factsOf = (answer) => {
-  const peak = answer.peak_acceleration_m_s2;
+  const peak = answer.peak_ground_acceleration;
   const found = [
     ["Peak acceleration", `${quantity(peak, "m/s2", 4)} (${quantity(peak / G, "g", 3)})`],
-    ["Duration", quantity(answer.duration_s, "s", 5)],
+    ["Duration", quantity(answer.duration, "s", 5)],
   ];
-  if (answer.time_step_s) found.push(["Time step", quantity(answer.time_step_s, "s", 5)]);
+  if (answer.time_step) found.push(["Time step", quantity(answer.time_step, "s", 5)]);
   if (answer.samples) found.push(["Samples", String(answer.samples)]);
   for (const key of /** @type {const} */ (["event", "station", "component", "format", "file_unit"])) {
     if (answer[key]) found.push([titled(key.replace("_", " ")), String(answer[key])]);
   }
-  if (answer.peak_vertical_acceleration_m_s2) {
-    found.push(["Peak vertical acceleration", quantity(answer.peak_vertical_acceleration_m_s2, "m/s2", 4)]);
+  if (answer.peak_vertical_acceleration) {
+    found.push(["Peak vertical acceleration", quantity(answer.peak_vertical_acceleration, "m/s2", 4)]);
   }
   return found;
 };

@@ -4,11 +4,11 @@ import { Figure } from "/charts/figure.js";
 import { Segmented } from "/parts/fields.js";
 
 const KINDS = {
-  acceleration: { label: "pseudo-acceleration", unit: "m/s2", colour: "#0070B2" },
-  velocity: { label: "pseudo-velocity", unit: "m/s", colour: "#009960" },
-  displacement: { label: "relative displacement", unit: "m", colour: "#D96C00" },
+  pseudo_acceleration: { label: "pseudo-acceleration", unit: "m/s2", colour: "#0070B2" },
+  pseudo_velocity: { label: "pseudo-velocity", unit: "m/s", colour: "#009960" },
+  spectral_displacement: { label: "relative displacement", unit: "m", colour: "#D96C00" },
 };
-const WORDS = [["acceleration", "Acceleration"], ["velocity", "Velocity"], ["displacement", "Displacement"]];
+const WORDS = [["pseudo_acceleration", "Acceleration"], ["pseudo_velocity", "Velocity"], ["spectral_displacement", "Displacement"]];
 
 // a logarithmic axis has no place for a period or a value of zero
 /** @param {number[]} periods @param {number[]} values */
@@ -20,7 +20,7 @@ const positive = (periods, values) => {
 /** The spectrum with a choice of what it shows. @param {{ spectrum: Server.SpectrumFacts }} props */
 export const Spectrum = ({ spectrum }) => {
   /** @type {Signal<keyof typeof KINDS>} */
-  const kind = useSignal("acceleration");
+  const kind = useSignal("pseudo_acceleration");
   const { label, unit, colour } = KINDS[kind.value];
   const data = useMemo(() => positive(spectrum.period, spectrum[kind.value]), [spectrum, kind.value]);
   const shape = {

@@ -211,15 +211,15 @@ const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
 /** @param {Given} given */
 const Answer = (given) => (given.question.command === "convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
 
-const HEAD = [["samples", "samples"], ["time_step_s", "step [s]"], ["pga_m_s2", "PGA [m/s\u00b2]"], ["pgv_m_s", "PGV [m/s]"],
-  ["pgd_m", "PGD [m]"], ["end_velocity_m_s", "velocity at the end [m/s]"]];
+const HEAD = [["samples", "samples"], ["time_step", "step [s]"], ["peak_ground_acceleration", "PGA [m/s\u00b2]"], ["peak_ground_velocity", "PGV [m/s]"],
+  ["peak_ground_displacement", "PGD [m]"], ["end_velocity", "velocity at the end [m/s]"]];
 
 /** @param {Given} given */
 const Corrected = ({ answer, question, questions }) => {
   const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ words) => `${when}: ${words}`));
   const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
-    <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.pga_m_s2 / G, 4)} g before, ${number(answer.after.pga_m_s2 / G, 4)} g after.</p>
+    <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.peak_ground_acceleration / G, 4)} g before, ${number(answer.after.peak_ground_acceleration / G, 4)} g after.</p>
     ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
     <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use it as the motion<//></div>

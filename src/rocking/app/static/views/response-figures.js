@@ -31,12 +31,12 @@ const rotationRange = (_, low, high) => {
   return [-span, span];
 };
 
-/** @type {{ key: "kinetic" | "potential" | "lost" | "work", label: string, colour: string, dash: number[] }[]} */
+/** @type {{ key: "kinetic_energy" | "potential_energy" | "energy_lost" | "work_of_ground", label: string, colour: string, dash: number[] }[]} */
 const ENERGIES = [
-  { key: "kinetic", label: "kinetic", colour: "#0070B2", dash: [] },
-  { key: "potential", label: "potential", colour: "#009960", dash: [8, 3, 2, 3] },
-  { key: "lost", label: "lost at impacts", colour: "#D96C00", dash: [6, 4] },
-  { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
+  { key: "kinetic_energy", label: "kinetic", colour: "#0070B2", dash: [] },
+  { key: "potential_energy", label: "potential", colour: "#009960", dash: [8, 3, 2, 3] },
+  { key: "energy_lost", label: "lost at impacts", colour: "#D96C00", dash: [6, 4] },
+  { key: "work_of_ground", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
 /** The answer that goes on longest. @param {Server.ResponseFacts[]} answers */
@@ -60,7 +60,7 @@ const KINDS = {
     "Rotation over slenderness angle", { label: "\u03b8/\u03b1", unit: "-", range: rotationRange },
     ({ series, body }) => sharesOf(series.rotation, body),
   ),
-  velocity: ofEach("Angular velocity", { label: "", unit: "rad/s" }, ({ series }) => series.velocity),
+  velocity: ofEach("Angular velocity", { label: "", unit: "rad/s" }, ({ series }) => series.angular_velocity),
   ground: {
     title: "Acceleration of the ground",
     y: { label: "", unit: "m/s2" },
@@ -77,7 +77,7 @@ const KINDS = {
       ...ENERGIES.map(({ key }) => [...untilFall(lead, lead.series[key]), null]),
     ],
   },
-  lost: ofEach("Energy lost at impacts", { label: "", unit: "J" }, ({ series }) => series.lost),
+  lost: ofEach("Energy lost at impacts", { label: "", unit: "J" }, ({ series }) => series.energy_lost),
   force: ofEach("Vertical force of the ground", { label: "", unit: "N" }, ({ series }) => series.vertical_force),
   friction: ofEach(
     "Friction that rocking without slip takes", { label: "", unit: "-" }, ({ series }) => capped(series.friction_demand),
@@ -99,7 +99,7 @@ export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) 
   }), [answers, part]);
   const first = shown.find(({ label }) => label === lead) ?? shown[0];
   const rows = useMemo(() => ticked.map(({ label, impacts }) =>
-    ({ colour: styleOf(label).colour, at: impacts.map(({ time_s: at }) => at) })), [ticked]);
+    ({ colour: styleOf(label).colour, at: impacts.map(({ time: at }) => at) })), [ticked]);
   return kinds.map((kind) => html`<${OneFigure} key=${kind} kind=${kind} answers=${shown} lead=${first} rows=${rows}
     ticked=${ticked.length === 1 ? wordsOf(ticked[0].label) : "each model in its colour"}
     part=${part?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);

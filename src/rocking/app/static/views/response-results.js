@@ -37,13 +37,13 @@ const Verdict = ({ answer, checked }) => {
 
 /** @param {Server.ResponseFacts} answer */
 const factsOf = (answer) => {
-  const { right, left } = answer.body.sides;
-  const same = Math.abs(right.coefficient - left.coefficient) < 1e-12;
-  const [onto, other] = [number(right.coefficient, 4), number(left.coefficient, 4)];
+  const { right, left } = answer.coefficient;
+  const same = Math.abs(right - left) < 1e-12;
+  const [onto, other] = [number(right, 4), number(left, 4)];
   const r = same ? onto : `${other} left, ${onto} right`;
   const peak = answer.outcome === "overturned"
-    ? `no return at ${quantity(answer.overturning_time_s, "s", 4)}`
-    : `peak ${quantity(answer.peak_rotation_over_alpha, "\u03b1", 3)}`;
+    ? `no return at ${quantity(answer.overturning_time, "s", 4)}`
+    : `peak ${quantity(answer.peak_ratio, "\u03b1", 3)}`;
   const count = answer.impacts.length;
   return `r = ${r} \u00b7 ${peak} \u00b7 ${count} impact${count === 1 ? "" : "s"}`;
 };
@@ -54,10 +54,10 @@ const COLUMNS = [
 ];
 const MOST = 200;
 
-/** @param {Server.ImpactFacts[]} impacts */
+/** @param {Server.Impact[]} impacts */
 const rowsOf = (impacts) =>
   impacts.map((one, k) => [
-    k + 1, one.time_s, one.velocity_before_rad_s, one.velocity_after_rad_s, one.coefficient, one.onto,
+    k + 1, one.time, one.velocity_before, one.velocity_after, one.coefficient, one.onto,
   ]);
 
 /** The impacts of the model that is looked at.

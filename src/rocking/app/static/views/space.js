@@ -165,23 +165,23 @@ const shakenBy = (app, shaken, records, units, times) => {
 
 /** @param {Given & { onPose: (pose: number, up: number[]) => unknown }} given */
 const Answer = ({ answer, question, onPose }) => {
-  const scan = html`<${Taken} body=${answer.body} repairs=${answer.repairs} own=${!/^file = /m.test(question.toml)} />`;
+  const scan = html`<${Taken} body=${answer.body} repairs=${answer.body.repairs} own=${!/^file = /m.test(question.toml)} />`;
   if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
   if (question.command === "cor") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
   return html`
     <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}.</p>
     <${MotionScene} question=${question} answer=${answer} />
-    <p>${`Largest tilt ${number((answer.peak_tilt_rad * 180) / Math.PI, 4)}\u00b0, impacts: ${answer.impacts.length}; slid ${number(1000 * answer.sliding_distance_m, 3)} mm at most.`}</p>
+    <p>${`Largest tilt ${number((answer.peak_tilt * 180) / Math.PI, 4)}\u00b0, impacts: ${answer.impacts.length}; slid ${number(1000 * answer.sliding_distance, 3)} mm at most.`}</p>
     <${Drawing} question=${question} alt="Tilt, direction and energy over time" />
     ${scan}`;
 };
 
 /** @param {{ body: any, repairs: string[], own: boolean }} props */
 const Taken = ({ body, repairs, own }) => {
-  const size = body.size_m.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
+  const size = body.size.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
   return html`
   <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
-  <p>${`${size} mm, ${number(body.mass_kg, 4)} kg, centre ${number(1000 * body.centre_height_m, 4)} mm over the ground.`}</p>
+  <p>${`${size} mm, ${number(body.mass, 4)} kg, centre ${number(1000 * body.centre_height, 4)} mm over the ground.`}</p>
   <ul class="space-repairs" aria-label="What was mended">
     ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`) : html`<li>Nothing had to be mended.</li>`}
     ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}.</li>`)}

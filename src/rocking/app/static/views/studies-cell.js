@@ -86,6 +86,6 @@ const wordsOf = ({ stored, answer, note }) => {
 
 /** @param {Server.ResponseFacts} answer */
 const shareOf = (answer) => {
-  const [left, right] = /** @type {Foot[]} */ (["left", "right"]).map((foot) => answer.body.sides[foot].slenderness_angle_rad);
+  const [left, right] = /** @type {Foot[]} */ (["left", "right"]).map((foot) => answer.body.sides[foot].slenderness_angle);
   return answer.series.rotation.map((theta) => theta / (theta > 0 ? right : left));
 };

@@ -115,7 +115,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
 /** @param {Server.RecordFacts} found @param {Told} told */
 const factsOf = ({ components }, { units, component, vertical }) => {
   const chosen = components.find(({ name }) => name === component) ?? components[0];
-  const step = chosen?.time_step_s;
+  const step = chosen?.time_step;
   return [
     component,
     vertical && `${vertical} upwards`,

@@ -1,0 +1,163 @@
+"""Answers: every result that is shown, by the names of its quantities, and its numbers as a reader sees them."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import UNITS
+from rocking.messages import Message
+from rocking.quantities import QUANTITIES, Quantity
+
+
+@dataclass(frozen=True, eq=False)
+class AnswerRows:
+    """A table of an answer.
+
+    >>> AnswerRows({"time": [0.1, 0.2], "onto": ["left", "right"]}).records[0]
+    {'time': 0.1, 'onto': 'left'}
+    """
+
+    columns: Mapping[str, Sequence[Any]]  # columns of one length by the names of their quantities
+
+    @classmethod
+    def of(cls, records: np.ndarray, *, without: Sequence[str] = ()) -> "AnswerRows":
+        """Return a structured array whose fields are quantities."""
+        return cls({name: records[name].tolist() for name in records.dtype.names or () if name not in without})
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
+
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """AnswerRows, as values by the names of their quantities."""
+        return [dict(zip(self.columns, row, strict=True)) for row in zip(*self.columns.values(), strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What is shown of a result.
+
+    >>> block = Answer({"kind": "Block", "sides": {"left": {"semi_diagonal": 0.5}}})
+    >>> block.plain()
+    {'kind': 'Block', 'sides': {'left': {'semi_diagonal': 0.5}}, 'units': {'semi_diagonal': 'm'}}
+    """
+
+    # by the name of a quantity a number, array, word, message, or such values by a label; None for what does not
+    # exist; by the name of a part another answer, rows, or such values
+    values: Mapping[str, Any]
+    quantities: Mapping[str, Quantity] = field(default_factory=dict)  # those of the answer alone, such as Sa(0.5 s)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.values[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.values
+
+    def __or__(self, more: "Mapping[str, Any] | Answer") -> "Answer":
+        """Return the answer with more values."""
+        other = more if isinstance(more, Answer) else Answer(more)
+        return Answer({**self.values, **other.values}, {**self.quantities, **other.quantities})
+
+    def plain(self) -> dict[str, Any]:
+        """Return the values as JSON has them, null where there is no finite number, and the unit of each quantity."""
+        own = dict(self.quantities)
+        tree = _plain(self, own)
+        units: dict[str, str] = {}
+        _collect(tree, (), {**QUANTITIES, **own}, units)
+        return {**tree, "units": units}
+
+
+def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one a kind
+    if isinstance(value, Answer):
+        own |= value.quantities
+        return _plain(value.values, own)
+    if isinstance(value, AnswerRows):
+        return _plain(value.records, own)
+    if isinstance(value, Mapping):
+        return {str(name): _plain(each, own) for name, each in value.items()}
+    if isinstance(value, Message):
+        return str(value)
+    if hasattr(value, "tolist"):
+        whole = getattr(getattr(value, "dtype", None), "kind", "") in "iub" or np.isfinite(value).all()
+        return value.tolist() if whole else _plain(value.tolist(), own)
+    if isinstance(value, (list, tuple)):
+        return [_plain(each, own) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _collect(value: Any, path: tuple[str, ...], known: Mapping[str, Quantity], units: dict[str, str]) -> None:
+    """Add the unit of every number; a number belongs to the last of the keys above it that is a quantity."""
+    if isinstance(value, dict):
+        for name, each in value.items():
+            _collect(each, (*path, name), known, units)
+    elif isinstance(value, list):
+        # the numbers of a list have one quantity
+        number = next((each for each in value if isinstance(each, (int, float))), None)
+        for each in value if number is None else [number]:
+            _collect(each, path, known, units)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        name = next((each for each in reversed(path) if each in known), None)
+        if name is None or (isinstance(value, float) and not known[name].unit):
+            raise LookupError(f"{'.'.join(path)} is no quantity: rocking.quantities has no entry for it")
+        if known[name].unit:
+            units[name] = known[name].unit
+
+
+@dataclass(frozen=True)
+class Display:
+    """Units in which a reader sees lengths, accelerations and angles.
+
+    >>> display = Display(length="mm")
+    >>> display.text("semi_diagonal", 0.5), display.text("slenderness_angle", 0.25), display.heading("duration")
+    ('500 mm', '14.32 deg', 'duration [s]')
+    """
+
+    length: str = "m"
+    acceleration: str = "m/s2"
+    angle: str = "deg"
+
+    def unit(self, quantity: Quantity) -> str:
+        """Return the unit of a quantity for the reader; empty for numbers without one."""
+        own = {"m": self.length, "m/s2": self.acceleration, "rad": self.angle, "1": ""}
+        return own.get(quantity.unit, quantity.unit)
+
+    def heading(self, name: str) -> str:
+        """Return the heading of a column: label and unit."""
+        unit = self.unit(QUANTITIES[name])
+        return f"{QUANTITIES[name].heading} [{unit}]" if unit else QUANTITIES[name].heading
+
+    def cell(self, name: str, value: Any) -> str:
+        """Return a value in the unit of the reader, without the unit; what does not exist is a dash."""
+        if value is None or (isinstance(value, float) and math.isnan(value)):
+            return "-"
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, (list, tuple)):
+            return "-".join(map(str, value))
+        if isinstance(value, str):
+            return QUANTITIES[name].spelled.get(value, value.replace("_", " "))
+        if math.isinf(value):
+            return "infinite"
+        quantity = QUANTITIES[name]
+        size = UNITS.get(quantity.unit, {}).get(self.unit(quantity), 1.0)
+        return str(value) if isinstance(value, int) and size == 1.0 else format(value / size, quantity.digits)
+
+    def text(self, name: str, value: Any) -> str:
+        """Return a value with its unit."""
+        cell, unit = self.cell(name, value), self.unit(QUANTITIES[name])
+        return f"{cell} {unit}" if unit and cell != "-" else cell
+
+    def lines(self, values: Mapping[str, Any], names: Sequence[str]) -> Iterator[tuple[str, str]]:
+        """Return label and text of those of some quantities that an answer has."""
+        for name in names:
+            if (value := values.get(name)) is not None and not (isinstance(value, float) and math.isnan(value)):
+                yield QUANTITIES[name].heading, self.text(name, value)
+
+    def table(self, rows: AnswerRows, names: Sequence[str] = ()) -> tuple[list[str], list[list[str]]]:
+        """Return headings and cells of a table, of those of some columns that it has; of all if none are named."""
+        shown = [name for name in names or rows.columns if name in rows.columns]
+        columns = [[self.cell(name, value) for value in rows.columns[name]] for name in shown]
+        return [self.heading(name) for name in shown], [list(row) for row in zip(*columns, strict=True)]
