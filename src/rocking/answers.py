@@ -65,9 +65,17 @@ class Answer:
         """Return the values as JSON has them, null where there is no finite number, and the unit of each quantity."""
         own = dict(self.quantities)
         tree = _plain(self, own)
-        units: dict[str, str] = {}
-        _collect(tree, (), {**QUANTITIES, **own}, units)
-        return {**tree, "units": units}
+        known = {**QUANTITIES, **own}
+        owners = dict.fromkeys(name for _, name in _owners(tree, (), known) if name and known[name].unit)
+        units = {name: known[name].unit for name in owners}
+        return {**tree, "units": units} if units else tree
+
+    @property
+    def bare(self) -> list[str]:
+        """Numbers without an entry in `rocking.quantities`, by their keys; none if all is well."""
+        own = dict(self.quantities)
+        tree = _plain(self, own)
+        return [path for path, name in _owners(tree, (), {**QUANTITIES, **own}) if not name]
 
 
 def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one a kind
@@ -88,22 +96,20 @@ def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one 
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _collect(value: Any, path: tuple[str, ...], known: Mapping[str, Quantity], units: dict[str, str]) -> None:
-    """Add the unit of every number; a number belongs to the last of the keys above it that is a quantity."""
+def _owners(value: Any, path: tuple[str, ...], known: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    """Yield the keys of every number, and the last of them that is a quantity; empty if none is."""
     if isinstance(value, dict):
         for name, each in value.items():
-            _collect(each, (*path, name), known, units)
+            yield from _owners(each, (*path, name), known)
     elif isinstance(value, list):
         # the numbers of a list have one quantity
-        number = next((each for each in value if isinstance(each, (int, float))), None)
+        number = next((each for each in value if isinstance(each, (int, float)) and not isinstance(each, bool)), None)
         for each in value if number is None else [number]:
-            _collect(each, path, known, units)
+            yield from _owners(each, path, known)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        name = next((each for each in reversed(path) if each in known), None)
-        if name is None or (isinstance(value, float) and not known[name].unit):
-            raise LookupError(f"{'.'.join(path)} is no quantity: rocking.quantities has no entry for it")
-        if known[name].unit:
-            units[name] = known[name].unit
+        name = next((each for each in reversed(path) if each in known), "")
+        has_unit = bool(name) and (isinstance(value, int) or bool(known[name].unit))
+        yield ".".join(path), name if has_unit else ""
 
 
 @dataclass(frozen=True)

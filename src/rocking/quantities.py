@@ -300,6 +300,13 @@ _STUDIES = (
     Quantity("intercept", "1", "intercept of the regression in logarithms"),
     Quantity("scatter", "1", "logarithmic scatter"),
     Quantity("determination", "1", "R squared of the regression"),
+    Quantity("modes", "1", "modes of an island"),
+    Quantity("choices", "1", "differences between choices: fractions, ratios and distances of curves"),
+    Quantity("slope_error", "1", "standard error of the slope"),
+    Quantity("p_value", "1", "p value"),
+    Quantity("misfit", "1", "misfit to the target spectrum"),
+    Quantity("misfit_of_mean", "1", "misfit of the mean to the target spectrum"),
+    Quantity("least_ratio", "1", "smallest ratio of the mean to the target spectrum"),
     Quantity("motions_with_vertical", "1", "number of motions with a vertical component"),
 )
 _DECISIONS = (

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
     from rocking.tables import Table
 
+# quantities by the keys of a comparison
+_FLIPS = {"gained": "only_second", "lost": "only_first", "low": "share_low", "high": "share_high"}
 # quantities in the unit of the measure
 _MEASURED = (
-    "levels", "median", "median_95", "uplift_threshold", "lowest_uplift", "first_crossings", "interval",
+    "levels", "median", "median_95", "median_interval", "crossings", "uplift_threshold", "lowest_uplift",
+    "first_crossings", "interval",
 )  # fmt: skip
 
 
@@ -145,7 +148,10 @@ class FragilityAnswer:
             "levels": first.levels,
             "crossing": {"method": self.crossing, "adjusted": "" if self.shown is None else self.shown.adjusted},
             "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
-            "comparison": None if compared is None else {"choices": compared.summary(), "verdict": compared.verdict},
+            "comparison": None if compared is None else {
+                "choices": [{_FLIPS.get(key, key): value for key, value in one.items()} for one in compared.summary()],
+                "verdict": compared.verdict,
+            },
         }, {name: Quantity(name, unit, first.subject.measure_words) for name in _MEASURED})  # fmt: skip
 
     def _motions_facts(self) -> dict[str, Any]:

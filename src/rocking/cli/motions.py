@@ -127,7 +127,7 @@ class SetAnswer:
             row["spectra"] = {name: values[k] for name, values in spectra.items()}
         facts: dict[str, Any] = {"damping_ratio": self.flatfile.damping, "period": self.flatfile.periods}
         if (chosen := self.chosen) is not None:
-            told = {"factor": chosen.factors, "misfit": chosen.misfits, "period": chosen.periods}
+            told = {"scale": chosen.factors, "misfit": chosen.misfits, "period": chosen.periods}
             told |= {"mean": chosen.mean, "target_spectrum": chosen.target(chosen.periods)}
             facts["selection"] = {
                 "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,

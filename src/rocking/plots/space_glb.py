@@ -81,7 +81,7 @@ class GltfFile:
             return (np.array([*corner, height]) - from_centre).tolist()  # type: ignore[no-any-return]
 
         self.extras["edges"] = [
-            {"name": each["edge"], "from": place(each["from_m"]), "to": place(each["to_m"])} for each in edges
+            {"name": each["edge"], "from": place(each["edge_start"]), "to": place(each["edge_end"])} for each in edges
         ]
 
     def moves(self, response: HullResponse) -> None:

@@ -82,7 +82,7 @@ def test_what_is_said(found):
     values = found.answer().plain()
     assert values["body"] == repr(TOWER)
     assert values["solid"]["barrier"] == pytest.approx(TOWER.equilibria().settling((0.0, 0.0, -1.0)).barrier)
-    assert values["with_friction"]["lowest"] == found.lowest.factor
+    assert values["with_friction"]["min_factor"] == found.lowest.factor
     assert list(values["models"]) == ["ked", "calibrated", "calibrated, low", "calibrated, high"]
 
 

@@ -38,7 +38,7 @@ def test_json_says_the_same(answered):
     found = answered(*BODY, *QUICK, PULSE, "--set", "assess.project=Archive")
     assert found["project"] == "Archive"
     assert set(found["models"]) == {"ked", "r = 0.85"}
-    assert found["lowest"]["factor"] == min(each["lowest"] for each in found["models"].values())
+    assert found["lowest"]["min_factor"] == min(each["min_factor"] for each in found["models"].values())
     assert found["remedies"]["tension"]["left"] == pytest.approx(650.0 * (7.0 * 0.9 - 9.80665 * 0.28) / 0.8, rel=1e-4)
     assert found["verdict"] == found["sentences"][0]
 
@@ -88,7 +88,7 @@ def test_a_solid(printed, answered, tmp_path):
     assert ", friction 0.55" not in page  # all of it slides, not one row
     assert len(page.splitlines()) < 50
     found = answered(*quick)
-    assert found["solid"]["edge_m"] == pytest.approx(0.25)
+    assert found["solid"]["nearest_edge"] == pytest.approx(0.25)
     assert set(found["models"]) == {"ked", "r = 0.85"}
 
 

@@ -33,7 +33,7 @@ def test_a_grid_of_bodies(printed, answered, tmp_path):
                 assert (int(row["called safe"]), int(row["overturned of these"])) == (
                     called["safe"], called["overturned"],
                 )  # fmt: skip
-                assert called["safe"] <= called["total"] == 6
+                assert called["safe"] <= called["histories_known"] == 6
                 assert row["outside its domain"] == said["outside"]
     assert found["methods"]["italian-linear"]["called_safe"][0][1]["safe"] == 6
 
@@ -52,7 +52,7 @@ def test_one_body_under_one_motion(printed, answered):
     found = answered(*body, "sine:amplitude=3.5,period=0.5")
     assert found["methods"]["asce-43"]["outside"] == "unequal sides"
     assert found["worse_side_counts"] == [True]
-    ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
+    ratio = found["methods"]["static"]["called_safe"][0][0]["limit_ratio"]
     assert ratio == pytest.approx(3.5 / (9.80665 * 0.28 / 0.9), rel=1e-6)
     # negative control: the other side alone would be safe
     assert 3.5 / (9.80665 * 0.52 / 0.9) < 1.0
@@ -69,10 +69,10 @@ def test_levels_in_another_measure(answered):
     """Levels of PGA in g bring every motion there, and what a wide body cannot be judged by is outside."""
     found = answered("--width", 1, "--height", 0.6, *FAMILY, "--measure", "pga", "--levels", "0.2g")
     assert found["levels"] == ["pga = 1.96133 m/s2"]
-    assert found["methods"]["asce-43"]["called_safe"][0][0]["total"] == 0
+    assert found["methods"]["asce-43"]["called_safe"][0][0]["histories_known"] == 0
     assert found["methods"]["static"]["called_safe"][0][0] == {
-        "total": 6, "safe": 6, "overturned": 0, "ratio": pytest.approx(0.12, rel=1e-9),
-        "interval": [0.0, pytest.approx(1.0 - 0.025 ** (1 / 6), rel=1e-9)], "share": 0.0,
+        "histories_known": 6, "safe": 6, "overturned": 0, "limit_ratio": pytest.approx(0.12, rel=1e-9),
+        "share_95": [0.0, pytest.approx(1.0 - 0.025 ** (1 / 6), rel=1e-9)], "share": 0.0,
     }  # fmt: skip
 
 
@@ -117,6 +117,6 @@ def test_vertical_motion_is_in_the_answer(printed, answered, tmp_path):
     assert "asce-43: outside its domain: vertical motion" in page
     found = answered(*words, "--motion", f"z={tmp_path / 'v.csv'}")
     assert found["motions_with_vertical"] == 1
-    ratio = found["methods"]["static"]["called_safe"][0][0]["ratio"]
+    ratio = found["methods"]["static"]["called_safe"][0][0]["limit_ratio"]
     assert ratio == pytest.approx((0.6 + 0.2 / 1.5) * 1.5, rel=1e-8)
-    assert answered(*words)["methods"]["static"]["called_safe"][0][0]["ratio"] == pytest.approx(0.9, rel=1e-8)
+    assert answered(*words)["methods"]["static"]["called_safe"][0][0]["limit_ratio"] == pytest.approx(0.9, rel=1e-8)

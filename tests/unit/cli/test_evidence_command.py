@@ -26,7 +26,7 @@ def test_add_list_calibrate(printed, answered, own):
     assert "added to your evidence" in printed("evidence", "add", own)
     assert answered("evidence", "add", own)["new"] is False
     assert "are in your evidence already" in printed("evidence", "add", own)
-    assert [each["measurements"] for each in answered("evidence", "list")] == [12, 9, 9, 9, 2]
+    assert [each["measurements"] for each in answered("evidence", "list")["sets"]] == [12, 9, 9, 9, 2]
     assert "Ceh" in (page := printed("evidence", "list"))
     assert f"\n{store.own_files()[0].name} " in page  # by its name; the folder is said once
     found = answered("evidence", "calibrate")

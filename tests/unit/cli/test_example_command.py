@@ -36,8 +36,8 @@ def test_the_list(printed, answered):
     for name in ALL:
         assert f"\n{name} " in page
     assert printed("--list") == page
-    assert [each["name"] for each in answered()] == list(ALL)
-    (one,) = answered("stele")
+    assert [each["name"] for each in answered()["examples"]] == list(ALL)
+    (one,) = answered("stele")["examples"]
     assert one["writes"] == ["stele.toml", "far-field.csv"]
     assert one["commands"] == list(ALL["stele"].commands)
 
@@ -46,7 +46,7 @@ def test_one_is_only_listed(printed, tmp_path, monkeypatch):
     """Nothing is written by --list and --json."""
     monkeypatch.chdir(tmp_path)
     assert "writes bust.toml, three-components.csv, and by its commands bust.png" in printed("bust", "--list")
-    assert json.loads(printed("bust", "--json"))[0]["outputs"] == ["bust.png"]
+    assert json.loads(printed("bust", "--json"))["examples"][0]["outputs"] == ["bust.png"]
     assert list(tmp_path.iterdir()) == []
 
 

@@ -71,8 +71,10 @@ def test_keys_are_stable(answered):
     many, none = (
         answered(*SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
     )  # the second overturns nothing
-    keys = ["body", "assumed", "motions", "gravity", "linear", "analysis", "measure", "measure_words", "unit",
-            "states", "uplift_threshold", "lowest_uplift", "levels", "crossing", "results", "comparison"]  # fmt: skip
+    keys = [
+        "body", "assumed", "motions", "gravity", "linear", "analysis", "measure", "measure_words", "states",
+        "uplift_threshold", "lowest_uplift", "levels", "crossing", "results", "comparison", "units",
+    ]  # fmt: skip
     assert list(many) == list(none) == keys
     assert many["measure_words"] == "peak ground acceleration"
     uneven = answered("--width", 0.25, "--height", 1.25, "--centre", "0.11,0.6", *FAMILY, "--levels", "0.1g,0.3g")
@@ -107,7 +109,7 @@ def test_incremental(printed, answered):
     (result,) = answered(*words, "--analysis", "incremental")["results"]
     pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
     found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9, analysis="incremental")
-    ends = [(one["start"], one["end"]) for one in result["overturning_intervals"]]
+    ends = [tuple(one["interval"]) for one in result["overturning_intervals"]]
     assert ends == [(i.start, i.end if math.isfinite(i.end) else None) for i in found.intervals]
     assert None in [end for _, end in ends]
     assert result["first_crossings"] == found.first_crossings.tolist()
@@ -130,8 +132,8 @@ def test_resurrection_is_said(run, answered):
              "--levels", f"{3.0 * unit!r},{3.4 * unit!r},{3.55 * unit!r},{4 * unit!r}")  # fmt: skip
     (result,) = answered(*words)["results"]
     low, high = result["overturning_intervals"]
-    assert low["end"] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
-    assert high["start"] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
+    assert low["interval"][1] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
+    assert high["interval"][0] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
     assert result["resurrected_motions_over_1_percent"] == [0]
     assert "1 of 1 motion left it standing at levels above one that overturns it" in run(*words)[1]
 
@@ -159,7 +161,7 @@ def test_comparison(run, answered, tmp_path):
     base, other = answer["comparison"]["choices"]
     assert [base["choice"], other["choice"]] == ["0.95", "0.7"]
     assert (base["overturned"], other["overturned"]) == (first.sum(), second.sum())
-    assert other["gained"] - other["lost"] == second.sum() - first.sum() < 0
+    assert other["only_second"] - other["only_first"] == second.sum() - first.sum() < 0
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     assert [row["restitution"] for row in rows] == 9 * ["0.95"] + 9 * ["0.7"]
     assert [int(row["reached overturned [-]"]) for row in rows] == [*first, *second]

@@ -78,7 +78,9 @@ def test_json_is_the_python_call(answered, rocked, tmp_path):
     found = plain(identify(read_measurement(times), BLOCK, tilt=(0.0, 0.001)).to_dict())
     known = ("--set", "identify.tilt=[0,0.001]")
     for words in ((times, *SIZE, *known), (body, times, *known), (times, body, *known), (question,)):
-        assert answered(*words) == json.loads(json.dumps(found))
+        answer = answered(*words)
+        del answer["units"]
+        assert answer == json.loads(json.dumps(found))
     assert answered(times)["models"] == []
     assert answered(question, "--set", "identify.tilt=0")["tilt"]["high"] == 0.0
 
@@ -142,6 +144,7 @@ def test_a_shaken_floor(answered, refuses, tmp_path):
     found = answered(tmp_path / "rotation.csv", *SIZE, "--motion", tmp_path / "floor.csv", *clock)
     record = rk.read_motion(tmp_path / "floor.csv")
     here = identify(read_measurement(tmp_path / "rotation.csv"), BLOCK, motion=record, clock=(0.0, 0.01))
+    del found["units"]
     assert found == json.loads(json.dumps(plain(here.to_dict())))
     assert found["forced"]["measured"] > 1.0
     assert found["mean"]["low"] < 0.9 < found["mean"]["high"]

@@ -83,7 +83,7 @@ def test_a_target_chooses_and_scales(run, folder):
     code, out, _ = run("motions", folder, *words, "--json")
     found = json.loads(out)
     assert code == 0
-    assert (len(found["records"]), len(found["selection"]["factor"])) == (2, 2)
+    assert (len(found["records"]), len(found["selection"]["scale"])) == (2, 2)
     assert found["selection"]["misfit"] == sorted(found["selection"]["misfit"])
     code, out, _ = run("motions", folder, *words)
     assert "misfit of each" in out

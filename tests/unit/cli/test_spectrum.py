@@ -31,7 +31,7 @@ def test_json_is_the_python_call(answered):
     )
     assert len(told["curves"]) == 4
     for one, mode in zip(told["curves"], found["mode"].values.reshape(4, 9), strict=True):
-        assert one["largest_overturned_period_s"] == max(found["period"].values[mode >= 0], default=None)
+        assert one["largest_overturned_period"] == max(found["period"].values[mode >= 0], default=None)
         assert one["not_lifted"] + one["rocked"] + one["overturned"] + one["failed"] == 9
 
 
