@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.answers import Answer
 from rocking.cli.page import Page, deliver
 
 if TYPE_CHECKING:
+    from rocking.answers import Answer
     from rocking.evidence import DataSet
     from rocking.evidence._league import LeagueRow
     from rocking.evidence.hierarchy import HierarchicalCalibration, LeftOut
@@ -71,8 +71,10 @@ class AddedAnswer:
     data: "DataSet"
     new: bool
 
-    def answer(self) -> Answer:
+    def answer(self) -> "Answer":
         """Return where the measurements are."""
+        from rocking.answers import Answer
+
         return Answer({"file": str(self.path), "measurements": len(self.data), "new": self.new})
 
     def show(self, page: Page) -> None:
@@ -87,8 +89,10 @@ class ListAnswer:
 
     sets: "list[tuple[str, DataSet]]"
 
-    def answer(self) -> Answer:
+    def answer(self) -> "Answer":
         """Return each set, its size and its ranges."""
+        from rocking.answers import Answer
+
         return Answer({"sets": [
             {
                 "name": name, "measurements": len(data), "laboratories": _different(data.laboratory),
@@ -122,9 +126,11 @@ class CalibrationAnswer:
     calibration: "HierarchicalCalibration"
     left_out: "tuple[LeftOut, ...]"
 
-    def answer(self) -> Answer:
+    def answer(self) -> "Answer":
         """Return the calibration and the league."""
         from dataclasses import asdict
+
+        from rocking.answers import Answer
 
         return Answer({
             "measurements": len(self.data),

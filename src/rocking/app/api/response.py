@@ -91,6 +91,9 @@ FallAnswer: Any = shape(
     rotation=list[float],
     lying=tuple[float, float],
 )
+Coefficients: Any = shape(
+    "Coefficients", "Coefficient of restitution by the foot landed on.", left=(float, "[-]"), right=(float, "[-]")
+)
 ResponseFacts: Any = shape(
     "ResponseFacts",
     "The response under one restitution: the keys of `rocking simulate --json`, with label and curves.",
@@ -99,7 +102,7 @@ ResponseFacts: Any = shape(
     motion=(MotionSummaryAnswer | None, "null for free rocking"),
     initial_rotation=float,
     restitution=str,
-    coefficient=(dict[Foot, float], "coefficient of restitution by the foot landed on"),
+    coefficient=(Coefficients, "coefficient of restitution by the foot landed on"),
     engine=str,
     gravity=float,
     linear=bool,

@@ -168,14 +168,14 @@ const Model = ({ answer, shown, opened, toggle, margin }) => {
       <td class=${`outcome-${kind} text`}><span class="outcome-word"><span aria-hidden="true">${sign}</span>${SHORT[answer.outcome] ?? word}</span></td>
       <td class="number">${answer.outcome === "overturned" ? "\u2013" : number(answer.peak_ratio, 3)}</td>
       <td class="number">${answer.impacts.length}</td>
-      <td class="number">${coefficients(answer.body.sides)}</td>
+      <td class="number">${coefficients(answer.coefficient)}</td>
       <td class="number">${margin}</td>`}
   </tr>`;
 };
 
-/** @param {Server.RockingSides} sides */
+/** @param {{ left: number, right: number }} coefficient */
 const coefficients = ({ left, right }) => {
-  const [a, b] = [left, right].map(({ coefficient }) => number(coefficient, 4));
+  const [a, b] = [left, right].map((each) => number(each, 4));
   return a === b ? b : `${a} | ${b}`;
 };
 
