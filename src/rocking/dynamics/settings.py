@@ -24,6 +24,9 @@ NEVER_SLIDES = 1e6
 SHORTEST_STEP = 1e-6  # least `longest_step` of settings [-]
 
 
+_FIRST_IN_FILES = ("gravity", "linear", "rest_speed", "most_events")
+
+
 def checked(default: Any, check: Callable[[str, Any], Any]) -> Any:
     """Return a field of settings: its default, and the function of name and value that checks it."""
     return field(default=default, metadata={"check": check})
@@ -89,8 +92,10 @@ class Settings:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """Values by name."""
-        return {name: getattr(self, name) for name in self.names()}
+        """Values by name, in the order in which files have them."""
+        order = {name: place for place, name in enumerate(_FIRST_IN_FILES)}
+        names = sorted(self.names(), key=lambda name: order.get(name, len(order)))
+        return {name: getattr(self, name) for name in names}
 
     @property
     def integration(self) -> dict[str, Any]:
