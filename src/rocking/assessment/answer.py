@@ -46,7 +46,13 @@ class ModelMargin:
     least: FloatArray
 
     def answer(self) -> Answer:
-        """Return coefficients, outcomes and smallest factors."""
+        """Return what is shown of the restitution.
+
+        Returns
+        -------
+        Answer
+            Coefficients, outcomes and smallest scale factors.
+        """
         return Answer({
             "coefficient": self.coefficients, "overturned": self.overturned, "factors": self.least,
             "min_factor": self.lowest,

@@ -128,7 +128,7 @@ def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json:
     """Write the files that were asked for, and print an answer."""
     written: list[Path] = [] if exports is None else exports.write(answer)
     if as_json:
-        print_json(answer.answer().plain() if hasattr(answer, "answer") else answer.facts())  # type: ignore[attr-defined]
+        print_json(answer.answer().plain())
         return
     answer.show(Page())
     for path in written:
