@@ -71,11 +71,6 @@ _ERRORS = {
     503: "The server ends.",
     507: "The disk of the server takes nothing more.",
 }
-UNITS = {
-    "_rad_s": "rad/s", "_m_s2": "m/s2", "_kg_m2": "kg m2", "_m_s": "m/s", "_rad": "rad", "_kg": "kg", "_s": "s",
-    "_m": "m", "_J": "J", "_N": "N",
-}  # fmt: skip
-"""Units by the endings of keys; the longer ones come first."""
 
 
 class JsonAnswer(JSONResponse):
@@ -154,9 +149,7 @@ def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) 
         words = entry.meaning
     if not isinstance(words, str):
         return kind, ... if words is None else words
-    unit = next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "")
-    if entry is not None:
-        unit = "-" if entry.unit == "1" else entry.unit
+    unit = "" if entry is None else "-" if entry.unit == "1" else entry.unit
     return kind, Field(description=f"{words} [{unit}]".strip() if unit and not words.endswith("]") else words)
 
 
