@@ -11,7 +11,7 @@ type Point = [number, number];
 type Region = { outline: Point[]; holes?: Point[][] | null; density?: number | null };
 
 /** A refusal as a view sees it: app/api.js, app/main.js. */
-type Refusal = import("/app/api.js").ApiError & { field?: string | null; place?: ReturnType<typeof import("/app/refusal.js").placeOf> };
+type Refusal = import("/app/api.js").ApiError & { field?: string | null; place?: { x?: number, y?: number, regions: number[], hole?: number } | null };
 
 /** How a model, or what else is drawn, looks. */
 type Look = { colour: string; dash?: number[] };

@@ -11,6 +11,7 @@ import numpy as np
 
 from rocking.conventions import FEET, LENGTH_UNITS, UNITS, Assumed, FloatArray, Foot
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 
 Word = TypeVar("Word", bound=str)
 SMALLEST, LARGEST = 1e-9, 1e9
@@ -20,22 +21,25 @@ SMALLEST, LARGEST = 1e-9, 1e9
 def number(name: str, value: Any, unit: str = "-") -> float:
     """Return `value` as a finite float."""
     if isinstance(value, (bool, np.bool_, str, bytes, complex)) or value is None:
-        raise InvalidValueError(f"{name} must be a number [{unit}], got {value!r}")
+        raise InvalidValueError(parameter=name, allowed=f"a number [{unit}]", value=value)
     try:
         if getattr(value, "ndim", 0):
             raise TypeError  # numpy before 2.4 takes an array of one number for it
         result = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidValueError(f"{name} must be one number [{unit}], got {_short(value)}") from error
+        raise InvalidValueError(parameter=name, allowed=f"one number [{unit}]", value=value) from error
     if not math.isfinite(result):
-        raise InvalidValueError(f"{name} must be finite [{unit}], got {result}")
+        raise InvalidValueError(parameter=name, allowed=f"finite [{unit}]", value=result)
     return result
 
 
 def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str) -> None:
     """Refuse what is of another kind than the one that the words say."""
     if not isinstance(value, kind):
-        raise InvalidValueError(f"{name} must be {words}, got {given(name, value)}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {given}", parameter=name, allowed=words, value=value,
+            given=given(name, value),
+        )  # fmt: skip
 
 
 _READERS = {"motion": "read_motion", "motions": "read_motion", "body": "read_body", "bodies": "read_body"}
@@ -65,24 +69,19 @@ def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
         top = f"{high}]" if high < 2**53 else f"2^{high.bit_length()})"
         beyond = high != 2**63 - 1 or (is_whole and int(value) > high)
         allowed = f"in [{low}, {top}" if beyond else f">= {low}"
-        raise InvalidValueError(f"{name} must be a whole number {allowed}, got {value!r:.60}")
+        raise InvalidValueError(parameter=name, allowed=f"a whole number {allowed}", value=value)
     return int(value)
 
 
 def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
     """Return `value` as a finite float above zero."""
-    result = number(name, value, unit)
-    if result <= 0.0:
-        raise InvalidValueError(f"{name} must be > 0{_in(unit)}, got {result:g}{_because(hint)}")
-    return result
+    return within(name, value, 0.0, math.inf, unit=unit, open_low=True, hint=hint)
 
 
 def length(name: str, value: Any) -> float:
     """Return `value` as a length that a body can have [m]."""
-    result = positive(name, value, "m")
-    if not SMALLEST <= result <= LARGEST:
-        raise InvalidValueError(f"{name} must be in [{SMALLEST:g}, {LARGEST:g}] m, got {result:g}; wrong unit?")
-    return result
+    positive(name, value, "m")
+    return within(name, value, SMALLEST, LARGEST, unit="m", hint="wrong unit?")
 
 
 def density(name: str, value: Any) -> float:
@@ -105,13 +104,9 @@ def within(
 ) -> float:
     """Return `value` as a float between `low` and `high`."""
     result = number(name, value, unit)
-    too_low = result < low or (open_low and result == low)
-    too_high = result > high or (open_high and result == high)
-    if too_low or too_high:
-        brackets = "(" if open_low else "[", ")" if open_high or math.isinf(high) else "]"
-        top = "pi/2" if high == 0.5 * math.pi else f"{high:g}"
-        allowed = f"{brackets[0]}{low:g}, {top}{brackets[1]}"
-        raise InvalidValueError(f"{name} must be in {allowed}{_in(unit)}, got {result:g}{_because(hint)}")
+    allowed = Range(low, high, "" if unit == "-" else unit, open_low, open_high)
+    if result not in allowed:
+        raise InvalidValueError(parameter=name, allowed=allowed, value=result, hint=hint)
     return result
 
 
@@ -123,7 +118,7 @@ def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
         descending = values.size > 1 and bool((np.diff(values) < 0.0).all())
         what = "these decrease: reverse them" if descending else f"{after:g} follows {before:g} at index {falls[0] + 1}"
         shown = "" if unit in {"-", "1", ""} else f" [{unit}]"
-        raise InvalidValueError(f"{name} must increase{shown} from value to value; {what}")
+        raise InvalidValueError(f"{{parameter}} must increase{shown} from value to value", parameter=name, hint=what)
 
 
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
@@ -138,9 +133,9 @@ def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     try:
         given = np.asarray(values)
     except ValueError as error:
-        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}") from error
+        raise InvalidValueError(parameter=name, allowed=f"numbers [{unit}]", value=values) from error
     if given.dtype.kind not in "iuf":
-        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}")
+        raise InvalidValueError(parameter=name, allowed=f"numbers [{unit}]", value=values)
     return np.asarray(given, dtype=np.float64)
 
 
@@ -153,11 +148,17 @@ def finite(
     if result.ndim != len(shape) or list(result.shape) != wanted:
         words = " x ".join(f"at least {least}" if size is None else f"{size}" for size in shape)
         row = "a row of " if len(shape) == 1 else ""
-        raise InvalidValueError(f"{name} must be {row}{words} finite numbers [{unit}], got shape {result.shape}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter=name, value=values, shape=result.shape,
+            allowed=f"{row}{words} finite numbers [{unit}]",
+        )  # fmt: skip
     bad = np.argwhere(~np.isfinite(result)).tolist()
     if bad:
         where = bad[0] if len(shape) > 1 else bad[0][0]
-        raise InvalidValueError(f"{name} must be finite [{unit}], got {result[tuple(bad[0])]} at index {where}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {value} at index {index}", parameter=name, allowed=f"finite [{unit}]",
+            value=float(result[tuple(bad[0])]), index=where,
+        )  # fmt: skip
     result.setflags(write=False)
     return result
 
@@ -168,8 +169,11 @@ def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
     if not values.size or (values.min() > 0.0 and values.max() < math.inf):
         return
     bad = tuple(int(i) for i in np.argwhere(~((values > 0.0) & np.isfinite(values)))[0])
-    where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
-    raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {values[bad]:g}{where}")
+    raise InvalidValueError(
+        "{parameter} must be {allowed}, got {value} at index {index}" if bad else "",
+        parameter=name, allowed=f"finite and > 0{'' if unit == '-' else f' {unit}'}", value=float(values[bad]),
+        index=bad[0] if len(bad) == 1 else bad,
+    )  # fmt: skip
 
 
 def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:
@@ -181,13 +185,13 @@ def all_within(name: str, values: FloatArray, low: float, high: float, whole: Fl
         return least
     all_positive(name, whole)
     bad = tuple(int(i) for i in np.argwhere((whole < low) | (whole > high))[0])
-    raise InvalidValueError(f"{name} must be in [{low:g}, {high:g}], got {whole[bad]:g}")
+    raise InvalidValueError(parameter=name, allowed=Range(low, high), value=float(whole[bad]))
 
 
 def foot(name: str, value: Any) -> Foot:
     """Return `value` as a foot."""
     if not isinstance(value, str) or value not in FEET:
-        raise InvalidValueError(f'{name} must be "left" or "right", got {value!r}')
+        raise InvalidValueError(parameter=name, allowed='"left" or "right"', value=value)
     return value
 
 
@@ -205,7 +209,9 @@ def one_of(name: str, value: Any, known: Iterable[Word]) -> Word:
     words = list(known)
     found = spelling(value, words)
     if not isinstance(found, str) or found not in words:  # an array has no truth value
-        raise InvalidValueError(f"{name} must be one of {', '.join(words)}, got {value!r:.60}{nearest(value, words)}")
+        raise InvalidValueError(
+            parameter=name, allowed=f"one of {', '.join(words)}", value=value, hint=nearest(value, words)
+        )
     return found
 
 
@@ -218,29 +224,29 @@ def spelling(word: Any, known: Iterable[str]) -> Any:
 
 
 def nearest(word: Any, known: Iterable[str]) -> str:
-    """Return the end of an error about an unknown word: what was probably meant, after a semicolon; else nothing.
+    """Return the hint about an unknown word: what was probably meant; empty if nothing is near.
 
     >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
-    ("; did you mean 'housner'?", '; numbers have a decimal point: 0.9')
+    ("did you mean 'housner'?", 'numbers have a decimal point: 0.9')
     """
     if not isinstance(word, str):
         return ""
     if comma := number_hint(word):
         return comma
     near = difflib.get_close_matches(word[:60].casefold(), list(known), n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    return f"did you mean {near[0]!r}?" if near else ""
 
 
 def number_hint(words: str) -> str:
-    """Return the end of an error about words in which a number has a decimal comma, or a unit; else nothing.
+    """Return the hint about words in which a number has a decimal comma, or a unit; empty for others.
 
     >>> number_hint("sine:amplitude=0,5,period=1"), number_hint("50 cm")
-    ('; numbers have a decimal point: 0.5', '; it takes no unit behind the number, 50: the help says how to give one')
+    ('numbers have a decimal point: 0.5', 'it takes no unit behind the number, 50: the help says how to give one')
     """
     if unit := re.fullmatch(r"([+-]?[0-9.]+) ?(?!e\d+$)([a-zA-Z][a-zA-Z/0-9]*)", words):
-        return f"; it takes no unit behind the number, {unit[1]}: the help says how to give one"
+        return f"it takes no unit behind the number, {unit[1]}: the help says how to give one"
     found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
-    return f"; numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
+    return f"numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
 
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
@@ -256,21 +262,8 @@ def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
     if match is None or (match[2] and match[2] not in known):
         allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
         hint = "" if match else number_hint(text)
-        raise InvalidValueError(f"{name} must be a number{allowed}, got {text!r:.60}{hint}")
+        raise InvalidValueError(parameter=name, allowed=f"a number{allowed}", value=text, hint=hint)
     value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
     if not math.isfinite(value):
-        raise InvalidValueError(f"{name} must be a finite number, got {text!r:.60}")
+        raise InvalidValueError(parameter=name, allowed="a finite number", value=text)
     return value, match[2] or ""
-
-
-def _in(unit: str) -> str:
-    return "" if unit == "-" else f" {unit}"
-
-
-def _because(hint: str) -> str:
-    return f"; {hint}" if hint else ""
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

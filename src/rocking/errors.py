@@ -1,9 +1,16 @@
 """One family of errors: everything this package refuses is a `RockingError`."""
 
+import reprlib
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, replace
 from importlib import import_module
 from types import ModuleType
+from typing import Any, Literal, Self, TypeVar
+
+from rocking.messages import Message, Parameter, Place, Spelling
 
 _EXTRAS = {
     "jinja2": "report",
@@ -21,8 +28,157 @@ _EXTRAS = {
 }
 
 
+Family = TypeVar("Family", bound="RockingError")
+_SHORT = reprlib.Repr()
+
+
 class RockingError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base of every error that this package raises on purpose.
+
+    Parameters
+    ----------
+    text : str
+        What is wrong, in English; if empty, that `parameter` must be `allowed`. With a parameter or facts it is a
+        template, which has them by name in braces.
+    parameter : str
+        Name of the refused parameter.
+    value : object
+        The refused value.
+    allowed : Range or str
+        The allowed values.
+    hint : str or Message
+        What to do about it, or the likely cause.
+    **facts : object
+        The facts of the text by name.
+
+    Attributes
+    ----------
+    places : tuple of Place
+        Tables and files in which the refused value stands, the outermost first.
+    more : int
+        Number of further errors in the same input.
+
+    Examples
+    --------
+    >>> str(InvalidValueError(parameter="friction", allowed="a number", value="low", hint="0.3 to 0.8"))
+    "friction must be a number, got 'low'; 0.3 to 0.8"
+    """
+
+    def __init__(
+        self,
+        text: str = "",
+        *,
+        parameter: str = "",
+        value: Any = None,
+        allowed: Any = "",
+        hint: str | Message = "",
+        **facts: Any,
+    ) -> None:
+        super().__init__(text)
+        self.text, self.facts, self.hint = text, facts, hint
+        self._name, self.value, self.allowed = parameter, value, allowed
+        self.places: tuple[Place, ...] = ()
+        self.more = 0
+
+    @property
+    def parameter(self) -> str:
+        """Path of the refused parameter in its question, such as body.block.width; empty if none is known."""
+        tables = [place.name for place in self.places if place.kind in {"table", "key"}]
+        return ".".join([*tables, *([self._name] if self._name else [])])
+
+    @property
+    def unit(self) -> str:
+        """Unit of the allowed values; empty if they have none."""
+        return getattr(self.allowed, "unit", "")
+
+    @property
+    def cause(self) -> str:
+        """The sentence without the hint."""
+        return ": ".join([*map(str, self.places), str(self.message)])
+
+    @property
+    def message(self) -> Message:
+        """What is wrong, without place and hint."""
+        if not self._name:
+            return Message(self.text, self.facts)
+        parameter = Parameter(self.parameter, self._name)
+        stated = {"parameter": parameter, "allowed": self.allowed, "value": _shown(self.value), **self.facts}
+        return Message(self.text or "{parameter} must be {allowed}, got {value}", stated)
+
+    def data(self) -> dict[str, Any]:
+        """Return the error as plain values: sentence, parameter, template with facts, hint, places, further errors."""
+        return {
+            "message": str(self),
+            "parameter": self.parameter,
+            **self.message.data(),
+            "hint": (self.hint if isinstance(self.hint, Message) else Message(self.hint)).data(),
+            "places": [asdict(place) for place in self.places],
+            "more": self.more,
+        }
+
+    def spelt(self, spelling: Spelling = str, *, within: bool = True) -> str:
+        """Return the error as a sentence; within: whether it names the tables that are not in a file."""
+        places = list(self.places)
+        while places and not within and places[0].kind == "table":
+            places.pop(0)
+        hint = self.hint.spelt(spelling) if isinstance(self.hint, Message) else self.hint
+        sentence = ": ".join([*map(str, places), self.message.spelt(spelling)]) + (f"; {hint}" if hint else "")
+        return f"{sentence} (and {self.more} more)" if self.more else sentence
+
+    def __str__(self) -> str:
+        return self.spelt()
+
+    def copied(self, kind: type[Family]) -> Family:
+        """Return the same as an error of another class."""
+        made = kind(
+            self.text, parameter=self._name, value=self.value, allowed=self.allowed, hint=self.hint, **self.facts
+        )
+        made.places, made.more = self.places, self.more
+        return made
+
+    def add_hint(self, hint: str) -> None:
+        """Add to what there is to do about it."""
+        self.hint = Message("{first}; {second}", {"first": self.hint, "second": hint}) if self.hint else hint
+
+    def at(self, name: str, line: int = 0) -> Self:
+        """Return the error itself, with a file and perhaps a line of it as its outermost place."""
+        self.places = (Place(name, "file", line), *self.places)
+        return self
+
+    def without_file(self, name: str) -> Self:
+        """Return the error itself without the name of a file, for readers who know it; its line stays."""
+        kept = (
+            replace(place, name="") if (place.name, place.kind) == (name, "file") else place for place in self.places
+        )
+        self.places = tuple(place for place in kept if str(place))
+        return self
+
+
+def _shown(value: Any) -> str:
+    """Return a refused value as Python writes it, cut where it is long."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    text = _SHORT.repr(value) if isinstance(value, (list, tuple, dict, set)) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+@contextmanager
+def located(name: str, kind: Literal["table", "file", "step"] = "table", number: int = 0) -> Iterator[None]:
+    """Add a table, a file or a step to the places of each refusal inside.
+
+    >>> with located("pier.toml", "file"), located("block"):
+    ...     raise InvalidValueError(parameter="width", allowed="a number", value="wide")
+    Traceback (most recent call last):
+    rocking.errors.InvalidValueError: pier.toml: block: width must be a number, got 'wide'
+    """
+    try:
+        yield
+    except MissingExtraError:
+        raise
+    except RockingError as error:
+        if not any((place.name, place.kind) == (name, kind) for place in error.places[:1]):
+            error.places = (Place(name, kind, number), *error.places)
+        raise
 
 
 class InvalidValueError(RockingError, ValueError):

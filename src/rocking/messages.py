@@ -1,20 +1,45 @@
 """Sentences that are made from facts: an English text with named fields, and the facts that fill them."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
+
+
+class Fact:
+    """What a message names and each door spells in its own way; `str` is the spelling of Python."""
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """A parameter that a message refers to, and the value that it should have; each door spells it in its own way.
+class Parameter(Fact):
+    """A parameter by its place in a question.
 
-    >>> str(Parameter("motion.units", "g")), str(Parameter("motion.component"))
-    ('units="g"', 'component=')
+    >>> str(Parameter("body.block.width", "width"))
+    'width'
     """
 
-    path: str  # its place in a question, such as body.block.width
-    value: Any = None  # the value to state; None for a value that the reader chooses
+    path: str
+    shown: str  # the end of the path that a sentence has
+
+    @property
+    def name(self) -> str:
+        """The last part of the path."""
+        return self.path.rpartition(".")[2]
+
+    def __str__(self) -> str:
+        return self.shown
+
+
+@dataclass(frozen=True)
+class Option(Fact):
+    """A parameter that the reader is told to state, and the value that it should have.
+
+    >>> str(Option("motion.units", "g")), str(Option("motion.component")), str(Option("identify.trend", True))
+    ('units="g"', 'component=', 'trend=True')
+    """
+
+    path: str
+    value: Any = None  # None: the reader chooses
 
     @property
     def name(self) -> str:
@@ -27,7 +52,108 @@ class Parameter:
         return f'{self.name}="{self.value}"' if isinstance(self.value, str) else f"{self.name}={self.value}"
 
 
-Spelling = Callable[[Parameter], str]
+@dataclass(frozen=True)
+class Amount(Fact):
+    """A number with its unit.
+
+    >>> str(Amount(0.25, "m")), str(Amount(3.0))
+    ('0.25 m', '3')
+    """
+
+    value: float
+    unit: str = ""
+    digits: str = "g"  # format of the number
+
+    def __str__(self) -> str:
+        return f"{self.value:{self.digits}}{f' {self.unit}' if self.unit else ''}"
+
+
+@dataclass(frozen=True)
+class Range(Fact):
+    """The allowed values of a number.
+
+    >>> (
+    ...     str(Range(0.0, math.inf, "m", low_open=True)),
+    ...     str(Range(0.0, 1.0)),
+    ...     str(Range(0.0, 0.5 * math.pi, "rad", high_open=True)),
+    ... )
+    ('> 0 m', 'in [0, 1]', 'in [0, pi/2) rad')
+    """
+
+    low: float
+    high: float
+    unit: str = ""
+    low_open: bool = False
+    high_open: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        low = value > self.low if self.low_open else value >= self.low
+        return low and (value < self.high if self.high_open else value <= self.high)
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        if self.high == math.inf:
+            return f"{'>' if self.low_open else '>='} {self.low:g}{unit}"
+        if self.low == -math.inf:
+            return f"{'<' if self.high_open else '<='} {self.high:g}{unit}"
+        brackets = "(" if self.low_open else "[", ")" if self.high_open else "]"
+        high = "pi/2" if self.high == 0.5 * math.pi else f"{self.high:g}"
+        return f"in {brackets[0]}{self.low:g}, {high}{brackets[1]}{unit}"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a refused value stands: a table of a question, a key within it, a file, or a step of processing.
+
+    >>> str(Place("a.txt", "file", 3)), str(Place("map.x"))
+    ('a.txt, line 3', 'map.x')
+    """
+
+    name: str
+    kind: Literal["table", "key", "file", "step"] = "table"
+    number: int = 0  # of the line of a file, or of the step, from 1; 0 for none
+
+    def __str__(self) -> str:
+        line = f"line {self.number}" if self.kind == "file" and self.number else ""
+        return ", ".join(filter(None, (self.name, line)))
+
+
+@dataclass(frozen=True)
+class Index(Fact):
+    """The number of a region, a hole or a point; Python and files count from zero, a page from one.
+
+    >>> str(Index(2))
+    '2'
+    """
+
+    number: int  # from zero
+
+    def __str__(self) -> str:
+        return str(self.number)
+
+
+@dataclass(frozen=True)
+class WrittenFile(Fact):
+    """A file that a command wrote, of which only its readers need to know."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+Spelling = Callable[[Fact], str]
+
+
+def by_key(fact: Fact) -> str:
+    """Return a fact with the key of a question in place of an option, for readers at any door.
+
+    >>> by_key(Option("motion.units", "g"))
+    'motion.units = g'
+    """
+    if not isinstance(fact, Option):
+        return str(fact)
+    return fact.path if fact.value is None else f"{fact.path} = {fact.value}"
 
 
 @dataclass(frozen=True)
@@ -35,22 +161,48 @@ class Message:
     """An English text with named fields, and what stands in them.
 
     >>> units = Message(
-    ...     "{file} does not state its unit; give {option}", {"file": "a.txt", "option": Parameter("units", "g")}
+    ...     "{file} does not state its unit; give {option}", {"file": "a.txt", "option": Option("units", "g")}
     ... )
-    >>> str(units), units.spelt(lambda parameter: f"--{parameter.name} {parameter.value}")
+    >>> str(units), units.spelt(lambda option: f"--{option.name} {option.value}")
     ('a.txt does not state its unit; give units="g"', 'a.txt does not state its unit; give --units g')
     """
 
     text: str  # the English text; its translations are found by it
-    arguments: Mapping[str, Any] = field(default_factory=dict)
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
     def __str__(self) -> str:
         return self.spelt(str)
 
+    def __bool__(self) -> bool:
+        return bool(self.text)
+
+    def data(self) -> dict[str, Any]:
+        """Return the text and its facts as plain values; a fact of a class has the name of the class as its kind."""
+        return {"text": self.text, "facts": {name: _data(fact) for name, fact in self.facts.items()}}
+
     def spelt(self, spelling: Spelling) -> str:
-        """Return the sentence with its parameters as a door spells them."""
-        if not self.arguments:
+        """Return the sentence with its facts as a door spells them."""
+        if not self.facts:
             return self.text
-        return self.text.format_map(
-            {name: spelling(value) if isinstance(value, Parameter) else value for name, value in self.arguments.items()}
-        )
+        return self.text.format_map({name: _spelt(fact, spelling) for name, fact in self.facts.items()})
+
+
+def _spelt(fact: Any, spelling: Spelling) -> Any:
+    if isinstance(fact, Fact):
+        return spelling(fact)
+    if isinstance(fact, Message):
+        return fact.spelt(spelling)
+    if fact and isinstance(fact, tuple) and all(isinstance(part, (Fact, Message, str)) for part in fact):
+        return "; ".join(str(_spelt(part, spelling)) for part in fact)
+    return fact
+
+
+def _data(fact: Any) -> Any:
+    if isinstance(fact, Message):
+        return {"kind": "message", **fact.data()}
+    if isinstance(fact, tuple):
+        return [_data(part) for part in fact]
+    if isinstance(fact, Fact):
+        values = {name: None if isinstance(v, float) and math.isinf(v) else v for name, v in vars(fact).items()}
+        return {"kind": type(fact).__name__.lower(), **values}
+    return fact if isinstance(fact, (int, float)) and math.isfinite(fact) else str(fact)

@@ -7,7 +7,6 @@ itself where the series are long. The tests check every one of them.
 import inspect
 import json
 import math
-from collections.abc import Sequence
 from typing import Any, Literal, get_args, get_type_hints
 
 from fastapi import FastAPI
@@ -91,17 +90,17 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in an answer")
 
 
-def error_answer(status: int, kind: str, message: str, needs: Sequence[str] = ()) -> JsonAnswer:
-    """Return an error as the client is told it."""
-    error = {"kind": kind, "message": message} | ({"needs": list(needs)} if needs else {})
-    return JsonAnswer({"error": error}, status_code=status)
+def error_answer(status: int, kind: str, message: str) -> JsonAnswer:
+    """Return an error of which only a sentence is known."""
+    return JsonAnswer({"error": {"kind": kind, "message": message}}, status_code=status)
 
 
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
     """Return an error of this package as the client is told it, with Retry-After where another try makes sense."""
     own = error if isinstance(error, Refused) else None
     kind = kind_of_status(own.status) if own else kind_of(error)
-    answer = error_answer(own.status if own else 422, kind, str(error), own.needs if own else ())
+    told = {"kind": kind, **error.data()} | ({"needs": list(own.needs)} if own and own.needs else {})
+    answer = JsonAnswer({"error": told}, status_code=own.status if own else 422)
     if own and (own.seconds is not None or own.status == 429):
         answer.headers["Retry-After"] = str(math.ceil(own.seconds or 1.0))
     if close:
@@ -173,7 +172,29 @@ Deleted: Any = shape("Deleted", "What is no longer there.", deleted=(str, "its n
 QuantityAnswer: Any = shape(
     "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, words=str, unit=str
 )
-ErrorDetail: Any = shape("ErrorDetail", "What went wrong.", kind=Kind, message=str, needs=(list[str], []))
+MessageData: Any = shape(
+    "MessageData", "A text with named fields, and what fills them.", text=str, facts=dict[str, Any]
+)
+PlaceData: Any = shape(
+    "PlaceData",
+    "A table, a file or a step with what is refused.",
+    name=str,
+    kind=Literal["table", "key", "file", "step"],
+    number=(int, "of the line or step, from 1; 0 for none"),
+)
+ErrorDetail: Any = shape(
+    "ErrorDetail",
+    "What went wrong; all beside kind and message where more than a sentence is known.",
+    kind=Kind,
+    message=(str, "in one sentence"),
+    needs=(list[str], []),
+    parameter=(str, Field("", description="path of the refused parameter in the request, such as body.block.width")),
+    text=(str, Field("", description="the sentence without place and hint, with named fields")),
+    facts=(dict[str, Any], Field({}, description="what fills the fields")),
+    hint=(MessageData | None, Field(None, description="what to do about it, or the likely cause")),
+    places=(list[PlaceData], []),
+    more=(int, Field(0, description="number of further errors")),
+)
 
 
 class ErrorAnswer(BaseModel):

@@ -6,8 +6,7 @@ import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -35,11 +34,14 @@ from rocking.app.settings import AppState, ServerSettings
 from rocking.app.studies import router as studies
 from rocking.app.studies.manager import StudyManager
 from rocking.app.work import ComputationQueue
-from rocking.bodies.formats.words import sentence
+from rocking.bodies.formats.words import from_pydantic
 from rocking.errors import RockingError
 from rocking.language import page_words
 from rocking.restitution.from_file import register_own
 from rocking.version import __version__
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _READING = threading.Lock()
@@ -54,8 +56,8 @@ folder and is new at every start, and with every POST or DELETE also `Origin: {o
 own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
 
 
-def validation_sentence(error: ValidationError | RequestValidationError) -> str:
-    """Return what is wrong with an input in one sentence: key, allowed range and value of the first error."""
+def refused_input(error: ValidationError | RequestValidationError) -> RockingError:
+    """Return the first error of an input as one of ours."""
     errors: list[dict[str, Any]] = [dict(each) for each in error.errors()]
     for each in errors:
         if each["loc"] and each["loc"][0] in {"body", "query", "path", "header"}:
@@ -68,11 +70,11 @@ def validation_sentence(error: ValidationError | RequestValidationError) -> str:
             units = stated
         case _:
             units = None
-    return sentence(cast("ValidationError", SimpleNamespace(errors=lambda **_: errors)), units)
+    return from_pydantic(cast("list[ErrorDetails]", errors), units)
 
 
 def _invalid(error: ValidationError | RequestValidationError) -> JsonAnswer:
-    return error_answer(422, "invalid-value", validation_sentence(error))
+    return refusal(refused_input(error))
 
 
 def _refused(error: HTTPException) -> JsonAnswer:

@@ -5,6 +5,7 @@ import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from rocking.errors import BodyFileError, GeometryError, MissingExtraError, RecordError, RockingError, UnknownModelError
 
@@ -37,9 +38,15 @@ class Refused(RockingError):  # noqa: N818 - the names of the subclasses are wha
     status = 422
 
     def __init__(
-        self, message: str, *, status: int | None = None, needs: Sequence[str] = (), seconds: float | None = None
+        self,
+        text: str = "",
+        *,
+        status: int | None = None,
+        needs: Sequence[str] = (),
+        seconds: float | None = None,
+        **parts: Any,
     ) -> None:
-        super().__init__(message)
+        super().__init__(text, **parts)
         self.status = self.status if status is None else status
         self.needs = tuple(needs)
         self.seconds = seconds

@@ -13,8 +13,7 @@ from rocking.app.errors import Refused, TooLarge
 from rocking.app.work import Remembered
 from rocking.bodies import Body
 from rocking.bodies.formats.schema import BODIES, BodyFile, KnownTable, Positive
-from rocking.bodies.formats.words import blamed
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Motion
 from rocking.spec.bodies import body_of
 from rocking.spec.construction import motion_of
@@ -26,7 +25,7 @@ from rocking.spec.document import (
     SettingsTable,
     check_start,
 )
-from rocking.spec.fields import JobTable, Text, refused
+from rocking.spec.fields import JobTable, Text
 from rocking.spec.response import ResponseProblem, problem_of
 
 if TYPE_CHECKING:
@@ -80,7 +79,7 @@ class BodyInput(BodyFile, KnownTable):
     @classmethod
     def _names_no_file(cls, table: Any) -> Any:
         if isinstance(table, dict) and "file" in table:
-            raise refused(f"file: {_UPLOAD}")
+            raise InvalidValueError(f"file: {_UPLOAD}")
         return table
 
     @model_validator(mode="after")
@@ -89,16 +88,16 @@ class BodyInput(BodyFile, KnownTable):
         present = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
         if len(present) != 1:
             choice = ", ".join(("width and height", *BODIES))
-            raise refused(f"a body has exactly one of {choice}, got {' and '.join(present) or 'none'}")
+            raise InvalidValueError(f"a body has exactly one of {choice}, got {' and '.join(present) or 'none'}")
         if sized and (self.width is None or self.height is None):
-            raise refused(f"{'width' if self.width is None else 'height'} is missing")
+            raise InvalidValueError(f"{'width' if self.width is None else 'height'} is missing")
         own = ("depth", "density", *KnownTable.model_fields)
         if not sized and (odd := [key for key in own if getattr(self, key) is not None]):
-            raise refused(f"{' and '.join(odd)} of a {present[0]} stand in its own table")
+            raise InvalidValueError(f"{' and '.join(odd)} of a {present[0]} stand in its own table")
         for k, region in enumerate(self.section.region if self.section else ()):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:
-                    raise refused(f"section.region[{k}].{key}: {_UPLOAD}")
+                    raise InvalidValueError(f"section.region[{k}].{key}: {_UPLOAD}")
         check_size(self)
         _refuse_subnormal(self.table())
         return self
@@ -113,7 +112,9 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
     match value:
         case float() if 0.0 < abs(value) < sys.float_info.min:
             least = f"{sys.float_info.min:.3g}"
-            raise refused(f"{key} is {value!r}, too small for a number with all its digits ({least}); a wrong unit?")
+            raise InvalidValueError(
+                f"{key} is {value!r}, too small for a number with all its digits ({least}); a wrong unit?"
+            )
         case dict():
             for name, each in value.items():
                 _refuse_subnormal(each, f"{key}.{name}" if key else name)
@@ -236,10 +237,12 @@ class MotionInput(OneMotionTable):
     @model_validator(mode="after")
     def _named_record(self) -> "MotionInput":
         if self.file_name is not None and self.record is None:
-            raise refused("file_name goes with record only")
+            raise InvalidValueError("file_name goes with record only")
         other = self.model_fields_set - MOTION_KEYS - {"record", "file_name"}
         if odd := sorted(key for key in other if getattr(self, key) is not None):
-            raise refused(f"{odd[0]}: the application reads no file by its name; upload one with both components")
+            raise InvalidValueError(
+                f"{odd[0]}: the application reads no file by its name; upload one with both components"
+            )
         return self
 
 
@@ -260,8 +263,10 @@ class Inputs(ResponseTables):
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
         refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
         if self.response.friction:  # the table has none of 0
-            raise refused("response.friction: the page rocks without sliding, compared with response.assumed_friction; "
-                          "`rocking simulate` lets a body slide, hop and fly")  # fmt: skip
+            raise InvalidValueError(
+                "response.friction: the page rocks without sliding, compared with response.assumed_friction; "
+                "`rocking simulate` lets a body slide, hop and fly"
+            )
         return self
 
 
@@ -368,7 +373,7 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
     if table.record is not None:
         how = (table.format, table.units, table.time_step, table.component, table.vertical)
         return records.motion(table.record, *how, skip=table.skip or 0)
-    with blamed("motion"):
+    with located("motion"):
         if table.synthetic is None:
             return motion_of(table)
         alone = table.model_copy(update={"scale": 1.0})
@@ -376,18 +381,14 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
 
 
 def _body(table: BodyInput) -> Body:
-    with blamed("body"):
-        try:
-            body = body_of(table.table(), None)
-            what = "a base touches the ground in up to {most} separate stretches"
-            refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
-            mass, inertia = body.mass, body.moment_of_inertia
-            if min(mass, inertia or mass) < _LIGHTEST:
-                raise InvalidValueError(
-                    f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below "
-                    "which digits are lost; is a density or a mass in a wrong unit?"
-                )
-        except InvalidValueError as error:
-            kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
-            raise kind(str(error)) from error
+    with located("body"):
+        body = body_of(table.table(), None)
+        what = "a base touches the ground in up to {most} separate stretches"
+        refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+        mass, inertia = body.mass, body.moment_of_inertia
+        if min(mass, inertia or mass) < _LIGHTEST:
+            raise InvalidValueError(
+                f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below "
+                "which digits are lost; is a density or a mass in a wrong unit?"
+            )
         return body

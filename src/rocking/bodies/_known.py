@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.messages import Amount, Range
 
 _SLACK = 1e-6  # a moment may lie this far, relative to itself, beyond what its outline allows: rounding
 
@@ -57,20 +58,24 @@ class Known:
         if gyration is None:
             dx, dy = origin
             raise GeometryError(
-                f"the centre of mass must lie within the outline, x in ({left + dx:.6g}, {right + dx:.6g}), y in "
-                f"({low + dy:.6g}, {high + dy:.6g}) m, and within its convex hull, got ({x + dx:.6g}, {y + dy:.6g}) m; "
-                "was it measured from another origin, or in another unit?"
-            )
+                "the centre of mass must lie within the outline, x {x_allowed}, y {y_allowed}, and within its convex "
+                "hull, got ({x}, {y})",
+                parameter="centre", value=(x + dx, y + dy),
+                hint="was it measured from another origin, or in another unit?",
+                x_allowed=Range(left + dx, right + dx, "m", True, True),
+                y_allowed=Range(low + dy, high + dy, "m", True, True),
+                x=Amount(x + dx, "m", ".6g"), y=Amount(y + dy, "m", ".6g"),
+            )  # fmt: skip
         largest, polar = homogeneous.mass * gyration, self.moment_of_inertia
         if polar is None:
             before = largest_gyration(vertices, homogeneous.x, homogeneous.y)
             polar = homogeneous.polar * (gyration / before if before else 1.0)  # Eq. 240
         elif polar > largest * (1.0 + _SLACK):
             raise GeometryError(
-                f"moment_of_inertia must be at most {largest:.6g} kg m2, as if all mass were in the corners of the "
-                f"outline, got {polar:.6g}; it is the polar moment about the centre of mass: was it taken about a "
-                "foot, or in other units?"
-            )
+                "{parameter} must be at most {largest}, as if all mass were in the corners of the outline, got {value}",
+                parameter="moment_of_inertia", value=polar, largest=Amount(largest, "kg m2", ".6g"),
+                hint="it is the polar moment about the centre of mass: was it taken about a foot, or in other units?",
+            )  # fmt: skip
         xx = homogeneous.xx * (x - left) * (right - x) / ((homogeneous.x - left) * (right - homogeneous.x))
         yy = homogeneous.yy * (y - low) * (high - y) / ((homogeneous.y - low) * (high - homogeneous.y))
         wide = polar * xx / (xx + yy)

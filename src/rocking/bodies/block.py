@@ -12,6 +12,7 @@ from rocking.bodies.body import DEFAULT_DENSITY, GROUND_TOLERANCE, Body, Interva
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.messages import Amount, Range
 
 if TYPE_CHECKING:
     from rocking.bodies.section import Section
@@ -114,9 +115,11 @@ class Block(Body):
         slack = GROUND_TOLERANCE * max(self.width, self.height)
         if not -slack <= left < right <= self.width + slack:
             raise GeometryError(
-                f"feet must be a left and a right foot on the base, x in [0, {self.width:.9g}] m from the lower left "
-                f"corner, got {left:.9g} and {right:.9g} m"
-            )
+                "{parameter} must be a left and a right foot on the base, x {allowed} from the lower left corner, got "
+                "{left} and {right}",
+                parameter="feet", value=feet, allowed=Range(0.0, self.width, "m"),
+                left=Amount(left, "", ".9g"), right=Amount(right, "m", ".9g"),
+            )  # fmt: skip
         return max(left, 0.0), min(right, self.width)
 
     def __repr__(self) -> str:

@@ -12,6 +12,7 @@ from rocking.bodies._known import Known
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FEET, Assumed, FloatArray, Foot
 from rocking.errors import AsymmetricBodyError, GeometryError, InvalidValueError
+from rocking.messages import Amount
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,9 +317,10 @@ class Body(ABC):
             x = self.origin_x + moments.x
             a, b = self.feet
             raise GeometryError(
-                f"the centre of mass (x = {x:.6g} m) must lie between the feet ({a:.6g} and {b:.6g} m); "
-                "a body like this falls over by itself"
-            )
+                "the centre of mass (x = {x}) must lie between the feet ({left} and {right})",
+                parameter="centre", value=x, hint="a body like this falls over by itself",
+                x=Amount(x, "m", ".6g"), left=Amount(a, "", ".6g"), right=Amount(b, "m", ".6g"),
+            )  # fmt: skip
         plausibility.warn(self.doubts)
 
 

@@ -12,7 +12,8 @@ from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.checks import LARGEST, SMALLEST
 from rocking.conventions import FloatArray
-from rocking.errors import BodyFileError, GeometryError, InvalidValueError
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError, located
+from rocking.messages import Amount, Index, Message
 
 # Neighbouring regions share edges that rounding may cross: overlaps below this share of the smaller area pass.
 OVERLAP_TOLERANCE = 1e-9
@@ -44,21 +45,23 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
 
     # local coordinates: far from the origin GEOS would work on what rounding leaves over
     origin = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-    for label, points in [(f"{name}: outline", outline)] + [
-        (f"{name}: hole {i}", hole) for i, hole in enumerate(holes)
-    ]:
-        polygon = shapely.Polygon(points - origin)
-        if not polygon.is_valid:
-            raise GeometryError(f"{label} {_reason(shapely.is_valid_reason(polygon), origin)}")
-        box = np.ptp(points, axis=0)
-        if box.max() < SMALLEST:
-            raise GeometryError(f"{label} is smaller than {SMALLEST:g} m; wrong unit?")
-        if polygon.area <= 1e-14 * float(box.max()) ** 2:
-            raise GeometryError(f"{label} encloses no area; are all its points on one line?")
-    if holes:
-        whole = shapely.Polygon(outline - origin, [hole - origin for hole in holes])
-        if not whole.is_valid:
-            raise GeometryError(f"{name}: {_hole_reason(shapely.is_valid_reason(whole), origin)}")
+    rings: list[tuple[str | Message, FloatArray]] = [("outline", outline)]
+    rings += [(Message("hole {hole}", {"hole": Index(i)}), hole) for i, hole in enumerate(holes)]
+    with located(name):
+        for ring, points in rings:
+            polygon = shapely.Polygon(points - origin)
+            if not polygon.is_valid:
+                raise _crossing(shapely.is_valid_reason(polygon), origin, ring)
+            box = np.ptp(points, axis=0)
+            if box.max() < SMALLEST:
+                least = Amount(SMALLEST, "m")
+                raise GeometryError("{ring} is smaller than {least}", ring=ring, least=least, hint="wrong unit?")
+            if polygon.area <= 1e-14 * float(box.max()) ** 2:
+                raise GeometryError("{ring} encloses no area", ring=ring, hint="are all its points on one line?")
+        if holes:
+            whole = shapely.Polygon(outline - origin, [hole - origin for hole in holes])
+            if not whole.is_valid:
+                raise _holes_that_cross(shapely.is_valid_reason(whole), origin)
 
 
 def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) -> None:
@@ -75,34 +78,43 @@ def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) 
         shared = shapely.intersection(shapes[i], shapes[j]).area
         if shared > OVERLAP_TOLERANCE * min(shapes[i].area, shapes[j].area):
             raise GeometryError(
-                f"regions {i} and {j} overlap over {shared:.6g} m2; cut a hole in one of them where the other lies"
-            )
+                "regions {first} and {second} overlap over {area}",
+                hint="cut a hole in one of them where the other lies",
+                first=Index(i), second=Index(j), area=Amount(shared, "m2", ".6g"),
+            )  # fmt: skip
 
 
-def _reason(words: str, origin: FloatArray) -> str:
-    kind, place = _split(words, origin)
+def _crossing(words: str, origin: FloatArray, ring: str | Message) -> GeometryError:
+    """Return the error of a ring that is not simple, in which GEOS sees a fault at a point."""
+    kind, facts = _split(words, origin)
     if "Self-intersection" in kind:
-        return f"crosses or touches itself{place}; are two points swapped?"
-    return f"is not a simple ring: {kind.lower()}{place}"
+        return GeometryError(
+            "{ring} crosses or touches itself" + _NEAR, ring=ring, **facts, hint="are two points swapped?"
+        )
+    return GeometryError("{ring} is not a simple ring: {kind}" + _NEAR, ring=ring, kind=kind.lower(), **facts)
 
 
-def _hole_reason(words: str, origin: FloatArray) -> str:
-    kind, place = _split(words, origin)
+def _holes_that_cross(words: str, origin: FloatArray) -> GeometryError:
+    kind, facts = _split(words, origin)
     if "outside" in kind:
-        return f"a hole lies outside the outline{place}; are hole and outline swapped?"
+        hint = "are hole and outline swapped?"
+        return GeometryError("a hole lies outside the outline" + _NEAR, **facts, hint=hint)
     if "nested" in kind.lower() or "Duplicate" in kind:
-        return f"one hole lies inside another{place}"
+        return GeometryError("one hole lies inside another" + _NEAR, **facts)
     if "disconnected" in kind:
-        return f"the holes cut the region in two{place}; give each piece as a region of its own"
-    return f"a hole crosses the outline or another hole{place}"
+        hint = "give each piece as a region of its own"
+        return GeometryError("the holes cut the region in two" + _NEAR, **facts, hint=hint)
+    return GeometryError("a hole crosses the outline or another hole" + _NEAR, **facts)
 
 
-def _split(words: str, origin: FloatArray) -> tuple[str, str]:
-    match = re.match(r"(.*?)\[(\S+) (\S+)\]", words)
-    if not match:
-        return words, ""
-    x, y = float(match[2]) + origin[0], float(match[3]) + origin[1]
-    return match[1], f" near x = {x:.9g} m, y = {y:.9g} m"
+_NEAR = " near x = {x}, y = {y}"
+
+
+def _split(words: str, origin: FloatArray) -> tuple[str, dict[str, Amount]]:
+    """Return the fault that GEOS sees, and where, of words such as "Self-intersection[1 2]"."""
+    kind, x, y = re.fullmatch(r"(.*?)\[(\S+) (\S+)\]", words).groups()  # type: ignore[union-attr]
+    places = float(x) + float(origin[0]), float(y) + float(origin[1])
+    return kind, {axis: Amount(place, "m", ".9g") for axis, place in zip("xy", places, strict=True)}
 
 
 Nested = tuple[FloatArray, list[FloatArray]]

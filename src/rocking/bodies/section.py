@@ -15,6 +15,7 @@ from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region, check_disjoint
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.messages import Amount, Message, Option, Range
 
 
 class Section(Body):
@@ -91,9 +92,10 @@ class Section(Body):
         if abs(float(low[1]) - self._ground) > GROUND_TOLERANCE * self._size:
             verb, lowest = "floats above" if low[1] > self._ground else "reaches below", float(low[1])
             raise GeometryError(
-                f"the body {verb} the ground: its lowest point is y = {lowest:.9g} m, the ground {self._ground:.9g} m; "
-                f"pass ground={lowest:.9g} or move the outline"
-            )
+                f"the body {verb} the ground: its lowest point is y = {{y}}, the ground {{ground}}",
+                hint=Message("pass {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
+                y=Amount(lowest, "m", ".9g"), ground=Amount(self._ground, "m", ".9g"),
+            )  # fmt: skip
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         check_disjoint([(region.outline, region.holes) for region in self.regions])
         self._local_feet = self._placed(feet)
@@ -336,14 +338,19 @@ class Section(Body):
         left, right = feet_of(feet)
         left, right = left - origin, right - origin
         if not left < right:
-            raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
+            raise GeometryError(
+                "the left foot must lie left of the right one, got {left} and {right}", parameter="feet", value=feet,
+                left=Amount(feet[0]), right=Amount(feet[1], "m"),
+            )  # fmt: skip
         slack += 4.0 * math.ulp(abs(origin))
         for name, x in (("left", left), ("right", right)):
             if not base[0] - slack <= x <= base[1] + slack:
                 a, b = base[0] + origin, base[1] + origin
                 raise GeometryError(
-                    f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + origin:.9g}"
-                )
+                    f"the {name} foot must lie on the base, x {{allowed}}, got {{x}}",
+                    parameter="feet", value=x + origin,
+                    allowed=Range(a, b, "m"), x=Amount(x + origin, "", ".9g"), y=Amount(self._ground, "m", ".9g"),
+                )  # fmt: skip
         return max(left, base[0]), min(right, base[1])
 
 

@@ -136,12 +136,13 @@ def guarded(
             raise CampaignStorageError(f"{folder}: the ledger: {error}; {safe()}; {_ADVICE}") from error
         if code in _TAKEN:
             raise CampaignBusyError(f"{folder}: another process holds the ledger ({error}); try again later") from error
-        raise CampaignDamagedError(ledger_damaged(folder, str(error))) from error
+        raise ledger_damaged(folder, str(error)) from error
 
 
-def ledger_damaged(folder: Path, why: str) -> str:
-    """Return what is said of a damaged ledger."""
-    return f"{folder}: ledger.sqlite is damaged ({why}); run the campaign again: its shards make it anew"
+def ledger_damaged(folder: Path, why: str) -> CampaignDamagedError:
+    """Return the error of a damaged ledger."""
+    hint = "run the campaign again: its shards make it anew"
+    return CampaignDamagedError(f"ledger.sqlite is damaged ({why})", hint=hint).at(str(folder))
 
 
 _ADVICE = "make room or allow writing, then run the campaign again: it goes on where it stopped"

@@ -117,7 +117,7 @@ class Ledger:
         for *values, checked in self._database.execute(query):
             record = LedgerEntry(*values)
             if _sum(record) != checked:
-                raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
+                raise ledger_damaged(self._folder, f"row {record.number!r:.20} has changed")
             yield record
 
     def check(self, plan: Plan) -> None:
@@ -126,19 +126,19 @@ class Ledger:
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if state != "ok" or version != FORMAT:
             why = f"it is of version {version} of these files, not {FORMAT}" if state == "ok" else str(state)
-            raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
+            raise ledger_damaged(self._folder, " ".join(why.split())[:120])
         whole = set()
         for record in self.records():
             whole.add(record.number)
             if record.number >= plan.chunks or plan.chunk(record.number)[:4] != record[:4]:
                 why = f"its chunk {record.number} is not of this campaign"
-                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+                raise ledger_damaged(self._folder, why)
         end = 0
         for record in self.pieces():
             mine = record.number < plan.chunks and record.number not in whole
             if not mine or plan.chunk(record.number).piece(*record[1:3])[:4] != record[:4] or record.first < end:
                 why = f"its histories {record.first} to {record.last - 1} are not of this campaign, or there twice"
-                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+                raise ledger_damaged(self._folder, why)
             end = record.last
 
     def finished(self) -> tuple[int, int]:

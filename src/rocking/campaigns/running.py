@@ -134,7 +134,7 @@ def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:
     except CampaignDamagedError as error:
         there = sorted(path for path in folder.glob(f"{NAME}*") if ".damaged-" not in path.name)
         kept = [disk.set_aside(path).name for path in there]
-        return [f"{str(error).split('; run ')[0]}; kept as {kept[0]}, and made anew from the shards"]
+        return [f"{error.cause}; kept as {kept[0]}, and made anew from the shards"]
 
 
 def now() -> str:
@@ -337,7 +337,8 @@ class _CampaignRun:
             try:
                 arrays = shard.unpack(path.read_bytes(), each)
             except (FileNotFoundError, CampaignDamagedError) as error:
-                raise CampaignDamagedError(f"{path}: {error}; run the campaign again: it is computed anew") from error
+                hint = "run the campaign again: it is computed anew"
+                raise CampaignDamagedError(str(error), hint=hint).at(str(path)) from error
             for name, values in arrays.items():
                 results[name][each.first - chunk.first : each.last - chunk.first] = values
         records = [record for record in self.ledger.pieces() if record.number == number]

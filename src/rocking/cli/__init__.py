@@ -1,8 +1,8 @@
 """The command line: what `rocking --help` lists."""
 
 import gc
+import json
 import os
-import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -18,10 +18,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     from typer import BadParameter
 
     from rocking.cli.application import application
+    from rocking.cli.spelling import no_command, spelled
     from rocking.errors import RockingError, SlowEngineWarning
 
     click_exception: Any = BadParameter.__mro__[2]  # versions of typer differ in where they keep click
     arguments = sys.argv[1:] if arguments is None else list(arguments)
+    no_command()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SlowEngineWarning)
@@ -33,10 +35,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
             # without arguments the help is the answer
             code = application(arguments)(args=arguments or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
-        print(f"rocking: {error}", file=sys.stderr)
+        told = spelled(error)
+        as_data = {"error": {**error.data(), "message": told}} if "--json" in arguments else None
+        print(json.dumps(as_data) if as_data else f"rocking: {told}", file=sys.stderr)
         sys.exit(2)
     except click_exception as error:
-        print(f"rocking: {_refusal(error, arguments)}; see rocking --help", file=sys.stderr)
+        print(f"rocking: {_refusal(error)}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
         print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
@@ -54,16 +58,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code or 0)
 
 
-def _refusal(error: Exception, arguments: list[str]) -> str:
+def _refusal(error: Any) -> str:
     """Return why the words make no sense, with a key for an option that does not exist, or a comma for a point."""
-    from rocking.checks import number_hint  # numpy with it, which help does not need
+    from pydantic import ValidationError  # and numpy below, which help does not need
+
+    from rocking.bodies.formats.words import from_pydantic
     from rocking.cli.options import key_of
 
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     if hasattr(error, "possibilities") and (key := key_of(str(getattr(error, "option_name", "")))):
         return f"{message.rstrip('.')}; it is a key: {key}"
-    hints = [number_hint(word) for word in arguments if not word.partition("=")[2].strip("+-,0123456789")]
-    return f"{message}{next(filter(None, hints), '') if re.search('valid (number|float)', message) else ''}"
+    if isinstance(error.__cause__, ValidationError) and getattr(error, "param", None) is not None:
+        problems = error.__cause__.errors(include_url=False)
+        return str(from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems]))
+    return message
 
 
 class _Notes:

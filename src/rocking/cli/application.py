@@ -6,6 +6,7 @@ from importlib import import_module
 import typer
 
 from rocking.cli.completion import words_on_the_line
+from rocking.cli.spelling import Command
 from rocking.version import SOFTWARE
 
 _MODULES = {"models": "catalogues", "formats": "catalogues", "assess": "predict"}
@@ -69,7 +70,7 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     for name, summary in COMMANDS.items():
         if arguments is None or name == named:
             command = getattr(import_module(f"rocking.cli.{_MODULES.get(name, name)}"), name)
-            app.command(name, help=summary)(command)
+            app.command(name, cls=Command, help=summary)(command)
         elif named not in COMMANDS:
             app.command(name, short_help=summary)(_nothing)
     if named not in COMMANDS:
@@ -77,6 +78,8 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
         from rocking.cli.evidence import evidence
 
         for group in (campaign, evidence):
+            for one in group.registered_commands:
+                one.cls = Command
             app.add_typer(group, short_help=group.info.help)
     return app
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.bodies.formats import FORMATS, describes_solid
 from rocking.cli.numbers import units_of
+from rocking.cli.spelling import typed
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
 from rocking.motions.pulses import catalogue
@@ -22,60 +23,10 @@ if TYPE_CHECKING:
 
 Tables = dict[str, Any]
 
-_AS_TYPED = (
-    (re.compile(r'\bunits="(\w+)"'), r"--units \1"),
-    (re.compile(r"\bunits="), "--units"),
-    (re.compile(r"\b(format|time_step|skip)="), r"--set motion.\1="),
-    (re.compile(r'\b(repair|surface|inner_parts)="(\w+)"'), r"--set body.\1=\2"),
-    (re.compile(r"\b(base_tolerance|up|wall)="), r"--set body.\1="),
-    (re.compile(r"\b(up|repair|surface|wall|inner_parts|base_tolerance) must be"), r"body.\1 must be"),
-    (re.compile(r"\b(kind|column|unit|time_column|time_unit|region|frame_rate)="), r"--set measurement.\1="),
-    (re.compile(r"\b(give|takes no) height= of the sensor"), r"\1 --set measurement.height= of the sensor"),
-    (re.compile(r"\btrend=True"), "--set identify.trend=true"),
-    (re.compile(r'\bcrossing="([\w-]+)"'), r"--crossing \1"),
-    (re.compile(r"\bmodel_of\(\.\.\., states=\) leaves"), "--states leaves"),
-    (re.compile(r"\bleave one out with states=$"), "leave one out with --states"),
-    (re.compile(r"^threads must be"), "--threads must be"),
-    (re.compile(r"(?<!--set )\b(response|motion)\.(friction|free|bounce|scale)\b"), r"--\2"),
-    (re.compile(r"(?<!--set )\brestitution\.model\b"), "--restitution"),
-    (re.compile(r"\bblock\.(width|height|depth|density|mass|centre)\b"), r"--\1"),
-)
-_PLACE = re.compile(
-    r"(body|motion|[xyz]|motions(\[\d+\])?|records(: .*)?|restitution|settings|map|map\.[xy]|fragility)"
-)
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
 _OF_EVERY_FILE = {"format", "units", "time_step", "skip", "process"}
 NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
-
-
-@contextmanager
-def as_typed() -> Iterator[None]:
-    """Say what is refused as the command line calls things, without where it would stand in a file."""
-    try:
-        yield
-    except RockingError as error:
-        inner: RockingError = error
-        while isinstance(cause := inner.__cause__, RockingError) and _is_located(inner, cause):
-            inner = cause
-        raise type(inner)(as_options(str(inner))) from error
-
-
-def as_options(text: str) -> str:
-    """Return what is refused as the command line calls things.
-
-    >>> as_options('say units="g"')
-    'say --units g'
-    """
-    for pattern, option in _AS_TYPED:
-        text = pattern.sub(option, text)
-    return text
-
-
-def _is_located(error: RockingError, cause: RockingError) -> bool:
-    """Return whether an error is another one with its place in a document before it."""
-    place, text = str(error), f": {cause}"
-    return place.endswith(text) and _PLACE.fullmatch(place.removesuffix(text)) is not None
 
 
 def is_body(text: str) -> bool:
@@ -118,7 +69,9 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
             raise InvalidValueError(f"--set must be table.key=value, such as settings.gravity=9.81, got {text!r:.60}")
         if table not in known:
             near = checks.nearest(table, list(known))
-            raise InvalidValueError(f"--set: no table named {table!r:.60} here; there are {', '.join(known)}{near}")
+            raise InvalidValueError(
+                f"--set: no table named {table!r:.60} here; there are {', '.join(known)}", hint=near
+            )
         if key in tables.setdefault(table, {}):
             raise InvalidValueError(f"--set {table}.{key} is given twice")
         try:
@@ -142,17 +95,6 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
             raise InvalidValueError(f"--set {table}.{next(iter(keys))}: {why}; change the file")
         changed[name] = {**stated, **keys}
     return changed
-
-
-def typed(context: "typer.Context", *names: str) -> list[str]:
-    """Return which of some parameters were typed, as they are spelt."""
-    spelt = {"record": "second word", "motions": "second word", "sets": "--set"}
-    sources = {name: context.get_parameter_source(name) for name in names}
-    return [
-        spelt.get(name, f"--{name.replace('_', '-')}")
-        for name, source in sources.items()
-        if source is not None and source.name == "COMMANDLINE"
-    ]
 
 
 def document_file(
@@ -364,20 +306,18 @@ def _along(motions: Sequence[str]) -> dict[str, str]:
 def hinted(body: str | None, word: str | None, upright: str = "") -> Iterator[None]:
     """Say what to type, or what a file may be, where a file was refused; upright: its vertical component."""
     try:
-        with as_typed():
-            yield
+        yield
     except BodyFileError as error:
-        if body is None or is_body(body) or not is_file(body):
-            raise
-        raise BodyFileError(f"{error}; perhaps a record: see rocking motion {body}") from error
+        if body is not None and not is_body(body) and is_file(body):
+            error.add_hint(f"perhaps a record: see rocking motion {body}")
+        raise
     except RecordError as error:
-        if word is None or not is_file(word) or not is_body(word):
-            raise
-        raise RecordError(f"{error}; perhaps a body: see rocking cor {word}") from error
+        if word is not None and is_file(word) and is_body(word):
+            error.add_hint(f"perhaps a body: see rocking cor {word}")
+        raise
     except InvalidValueError as error:
-        match = re.search(r"the file has the components (.*); say (component|vertical)= one of these", str(error))
-        if match is None or word is None:
-            raise
-        file = word.rpartition("#")[0] or word
-        names = " or ".join(shlex.quote(f"{file}#{name}") for name in match[1].split(", ") if name != upright)
-        raise InvalidValueError(f"the file has the components {match[1]}; say which one: {names}") from error
+        if word is not None and (components := error.facts.get("components")):
+            file = word.rpartition("#")[0] or word
+            names = " or ".join(shlex.quote(f"{file}#{name}") for name in components if name != upright)
+            error.hint = f"say which one: {names}"
+        raise

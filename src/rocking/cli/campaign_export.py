@@ -10,7 +10,6 @@ from rocking.campaigns import CampaignStorageError, Progress, disk, jobs
 from rocking.campaigns.jobs import JobFolder, assessment
 from rocking.campaigns.jobs.exporting import ENDINGS, checked, exports_of, write_provenance
 from rocking.campaigns.jobs.rounds import finished_rounds
-from rocking.cli.arguments import as_options
 from rocking.cli.campaign_output import bar
 from rocking.cli.exports import PICTURES
 from rocking.cli.page import print_json
@@ -113,10 +112,7 @@ def _file(folder: JobFolder, to: Path, what: str, restitution: str | None, cross
             done += count
             tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
 
-        try:
-            jobs.export(folder, to, what, restitution=restitution, crossing=crossing, progress=step)
-        except InvalidValueError as error:
-            raise InvalidValueError(as_options(str(error))) from error
+        jobs.export(folder, to, what, restitution=restitution, crossing=crossing, progress=step)
 
 
 def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:

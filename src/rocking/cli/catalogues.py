@@ -34,7 +34,7 @@ def models(
     name = checks.spelling(name, known)
     if name is not None and name not in known:
         near = checks.nearest(name, known)
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(known)}{near}")
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(known)}", hint=near)
     deliver(_Models({key: kind for key, kind in known.items() if name in {None, key}}), as_json=as_json)
 
 

@@ -86,7 +86,7 @@ def codes(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking codes`."""
-    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES
     from rocking.motions.intensity import measure as measure_of
     from rocking.studies.code_methods import compare_code_methods
@@ -94,16 +94,15 @@ def codes(
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, *TABLES)
     wanted = measure_of(measure)
-    with as_typed():
-        problem = _problem(arguments)
-        if levels is None and not arguments.body_and_motions()[1]:
-            levels = LEVEL if wanted.needs_body else None
-        at = None if levels is None else row("--levels", levels, "1" if wanted.unit == "-" else wanted.unit)[0]
-        with bar("histories", quiet=as_json) as progress:
-            found = compare_code_methods(
-                problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
-                threads=threads, progress=progress, **problem.stated,
-            )  # fmt: skip
+    problem = _problem(arguments)
+    if levels is None and not arguments.body_and_motions()[1]:
+        levels = LEVEL if wanted.needs_body else None
+    at = None if levels is None else row("--levels", levels, "1" if wanted.unit == "-" else wanted.unit)[0]
+    with bar("histories", quiet=as_json) as progress:
+        found = compare_code_methods(
+            problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
+            threads=threads, progress=progress, **problem.stated,
+        )  # fmt: skip
     found = replace(found, bodies=_names(problem, arguments.length or "m"))
     deliver(CodesAnswer(found), exports, as_json=as_json)
 

@@ -16,11 +16,11 @@ from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
 from rocking.cli.numbers import in_unit, recommendation_values, show_recommendation, side_line
 from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.spec.bodies import body_moved
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
-from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
 if TYPE_CHECKING:
     from rocking.reports.body_facts import ImpactAnswer
@@ -120,7 +120,7 @@ def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> 
     word, sets = arguments.options["body"], arguments.sets
     beside = ("onto", "restitution", "identities", "least_barrier")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
-        with located(word):
+        with located(word, "file"):
             made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)
         note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
         print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)

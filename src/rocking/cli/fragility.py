@@ -107,8 +107,9 @@ def fragility(
 ) -> None:  # fmt: skip
     """Run `rocking fragility`."""
     from rocking import checks
-    from rocking.cli.arguments import Arguments, as_typed, document_file, typed
+    from rocking.cli.arguments import Arguments, document_file
     from rocking.cli.fragility_answer import FragilityAnswer
+    from rocking.cli.spelling import typed
     from rocking.cli.study import TABLES, problem_in
     from rocking.studies.fragility.curves import Crossing
 
@@ -125,7 +126,7 @@ def fragility(
         own, written = _table(arguments)
         problem = _problem(arguments, own)
     _check(problem, exports)
-    with bar("histories", _histories(problem), quiet=as_json) as progress, as_typed():
+    with bar("histories", _histories(problem), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
     answer.name, answer.crossing = name, crossing
     # the numbers are shown even if a file cannot be made of them
@@ -195,7 +196,6 @@ def _states(text: str) -> list[float | str]:
 
 
 def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
-    from rocking.cli.arguments import as_typed
     from rocking.cli.study import motions_of, of_body
 
     kind, restitution = arguments.options["analysis"], arguments.options["restitution"] or ["ked"]
@@ -203,11 +203,10 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     count = motions[0].get("count")
     if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
         raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {count}; rocking campaign takes more")
-    with as_typed():
-        if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
-            bare = {key: own[key] for key in ("measure", "states")}
-            own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
-        return of_body(arguments, kind, own, restitution, motions)
+    if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
+        bare = {key: own[key] for key in ("measure", "states")}
+        own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
+    return of_body(arguments, kind, own, restitution, motions)
 
 
 def _usual_levels(problem: "StudyProblem") -> list[float]:

@@ -83,11 +83,9 @@ class FragilityAnswer:
 
     def check_crossing(self) -> None:
         """Refuse curves that cross, of which FEMA P-58 and OpenQuake can make nothing."""
-        from rocking.cli.arguments import as_typed
         from rocking.studies.fragility.curves import nested
 
-        with as_typed():
-            nested(self.curves)
+        nested(self.curves)
 
     def counted(self) -> "Table":
         """Return what was counted at each level, and the fitted probability beside it, empty without a curve."""

@@ -12,7 +12,8 @@ from rocking.cli import options
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import FEET, NORMAL_95
-from rocking.errors import InvalidValueError, MeasurementError
+from rocking.errors import InvalidValueError, MeasurementError, located
+from rocking.messages import Message, WrittenFile
 
 if TYPE_CHECKING:
     from rocking.identification import Identification, ModelComparison
@@ -58,25 +59,24 @@ def identify(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking identify`."""
-    from rocking.cli.arguments import as_options, as_typed
     from rocking.spec.identification import IdentificationProblem
 
     exports = Exports.of(out, EXPORTS)
-    with as_typed():
-        problem = IdentificationProblem.of(*_question(context, [each for each in (body, record) if each is not None]))
-        exports.spare(*(problem.trials if problem.path.is_dir() else [problem.path]), *(motion or ()))
-        if problem.path.is_dir():
-            table = next((path for name, path in exports.files if name == "csv"), None)
-            with bar("trials", len(problem.trials), quiet=as_json) as progress:
-                trials = problem.answers(table, workers, progress)
-            deliver(TrialsAnswer(trials), exports, as_json=as_json)
-            return
-        with bar("measurement", quiet=as_json):
-            found = problem.answer()
+    problem = IdentificationProblem.of(*_question(context, [each for each in (body, record) if each is not None]))
+    exports.spare(*(problem.trials if problem.path.is_dir() else [problem.path]), *(motion or ()))
+    if problem.path.is_dir():
+        table = next((path for name, path in exports.files if name == "csv"), None)
+        with bar("trials", len(problem.trials), quiet=as_json) as progress:
+            trials = problem.answers(table, workers, progress)
+        deliver(TrialsAnswer(trials), exports, as_json=as_json)
+        return
+    with bar("measurement", quiet=as_json):
+        found = problem.answer()
     answer = IdentifiedAnswer(found, Path(body or "").stem if record else "")
     if found.refused:
         written = exports.write(answer)
-        raise MeasurementError(f"{found.source}: {as_options(found.verdict)}{f' See {written[0]}.' if written else ''}")
+        see = Message(" See {file}.", {"file": WrittenFile(str(written[0]))}) if written else ""
+        raise MeasurementError("{refusal}{see}", refusal=found.refusal, see=see).at(found.source)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -85,7 +85,7 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
     from rocking.cli.arguments import Arguments, document_file, is_body, with_sets
     from rocking.spec.document import IdentificationDocument
     from rocking.spec.identification import bodies_in
-    from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+    from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
     arguments = Arguments(context, *TABLES)
     bodies, measured = [w for w in words if is_body(w)], [w for w in words if not is_body(w)]
@@ -101,7 +101,7 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
         if measured:
             at = {"file": str(Path(measured[0]).absolute())}
             tables["measurement"] = {**tables.get("measurement", {}), **at}
-        with located(str(file)):
+        with located(str(file), "file"):
             return checked(IdentificationDocument, tables), InputFiles(file.parent)
     if not measured:
         raise InvalidValueError("what was measured? Give a sound, a table of times or rotations, or a folder of trials")
@@ -139,7 +139,6 @@ class IdentifiedAnswer:
         return self.found.plot()
 
     def show(self, page: Page) -> None:
-        from rocking.cli.arguments import as_options
         from rocking.reports._identification import impact_rows
 
         found = self.found
@@ -159,7 +158,7 @@ class IdentifiedAnswer:
                 f"Let go from {each.peak:g} of its slenderness angle, {each.impacts} impacts timed to "
                 f"{1e3 * each.noise:.2g} ms: r to +- {NORMAL_95 * each.deviation:.2g}."
             )
-        page.warn(map(as_options, found.doubts))
+        page.warn(found.doubts)
 
 
 def _facts(found: "Identification") -> list[tuple[str, str]]:
@@ -196,7 +195,6 @@ class TrialsAnswer:
         return trials_picture(self.found)
 
     def show(self, page: Page) -> None:
-        from rocking.cli.arguments import as_options
         from rocking.reports._identification import trial_rows
 
         found = self.found
@@ -215,4 +213,4 @@ class TrialsAnswer:
         if found.passed_over:
             page.line(found.passed_over_verdict)
         page.warn(found.doubts)
-        page.warn(f"{row['trial']}: {as_options(row['refused'])}" for row in found.rows if row["refused"])
+        page.warn(f"{row['trial']}: {row['refused']}" for row in found.rows if row["refused"])

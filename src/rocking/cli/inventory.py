@@ -124,7 +124,7 @@ def _write(assessment: "Assessment", targets: list[Path]) -> tuple[list[Path], l
 
 
 def _problem(context: typer.Context) -> "StudyProblem":
-    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.cli.arguments import Arguments
     from rocking.cli.study import family, in_lists, problem_of
     from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED
 
@@ -133,22 +133,21 @@ def _problem(context: typer.Context) -> "StudyProblem":
     levels = {name: options[name] for name in ("pga", "pgv")}
     if None not in levels.values():
         raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
-    with as_typed():
-        table = arguments.table(
-            "inventory",
-            {"objects": str(options["objects"]), "columns": options["columns"], **levels},
-            {"objects": str(options["objects"])},
-        )
-        synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
-        if synthetic is not None and not {"pga", "pgv"} & set(table):
-            raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
-        motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
-        if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
-            raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
-        tables: dict[str, Any] = {"inventory": table}
-        if options["restitution"] is not None:
-            tables["restitution"] = {"model": options["restitution"]}
-        return problem_of("inventory", arguments, in_lists(motions), **tables)
+    table = arguments.table(
+        "inventory",
+        {"objects": str(options["objects"]), "columns": options["columns"], **levels},
+        {"objects": str(options["objects"])},
+    )
+    synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
+    if synthetic is not None and not {"pga", "pgv"} & set(table):
+        raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
+    motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
+    if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
+        raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
+    tables: dict[str, Any] = {"inventory": table}
+    if options["restitution"] is not None:
+        tables["restitution"] = {"model": options["restitution"]}
+    return problem_of("inventory", arguments, in_lists(motions), **tables)
 
 
 @dataclass(frozen=True)

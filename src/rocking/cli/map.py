@@ -51,7 +51,7 @@ def map(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking map`."""
-    from rocking.cli.arguments import Arguments, as_typed, document_file
+    from rocking.cli.arguments import Arguments, document_file
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, DATASET)
@@ -64,7 +64,7 @@ def map(
         length = arguments.length
         table, written = _table(arguments, x, y, refine)
         problem = body_and_motion(arguments, "overturning-map", table, restitution or ["ked"])
-    with bar("histories", quiet=as_json) as progress, as_typed():
+    with bar("histories", quiet=as_json) as progress:
         arrays, compared = _computed(problem, progress, threads, picture="picture" in exports.names)
     deliver(MapAnswer(problem, arrays, compared, written, length or "m"), exports, as_json=as_json)
 
@@ -127,7 +127,9 @@ def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
     name = checks.spelling(name.strip(), known)
     if name not in known:
         near = checks.nearest(name, known)
-        raise InvalidValueError(f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}{near}")
+        raise InvalidValueError(
+            f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}", hint=near
+        )
     if not equals or not values.strip():
         raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
     table, written = values_table(name, values, known[name].unit)

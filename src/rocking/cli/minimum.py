@@ -64,7 +64,7 @@ def minimum(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking minimum`."""
-    from rocking.cli.arguments import Arguments, as_typed, document_file
+    from rocking.cli.arguments import Arguments, document_file
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, EXPORTS)
@@ -77,7 +77,7 @@ def minimum(
         length, acceleration = arguments.length, arguments.acceleration
         table = arguments.table("minimum", {**_range(lowest, highest), "points": points, "levels": levels})
         problem = body_and_motion(arguments, "minimum-acceleration", table, [restitution])
-    with bar("histories", quiet=as_json) as progress, as_typed():
+    with bar("histories", quiet=as_json) as progress:
         answer = MinimumAnswer(problem, problem.answer(progress, threads), length or "m", acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
 

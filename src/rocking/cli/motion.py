@@ -107,7 +107,7 @@ def parsed_periods(text: str) -> list[float]:
         numbers = [float(part) for part in texts]
     except ValueError as error:
         raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {text[:60]!r}") from error
-    hint = checks.number_hint(text).removeprefix("; ")
+    hint = checks.number_hint(text)
     return [checks.positive("periods", number, "s", hint) for number in numbers]
 
 

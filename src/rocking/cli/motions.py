@@ -13,7 +13,7 @@ from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -32,7 +32,9 @@ def _csv(answer: "SetAnswer", path: Path) -> None:
 def _excel(answer: "SetAnswer", path: Path) -> None:
     from rocking.tables import Table, to_excel
 
-    left_out = Table.of_rows("file", ("file", "why it was left out"), answer.left_out)
+    left_out = Table.of_rows(
+        "file", ("file", "why it was left out"), [(name, str(why)) for name, why in answer.left_out]
+    )
     to_excel([("records", answer.flatfile.flat()), ("left out", left_out)], path)
 
 
@@ -72,7 +74,7 @@ def motions(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking motions`."""
-    from rocking.cli.arguments import Arguments, as_typed, document_file, is_file, with_sets
+    from rocking.cli.arguments import Arguments, document_file, is_file, with_sets
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors
     from rocking.motions.flatfiles import PERIODS, flatfile
@@ -90,17 +92,16 @@ def motions(
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     wanted = PERIODS if periods is None else parsed_periods(periods)
     workers = min(processors(), _MOST_PROCESSES) if threads is None else checks.whole("--threads", threads, 1, 256)
-    with as_typed():
-        if file is None:
-            values = {"records": list(record), "units": arguments.acceleration}
-            table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
-        else:
-            tables = with_sets(tables_in(file) or {}, arguments.sets, lists=True)
-            (table,) = checked(RecordSetDocument, tables).motions
-        with bar("files", quiet=as_json) as progress:
-            found, chosen = record_set(table, files, workers, progress)
-        with bar("records", len(found), quiet=as_json) as progress:
-            measured = flatfile(found, wanted, damping, workers=workers, progress=progress)
+    if file is None:
+        values = {"records": list(record), "units": arguments.acceleration}
+        table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
+    else:
+        tables = with_sets(tables_in(file) or {}, arguments.sets, lists=True)
+        (table,) = checked(RecordSetDocument, tables).motions
+    with bar("files", quiet=as_json) as progress:
+        found, chosen = record_set(table, files, workers, progress)
+    with bar("records", len(found), quiet=as_json) as progress:
+        measured = flatfile(found, wanted, damping, workers=workers, progress=progress)
     left_out = (*found.left_out, *measured.left_out)
     deliver(SetAnswer(measured, chosen, left_out, arguments.acceleration or "m/s2"), exports, as_json=as_json)
 
@@ -111,7 +112,7 @@ class SetAnswer:
 
     flatfile: "Flatfile"
     chosen: "Selection | None"
-    left_out: tuple[tuple[str, str], ...]
+    left_out: tuple[tuple[str, str | RockingError], ...]
     acceleration: str
 
     def draw(self) -> Any:
@@ -133,7 +134,7 @@ class SetAnswer:
                 "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,
                 "sentence": chosen.sentence,
             }  # fmt: skip
-        left_out = [{"file": name, "why": why} for name, why in self.left_out]
+        left_out = [{"file": name, **_reason(why)} for name, why in self.left_out]
         measured = {name: Quantity(name, one.unit, one.meaning) for name, one in table.columns.items() if one.unit}
         accelerations = ("spectra", "mean", "target_spectrum")
         measured |= {name: Quantity(name, "m/s2", "spectral pseudo-acceleration") for name in accelerations}
@@ -159,3 +160,8 @@ class SetAnswer:
         if self.chosen is not None:
             page.line(self.chosen.sentence)
         page.warn(f"left out: {name}: {why}" for name, why in self.left_out)
+
+
+def _reason(why: str | RockingError) -> dict[str, str]:
+    """Return why a file was left out, and what to do about it where that is known."""
+    return {"why": why} if isinstance(why, str) else {"why": why.cause, "hint": str(why.hint)}

@@ -54,7 +54,9 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
     written = [one for _, one in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
         why = checks.number_hint(",".join(texts))
-        raise InvalidValueError(f"{name} must have a unit at every number or at none, got {':'.join(texts)!r:.60}{why}")
+        raise InvalidValueError(
+            f"{name} must have a unit at every number or at none, got {':'.join(texts)!r:.60}", hint=why
+        )
     return [value for value, _ in pairs], written[0]
 
 

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from rocking.cli.spelling import spelled
+from rocking.messages import Message
+
 if TYPE_CHECKING:
     from rocking.answers import Answer, AnswerRows, Display
     from rocking.cli.exports import Exports
@@ -54,10 +57,10 @@ class Page:
         for label, value in lines:
             self.line(f"  {label[:1].upper() + label[1:]:<{width}}{value}")
 
-    def warn(self, sentences: Iterable[str]) -> None:
+    def warn(self, sentences: Iterable[str | Message]) -> None:
         """Write what a reader should not miss."""
         for sentence in sentences:
-            self.line(f"! {sentence}", style="yellow")
+            self.line(f"! {spelled(sentence)}", style="yellow")
 
     def table(
         self,

@@ -16,6 +16,7 @@ from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.study import source_lines
 from rocking.conventions import g, percent
+from rocking.errors import located
 from rocking.motions.summary import peak_names
 from rocking.prediction.likelihood import scale_words
 
@@ -52,7 +53,7 @@ def predict(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking predict`."""
-    from rocking.cli.arguments import as_typed, document_file
+    from rocking.cli.arguments import document_file
     from rocking.spec.document import PredictionDocument
     from rocking.spec.prediction import PredictionProblem
 
@@ -62,11 +63,10 @@ def predict(
     else:
         told = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
         document, inputs = typed(context, PredictionDocument, told)
-    with as_typed():
-        with bar("reading body and motions", quiet=as_json):
-            problem = PredictionProblem.of(document, inputs)
-        with bar("motions", len(problem.motions), quiet=as_json) as progress:
-            found = problem.answer(lambda done: progress(1), threads)
+    with bar("reading body and motions", quiet=as_json):
+        problem = PredictionProblem.of(document, inputs)
+    with bar("motions", len(problem.motions), quiet=as_json) as progress:
+        found = problem.answer(lambda done: progress(1), threads)
     deliver(PredictionAnswer(found, Path(body or "").stem), exports, as_json=as_json)
 
 
@@ -75,9 +75,9 @@ def in_file(
 ) -> "tuple[D, InputFiles]":
     """Return the document in a file, with what was set; kind: of its class, tables: those that may be set."""
     from rocking.cli.arguments import parsed_sets, with_sets
-    from rocking.spec.reading import InputFiles, checked, located, tables_in
+    from rocking.spec.reading import InputFiles, checked, tables_in
 
-    with located(str(file)):
+    with located(str(file), "file"):
         found = dict(tables_in(file) or {})
         lists = "motion" not in found
         document = checked(kind, with_sets(found, parsed_sets(sets, tables), lists=lists))
@@ -178,7 +178,7 @@ def assess(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking assess`."""
-    from rocking.cli.arguments import as_typed, document_file, is_body
+    from rocking.cli.arguments import document_file, is_body
     from rocking.spec.document import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
 
@@ -188,11 +188,10 @@ def assess(
     else:
         own = {"assess": {"restitutions": None if restitution is None else [*map(number_or_name, restitution)]}}
         document, inputs = typed(context, AssessmentDocument, {"friction": friction, "pga": pga}, own)
-    with as_typed():
-        with bar("reading body and motions", quiet=as_json):
-            problem = PredictionProblem.of(document, inputs)
-        with bar("histories", quiet=as_json) as progress:
-            found = problem.assessed(document.assess, inputs, progress, threads)
+    with bar("reading body and motions", quiet=as_json):
+        problem = PredictionProblem.of(document, inputs)
+    with bar("histories", quiet=as_json) as progress:
+        found = problem.assessed(document.assess, inputs, progress, threads)
     name = Path(body).stem if body and is_body(body) else ""
     deliver(AssessmentAnswer(found, document.assess, name), exports, as_json=as_json)
 

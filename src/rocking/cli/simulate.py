@@ -15,14 +15,14 @@ from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, numbers_in, parsed_sets, with_sets
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motions_of
 from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
-from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.response import problem_of, response_problem
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def simulate(
     in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
     display = Display(acceleration="g")
     if file := document_file(context, body, ("response",), has="has a table [body] and "):
-        with located(str(file)):
+        with located(str(file), "file"):
             tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
             problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent), in_space=in_space)
     else:

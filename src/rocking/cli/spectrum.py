@@ -42,7 +42,7 @@ def spectrum(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking spectrum`."""
-    from rocking.cli.arguments import NO_MOTION, Arguments, as_typed, document_file, hinted, is_body, is_file
+    from rocking.cli.arguments import NO_MOTION, Arguments, document_file, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 
     exports = Exports.of(out, DATASET)
@@ -68,7 +68,7 @@ def spectrum(
     total = len(problem.motions) * blocks.slenderness_angles.numbers().size * blocks.periods.numbers().size
     if total > _MOST:
         raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
-    with bar("histories", quiet=as_json) as progress, as_typed():
+    with bar("histories", quiet=as_json) as progress:
         answer = SpectrumAnswer(problem.answer(progress, threads), problem.settings)
     deliver(answer, exports, as_json=as_json)
 

@@ -11,10 +11,10 @@ from rocking.cli.numbers import in_unit, side_line
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.dynamics.space.body import SpatialBody
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
 from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
-from rocking.spec.reading import CommandFiles, InputFiles, checked, located, tables_in
+from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.study import StudyProblem
 
 TABLES = ("body", "motion", "restitution", "settings")
@@ -25,7 +25,7 @@ _OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of
 def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> StudyProblem:
     """Return what a file describes, with the keys that were set beside it."""
     kinds = [kind for kind, table in NEEDS.items() if table == own]
-    with located(str(file)):
+    with located(str(file), "file"):
         tables = dict(tables_in(file) or {})
         if len(kinds) == 1:
             tables.setdefault("campaign", {"name": own, "kind": kinds[0]})

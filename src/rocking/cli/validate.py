@@ -11,6 +11,7 @@ from rocking.cli import options
 from rocking.cli.exports import CSV, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
+from rocking.errors import located
 
 if TYPE_CHECKING:
     from rocking.spec.document import ValidationDocument
@@ -43,23 +44,21 @@ def validate(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking validate`."""
-    from rocking.cli.arguments import as_typed
     from rocking.spec.validation import ValidationProblem, files_of
 
     exports = Exports.of(out, EXPORTS)
     files = files_of(folder)
     document, inputs = _document(context, files[0])
-    with as_typed():
-        problem = ValidationProblem.of(document, files, inputs)
-        with bar("motions", len(problem.motions), quiet=as_json) as progress:
-            found = problem.answer(lambda done: progress(1), threads)
+    problem = ValidationProblem.of(document, files, inputs)
+    with bar("motions", len(problem.motions), quiet=as_json) as progress:
+        found = problem.answer(lambda done: progress(1), threads)
     deliver(ValidationAnswer(found), exports, as_json=as_json)
 
 
 def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, InputFiles]":
-    from rocking.cli.arguments import Arguments, as_typed
+    from rocking.cli.arguments import Arguments
     from rocking.spec.document import ValidationDocument
-    from rocking.spec.reading import CommandFiles, checked, located, tables_in
+    from rocking.spec.reading import CommandFiles, checked, tables_in
     from rocking.spec.validation import is_question
 
     arguments = Arguments(context, *TABLES)
@@ -75,7 +74,7 @@ def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, 
     stated: dict[str, Any] = {"body": {"file": body.name}}
     if is_question(body):
         stated = dict(tables_in(body) or {})
-    with located(body.name), as_typed():
+    with located(body.name, "file"):
         whole = {**stated, **{name: {**stated.get(name, {}), **keys} for name, keys in typed.items() if keys}}
         return checked(ValidationDocument, whole), CommandFiles(body.parent)
 
@@ -96,7 +95,6 @@ class ValidationAnswer:
         return reliability_picture(next(iter(self.found.found.values())))
 
     def show(self, page: Page) -> None:
-        from rocking.cli.arguments import as_options
 
         for each in self.found.found.values():
             page.line(each.verdict, style="bold")
@@ -118,7 +116,7 @@ class ValidationAnswer:
         if self.found.ignored:
             page.line(f"Columns that were not read: {', '.join(self.found.ignored)}")
         page.warn(self.found.repairs)
-        page.warn(f"{self.found.source}, line {each.line}: {as_options(each.reason)}" for each in self.found.refused)
+        page.warn(f"{self.found.source}, line {each.line}: {each.reason}" for each in self.found.refused)
 
 
 def interval(score: Any) -> str:

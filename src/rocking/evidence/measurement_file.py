@@ -13,14 +13,13 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
 
 from rocking import plausibility
 from rocking.bodies.block import Block
 from rocking.bodies.formats.schema import Positive, StrictTable
-from rocking.bodies.formats.words import sentence
+from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import NORMAL_95
-from rocking.errors import InvalidValueError, MeasurementError
+from rocking.errors import InvalidValueError, MeasurementError, located
 from rocking.evidence.measurements import DataSet, interface_of, joined
 
 _LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
@@ -110,24 +109,24 @@ class Measurement(StrictTable):
     def _whole(self) -> "Measurement":
         sizes, ends = (self.width is not None) + (self.height is not None), (self.low, self.high)
         if sizes != (2 if self.slenderness_ratio is None else 0):
-            raise _contradiction("give slenderness_ratio, or width and height")
+            raise InvalidValueError("give slenderness_ratio, or width and height")
         if (self.r is None) == (self.series is None):
-            raise _contradiction("give r or series, one of them")
+            raise InvalidValueError("give r or series, one of them")
         open_ = [self.uncertainty is not None, None not in ends, self.series is not None]
         if sum(open_) != 1 or (not open_[1] and ends != (None, None)):
-            raise _contradiction("say how far r is open: give uncertainty, or low and high, or a series alone")
+            raise InvalidValueError("say how far r is open: give uncertainty, or low and high, or a series alone")
         low, r, high = self.interval
         if not low <= r <= high or low == high:
-            raise _contradiction(f"r must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}")
+            raise InvalidValueError(f"r must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}")
         if r > 1.0:
-            raise _contradiction(f"r must be <= 1: a rectangle that gains energy was not measured, got {r:g}")
+            raise InvalidValueError(f"r must be <= 1: a rectangle that gains energy was not measured, got {r:g}")
         if not _RATIOS[0] <= self.ratio <= _RATIOS[1]:
-            raise _contradiction(
+            raise InvalidValueError(
                 f"h/b must be in {_RATIOS[0]:g} to {_RATIOS[1]:g}, got {self.ratio:g}; is it b/h, or is one length in "
                 "another unit?"
             )
         if not _DEVIATIONS[0] <= self.deviation <= _DEVIATIONS[1]:
-            raise _contradiction(
+            raise InvalidValueError(
                 f"r must be known to a standard deviation of {_DEVIATIONS[0]:g} to {_DEVIATIONS[1]:g}, got "
                 f"{self.deviation:.3g}; is it in percent, or that of something else?"
             )
@@ -218,7 +217,8 @@ def rows_in(path: Path) -> list[Measurement]:
         try:
             found.append(Measurement.model_validate(keys))
         except ValidationError as error:
-            raise MeasurementError(f"{path}, {place}: {sentence(error, None)}") from error
+            with located(f"{path}, {place}", "file"):
+                raise from_pydantic(error.errors(include_url=False), kind=MeasurementError) from error
         doubts += [f"{path.name}, {place}: {doubt}" for doubt in found[-1].doubts]
         row = found[-1].model_dump_json()
         if row in places:
@@ -319,7 +319,7 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
     try:
         return Measurement.model_validate({**keys, **known})
     except ValidationError as error:
-        raise InvalidValueError(sentence(error, None)) from error
+        raise from_pydantic(error.errors(include_url=False)) from error
 
 
 def write_measurements(rows: Sequence[Measurement], path: str | Path) -> Path:
@@ -357,7 +357,3 @@ def _field(value: Any) -> str:
     if isinstance(value, list):
         return " ".join(map(repr, value))
     return "" if value is None else value if isinstance(value, str) else repr(value)
-
-
-def _contradiction(words: str) -> PydanticCustomError:
-    return PydanticCustomError("contradiction", "{words}", {"words": words})

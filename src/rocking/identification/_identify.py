@@ -26,8 +26,11 @@ from rocking.identification.results import (
 )
 from rocking.identification.series import fit_series
 from rocking.identification.state_space import DAMPING, FREQUENCY, HALF, MEAN, SHARED, SLENDERNESS, TILT, TREND
+from rocking.messages import Message, Option
 from rocking.motions.pulse import Motion
 
+Reason = str | Message
+_TREND = Message("try {trend}", {"trend": Option("identify.trend", True)})
 _SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
 _ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
 _STRANGE, _FOREIGN = 4.0, 6.0  # standard deviations of p and the slenderness angle: doubted, refused
@@ -105,7 +108,7 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
     found = fit_times(measurement, known)
     if found is None or found[0].clicks.size < 4:
         return _nothing(measurement, "fewer than four times belong together as impacts")
-    (track, told), refused, doubts = found, [], list(measurement.doubts)
+    (track, told), refused, doubts = found, list[Reason](), list[Reason](measurement.doubts)
     times = measurement.times[track.clicks]
     advantage = told.evidence - _steady(np.diff(times) / np.diff(track.impacts))
     missed, extra = int(np.ptp(track.impacts)) + 1 - track.impacts.size, track.within - track.clicks.size
@@ -146,11 +149,11 @@ def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
     missed = [part * row.scale for row, part in zip(rows, parts, strict=True)]
     about = [row.values - row.values.mean() for row in rows]
     total = max(float(a @ a) / float((b**2).sum()) for a, b in zip(missed, about, strict=True))
-    refused = []
+    refused: list[Reason] = []
     if total > 1.0 - _EXPLAINED:
         refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
     first: Foot = "right" if told.model.sides[0] == 0 else "left"
-    doubts = list(measurement.doubts)
+    doubts: list[Reason] = [*measurement.doubts]
     far = float(np.linalg.norm(told.average(told.u)[[FREQUENCY, SLENDERNESS]]))
     if known.body is not None and far > _STRANGE:
         words = (
@@ -175,8 +178,8 @@ def _result(
     known: Knowledge,
     found: Posterior,
     first: Foot,
-    refused: list[str],
-    doubts: list[str],
+    refused: list[Reason],
+    doubts: list[Reason],
     *,
     independent: float,
     advantage: float,
@@ -192,11 +195,11 @@ def _result(
         refused.append(f"what impacts take scatters by {100.0 * scattered.value:.0f} %")
     first_sizes = "check the sizes of the body, then " if known.body is not None else ""
     if p_value < _UNLIKELY and not known.trend:
-        refused.append(
-            f"what impacts take changes steadily with their number (p = {p_value:.1g}); {first_sizes}try trend=True"
-        )
+        steadily = f"what impacts take changes steadily with their number (p = {p_value:.1g}); {first_sizes}{{way}}"
+        refused.append(Message(steadily, {"way": _TREND}))
     elif p_value < 0.01:
-        doubts.append(f"What impacts take changes with their number, p = {p_value:.2g}: {first_sizes}try trend=True.")
+        changing = f"What impacts take changes with their number, p = {p_value:.2g}: {first_sizes}{{way}}."
+        doubts.append(Message(changing, {"way": _TREND}))
     if not found.converged:
         doubts.append("The maximum of the posterior was not found everywhere: intervals may be wrong.")
     frequency = math.sqrt(found.model.p[0] * found.model.p[1])

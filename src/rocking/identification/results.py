@@ -15,6 +15,7 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
+from rocking.messages import Message
 from rocking.restitution import RestitutionModel, implied, models
 
 if TYPE_CHECKING:
@@ -136,9 +137,9 @@ class Identification(Exported):
     ----------
     source : str
         Where the measurement comes from.
-    refused : tuple of str
+    refused : tuple of str or Message
         Why it is no rocking, or none that this model knows; numbers of a measurement that is refused mean nothing.
-    doubts : tuple of str
+    doubts : tuple of str or Message
         What else there is to say against it.
     mean : IntervalEstimate
         Coefficient of restitution, the geometric mean of both sides [-].
@@ -190,8 +191,8 @@ class Identification(Exported):
     """
 
     source: str
-    refused: tuple[str, ...]
-    doubts: tuple[str, ...]
+    refused: tuple[str | Message, ...]
+    doubts: tuple[str | Message, ...]
     mean: IntervalEstimate
     coefficients: dict[Foot, IntervalEstimate]
     scatter: IntervalEstimate
@@ -218,10 +219,15 @@ class Identification(Exported):
     _common: float = 0.0
 
     @property
+    def refusal(self) -> Message:
+        """Why there is no coefficient."""
+        return Message("No coefficient of restitution: {reasons}.", {"reasons": self.refused})
+
+    @property
     def verdict(self) -> str:
         """What was found, in a sentence."""
         if self.refused:
-            return f"No coefficient of restitution: {'; '.join(self.refused)}."
+            return str(self.refusal)
         return (
             f"The coefficient of restitution is {self.mean}, from {len(self.impacts)} impacts; "
             f"from impact to impact it {self.scatter_text}."
@@ -238,7 +244,7 @@ class Identification(Exported):
         """Return the verdict, both sides and the doubts."""
         sides = [] if self.refused else [f"Landing {foot}: {self.coefficients[foot]}." for foot in FEET]
         forced = [str(self.forced)] if self.forced and not self.refused else []
-        return "\n".join([self.verdict, *sides, *forced, *self.doubts])
+        return "\n".join([self.verdict, *sides, *forced, *map(str, self.doubts)])
 
     __repr__ = __str__
 
@@ -273,7 +279,12 @@ class Identification(Exported):
             By the names of the attributes; NaN where something does not exist. Of a measurement that was refused there
             is why, and no number.
         """
-        words = {"source": self.source, "verdict": self.verdict, "refused": self.refused, "doubts": self.doubts}
+        words = {
+            "source": self.source,
+            "verdict": self.verdict,
+            "refused": tuple(map(str, self.refused)),
+            "doubts": tuple(map(str, self.doubts)),
+        }
         if self.refused:
             return words
         found = {name: value for name, value in vars(self).items() if not name.startswith("_")} | words
@@ -357,7 +368,11 @@ class Identification(Exported):
             "measured_at": Column(self.residual_times, "s", "when it was measured"),
             "left_over": Column(self.residuals, unit, "measured less computed"),
         }
-        provenance: dict[str, Any] = {"source": self.source, "verdict": self.verdict, "doubts": "; ".join(self.doubts)}
+        provenance: dict[str, Any] = {
+            "source": self.source,
+            "verdict": self.verdict,
+            "doubts": "; ".join(map(str, self.doubts)),
+        }
         for name in ("mean", "scatter", "frequency_parameter", "tilt"):
             provenance |= {f"{name}{end}": getattr(getattr(self, name), key) for key, end, _ in _ENDS}
         beside = {"model": Table("model", compared), "sample": Table("sample", left)}

@@ -12,6 +12,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.motions.motion import GroundMotion, checked_motion
 
 
@@ -188,7 +189,10 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     end = checks.within("end", end, start, 100.0, unit="%", open_low=True, hint="end must be above start")
     total = _husid(motion)
     if not total[-1] > 0.0:
-        raise InvalidValueError(f"motion must have energy > 0 m2/s3, got {total[-1]:g}; zero throughout?")
+        raise InvalidValueError(
+            "the motion must have {parameter} {allowed}, got {value}", parameter="energy", value=float(total[-1]),
+            allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint="zero throughout?",
+        )  # fmt: skip
     return _crossing(motion, total, 0.01 * start), _crossing(motion, total, 0.01 * end)
 
 

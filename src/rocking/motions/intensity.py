@@ -457,7 +457,7 @@ def measure(name: Any) -> IntensityMeasure:
         if spectral := spectral_period(name):
             return spectral_measure(*spectral)
     there, why = ", ".join(MEASURES), checks.nearest(name, MEASURES)
-    raise InvalidValueError(f"measure must be one of {there}, or sa(period in s), got {name!r:.60}{why}")
+    raise InvalidValueError(parameter="measure", allowed=f"one of {there}, or sa(period in s)", value=name, hint=why)
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import UNITS
-from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.errors import InvalidValueError, located
 from rocking.motions import processing
 from rocking.motions.components import Components, rotated
 from rocking.motions.floors import on_floor
@@ -111,13 +111,9 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
     steps = steps_of(chain)
     names = [name for name, _ in steps]
     for place, (name, keys) in enumerate(steps, 1):
-        try:
+        which = name if names.count(name) == 1 else f"{place}, {name}"
+        with located(f"step {which}", "step", place):
             motion = _together(motion, name, keys) if isinstance(motion, Components) else STEPS[name](motion, **keys)
-        except MissingExtraError:
-            raise
-        except RockingError as error:
-            which = name if names.count(name) == 1 else f"{place}, {name}"
-            raise InvalidValueError(f"step {which}: {error}") from error
     return motion
 
 
@@ -146,7 +142,12 @@ def steps_of(chain: str | Sequence[str]) -> Steps:
     [('mean', {}), ('bandpass', {'low': 0.1, 'high': 25.0})]
     """
     parts = [part.strip() for text in ([chain] if isinstance(chain, str) else chain) for part in str(text).split(";")]
-    return [_step(part) for part in parts if part]
+    steps = []
+    for place, part in enumerate(filter(None, parts), 1):
+        name, _, tail = part.partition(":")
+        with located(f"step {name.strip()}", "step", place):
+            steps.append(_step(name, tail))
+    return steps
 
 
 def keys_of(step: Callable[..., Any]) -> dict[str, inspect.Parameter]:
@@ -154,8 +155,7 @@ def keys_of(step: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     return {key: one for key, one in inspect.signature(step).parameters.items() if key not in {"motion", "body"}}
 
 
-def _step(words: str) -> tuple[str, dict[str, Any]]:
-    name, _, tail = words.partition(":")
+def _step(name: str, tail: str) -> tuple[str, dict[str, Any]]:
     name = checks.one_of("step", name.strip(), STEPS)
     known = keys_of(STEPS[name])
     open_ended = known.pop("level", None) is not None
@@ -163,18 +163,18 @@ def _step(words: str) -> tuple[str, dict[str, Any]]:
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in keys or not (key in known or (open_ended and key in MEASURES)):
-            raise InvalidValueError(f"step {name} takes {', '.join(known) or 'no keys'}, got {item!r:.60}")
-        keys[key] = _value(name, key, value, known.get(key))
+            raise InvalidValueError(f"it takes {', '.join(known) or 'no keys'}, got {item!r:.60}")
+        keys[key] = _value(key, value, known.get(key))
     if missing := [key for key, one in known.items() if one.default is one.empty and key not in keys]:
-        raise InvalidValueError(f"step {name} needs {', '.join(missing)}")
+        raise InvalidValueError(f"it needs {', '.join(missing)}")
     for key in keys.keys() - known.keys():
         measure(key).check_grows()
     for key, value in keys.items() if name == "pad" else ():
-        checks.within(f"{key} of step pad", value, 0.0, LONGEST_PADDING, unit="s", hint="milliseconds, or samples?")
+        checks.within(key, value, 0.0, LONGEST_PADDING, unit="s", hint="milliseconds, or samples?")
     return name, keys
 
 
-def _value(name: str, key: str, text: str, parameter: inspect.Parameter | None) -> Any:
+def _value(key: str, text: str, parameter: inspect.Parameter | None) -> Any:
     kind = "float" if parameter is None else str(parameter.annotation)
     if parameter is None and (unit := measure(key).unit) in UNITS:
         return checks.quantity(key, text, unit)[0]
@@ -183,6 +183,5 @@ def _value(name: str, key: str, text: str, parameter: inspect.Parameter | None) 
     try:
         return float(text) if "float" in kind else int(text)
     except ValueError as error:
-        raise InvalidValueError(
-            f"{key} of step {name} must be a {'whole ' if 'float' not in kind else ''}number, got {text!r:.40}"
-        ) from error
+        allowed = f"a {'whole ' if 'float' not in kind else ''}number"
+        raise InvalidValueError(parameter=key, allowed=allowed, value=text, hint=checks.number_hint(text)) from error

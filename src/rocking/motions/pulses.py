@@ -332,13 +332,13 @@ def pulse(words: str) -> Pulse:
     name = checks.spelling(name, known)
     if name not in known:
         there, near = ", ".join(sorted(known)), checks.nearest(name, known)
-        raise UnknownModelError(f"no pulse named {name!r}; there are {there}{near}")
+        raise UnknownModelError(f"no pulse named {name!r}; there are {there}", hint=near)
     given: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in given:
             why = checks.number_hint(words)
-            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}{why}")
+            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}", hint=why)
         given[key] = whole_or_number(key, value)
     try:
         return known[name](**given)

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from rocking.conventions import FEET, NORMAL_95
 from rocking.identification import Identification, ModelComparison
 from rocking.identification.posterior import NO_SCATTER
+from rocking.messages import Message
 from rocking.plots.identification import identification_picture, trials_picture
 from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, judged, table
 from rocking.spec.identification import IdentifiedTrials
@@ -83,8 +84,12 @@ def _document_of(found: Identification, name: str, date: str) -> Document:
     return judged(title, (found.source, date), sections, found.verdict, mark)
 
 
-def _doubts(doubts: Sequence[str]) -> list[ReportSection]:
-    return [ReportSection("What there is to say against it", [*map(Paragraph, doubts)])] if doubts else []
+def _doubts(doubts: Sequence[str | Message]) -> list[ReportSection]:
+    return (
+        [ReportSection("What there is to say against it", [Paragraph(str(doubt)) for doubt in doubts])]
+        if doubts
+        else []
+    )
 
 
 def _found(found: Identification) -> ReportTable:

@@ -74,7 +74,7 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     if odd := next((each for each in options if each not in names), None):
         of = type(found).__name__
         raise InvalidValueError(
-            f"a report of {of} takes no {odd}; it takes {', '.join(names)}{checks.nearest(odd, names)}"
+            f"a report of {of} takes no {odd}; it takes {', '.join(names)}", hint=checks.nearest(odd, names)
         )
     day = f"{datetime.now(UTC):%d %B %Y}" if date is None else date
     document, pictures = made(found, name=name, date=day, **options)

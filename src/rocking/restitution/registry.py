@@ -176,7 +176,7 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
         there, near = ", ".join(list(_MODELS)), checks.nearest(name, _MODELS)
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {there}", hint=near)
     return built(_kind(name), name, given), eta
 
 
@@ -187,8 +187,8 @@ def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, An
         key, equals, value = item.partition("=")
         if not equals:
             raise UnknownModelError(
-                "write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got "
-                f"{words!r}{checks.number_hint(words)}"
+                f"write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got {words!r}",
+                hint=checks.number_hint(words),
             )
         if key.strip() in given:
             raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
@@ -212,7 +212,9 @@ def number(name: str, words: str) -> float:
     try:
         return float(words)
     except ValueError as error:
-        raise InvalidValueError(f"{name} must be a number, got {words!r}{checks.number_hint(words)}") from error
+        raise InvalidValueError(
+            parameter=name, allowed="a number", value=words, hint=checks.number_hint(words)
+        ) from error
 
 
 def of_no_kind(restitution: object) -> str:

@@ -11,7 +11,7 @@ from rocking.bodies.formats.reader import KNOWN
 from rocking.bodies.formats.words import suggestion
 from rocking.bodies.solid import Solid
 from rocking.checks import length_unit
-from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, tables_in
 
 _OUTSIDE = ("units", "name", "note")
@@ -40,12 +40,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
     tables = {key: value for key, value in table.items() if value is not None}
     if inputs is not None:
         _note_outlines(tables, ".", inputs)
-    try:
-        return body_from_tables(tables, None if inputs is None else inputs.folder)
-    except MissingExtraError:
-        raise
-    except RockingError as error:
-        raise InvalidValueError(str(error)) from error
+    return body_from_tables(tables, None if inputs is None else inputs.folder)
 
 
 def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
@@ -71,7 +66,7 @@ _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density"
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
     if odd := sorted(set(options) - set(_BESIDE_FILE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60} beside file{suggestion(odd[0], _BESIDE_FILE)}")
+        raise InvalidValueError(f"unknown key {odd[0]!r:.60} beside file", hint=suggestion(odd[0], _BESIDE_FILE))
     if not isinstance(table["file"], str):
         raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
     if inputs is None:
@@ -90,7 +85,7 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
 def _from_angle(table: dict[str, Any]) -> Body:
     """Return a block by its slenderness angle [rad] and its semi-diagonal."""
     if odd := sorted(set(table) - set(_OF_ANGLE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60}{suggestion(odd[0], sorted(_OF_ANGLE))}")
+        raise InvalidValueError(f"unknown key {odd[0]!r:.60}", hint=suggestion(odd[0], sorted(_OF_ANGLE)))
     if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
         raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
     scale = length_unit(table["units"])

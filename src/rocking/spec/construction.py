@@ -10,7 +10,7 @@ from rocking.bodies.solid import Solid
 from rocking.conventions import FEET
 from rocking.dynamics.mechanics import mechanics_for_all
 from rocking.dynamics.mechanics_base import Mechanics
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.reader import read_motion
@@ -18,7 +18,7 @@ from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles
 from rocking.spec.record_sets import are_together, motions_of_set, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
@@ -177,7 +177,7 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     own = by_path(table.file_options, [inputs.folder / name for name in names])
     for name in names:
         path = inputs.file(name)
-        with located(f"records: {name}"):
+        with located("records"), located(path.name, "file"):
             motions.append(_record(path, table.model_copy(update=own.get(path, {})), inputs))
     return motions
 

@@ -14,7 +14,8 @@ from pydantic import (
 from pydantic_core import PydanticKnownError
 
 from rocking.conventions import DEFAULT_FRICTION
-from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Text, Values, in_list, refused
+from rocking.errors import InvalidValueError
+from rocking.spec.fields import JobTable, Names, Numbers, Positive, Seed, Text, Values, in_list
 
 NEEDS: dict[str, str] = {
     "overturning-map": "map",
@@ -73,11 +74,11 @@ class RandomTable(JobTable):
         stated = [name for name in ways if getattr(self, name) is not None]
         if stated not in (["mean", "deviation"], ["values"], ["posterior"]):
             names = " and ".join(stated) or "none"
-            raise refused(f"give mean and deviation, or values alone, or posterior alone; got {names}")
+            raise InvalidValueError(f"give mean and deviation, or values alone, or posterior alone; got {names}")
         if self.posterior is None and self.count is not None:
-            raise refused("count goes with posterior: how many values are drawn from it")
+            raise InvalidValueError("count goes with posterior: how many values are drawn from it")
         if self.posterior and "times" in self.model_fields_set:
-            raise refused("times does not go with posterior, which is of the coefficient itself")
+            raise InvalidValueError("times does not go with posterior, which is of the coefficient itself")
         return self
 
 
@@ -97,12 +98,12 @@ class RestitutionTable(JobTable):
     @model_validator(mode="after")
     def _one_choice(self) -> "RestitutionTable":
         if (self.left is None) != (self.right is None):
-            raise refused("left and right go together: one coefficient for each foot")
+            raise InvalidValueError("left and right go together: one coefficient for each foot")
         choices = {"model": "model", "value": "value", "distribution": "distribution", "left": "left"}
         if self.models is None and self.values is None:
             self.chosen(*choices)
         elif any(getattr(self, name) is not None for name in choices):
-            raise refused("models and values stand alone, without model, value, distribution, left and right")
+            raise InvalidValueError("models and values stand alone, without model, value, distribution, left and right")
         return self
 
 
@@ -144,9 +145,11 @@ class MotionKeys(FileKeys):
         stated = {name for name in self.model_fields_set if getattr(self, name) is not None}
         odd = sorted(stated & set().union(*keys.values()) - keys[source])
         if odd:
-            raise refused(f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(keys[source]))}")
+            raise InvalidValueError(
+                f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(keys[source]))}"
+            )
         if self.scale == 0.0:
-            raise refused("scale must not be 0: nothing would move")
+            raise InvalidValueError("scale must not be 0: nothing would move")
         return source
 
 
@@ -166,7 +169,7 @@ class OneMotionTable(MotionKeys):
         own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
         self._one_source({"pulse": {"scale"}, "record": {*OF_FILES, "scale"}, "synthetic": own})
         if self.pga is not None and self.pgv is not None:
-            raise refused("motions can be scaled to pga or to pgv, not to both")
+            raise InvalidValueError("motions can be scaled to pga or to pgv, not to both")
 
 
 class _Along(JobTable):
@@ -185,9 +188,9 @@ class _Along(JobTable):
     def _check_components(self) -> None:
         """Refuse what does not go with components."""
         if odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
-            raise refused(f"{', '.join(odd)} stands with each of the motions along x, y and z")
+            raise InvalidValueError(f"{', '.join(odd)} stands with each of the motions along x, y and z")
         if self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
-            raise refused("the vertical motion is given twice: beside the one along x, and along z")
+            raise InvalidValueError("the vertical motion is given twice: beside the one along x, and along z")
 
 
 class ComponentsTable(_Along, OneMotionTable):
@@ -226,9 +229,9 @@ class MotionTable(_Along, MotionKeys):
         of_records = {*OF_FILES, "files", *chosen, "scale", "mirrored"}
         source = self._one_source({"records": of_records, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
-            raise refused("count is missing: how many synthetic motions?")
+            raise InvalidValueError("count is missing: how many synthetic motions?")
         if source == "records" and self.target is None and (odd := sorted(chosen & self.model_fields_set)):
-            raise refused(f"{odd[0]} of records goes with target, the spectrum that they are chosen for")
+            raise InvalidValueError(f"{odd[0]} of records goes with target, the spectrum that they are chosen for")
         return self
 
     @property
@@ -256,7 +259,9 @@ class MapTable(JobTable):
     def _refined(self) -> "MapTable":
         odd = sorted({"boundary", "tolerance"} & self.model_fields_set)
         if odd and self.refine is None:
-            raise refused(f"{' and '.join(odd)} goes with refine, how often cells along boundaries are halved: give it")
+            raise InvalidValueError(
+                f"{' and '.join(odd)} goes with refine, how often cells along boundaries are halved: give it"
+            )
         return self
 
 
@@ -302,7 +307,7 @@ class InventoryTable(JobTable):
     @model_validator(mode="after")
     def _one_level(self) -> "InventoryTable":
         if self.pga is not None and self.pgv is not None:
-            raise refused("give pga or pgv, not both: motions are scaled to one of them")
+            raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
         return self
 
 
@@ -342,7 +347,7 @@ def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
         return validate(value)
     except ValidationError as error:
         if isinstance(value, str):
-            raise refused(
+            raise InvalidValueError(
                 f"must be a rotation over the slenderness angle, rocking or overturning, got {value!r:.60}"
             ) from error
         raise PydanticKnownError("greater_than", {"gt": 0}) from error
@@ -472,24 +477,24 @@ class CampaignDocument(JobTable):
         kind, wanted = self.campaign.kind, NEEDS[self.campaign.kind]
         for table in dict.fromkeys(NEEDS.values()):
             if table != wanted and getattr(self, table) is not None:
-                raise refused(f'[{table}] does not go with kind = "{kind}", which takes [{wanted}]')
+                raise InvalidValueError(f'[{table}] does not go with kind = "{kind}", which takes [{wanted}]')
         if getattr(self, wanted) is None and kind not in {"histories", "cloud", "minimum-acceleration"}:
-            raise refused(f'[{wanted}] is missing, which kind = "{kind}" needs')
+            raise InvalidValueError(f'[{wanted}] is missing, which kind = "{kind}" needs')
         if (self.body is None) != (kind in _OWN_BODIES):
             needed = "is missing" if self.body is None else f"makes no sense: {_OWN_BODIES[kind]}"
-            raise refused(f"[body] {needed}")
+            raise InvalidValueError(f"[body] {needed}")
         if kind not in _MANY_BODIES and len(self.body or ()) > 1:
-            raise refused(f'[[body]] can be given once only with kind = "{kind}", got {len(self.body or ())}')
+            raise InvalidValueError(f'[[body]] can be given once only with kind = "{kind}", got {len(self.body or ())}')
         if self.export is not None and kind not in _ANALYSES:
-            raise refused(f'[export] goes with {", ".join(_ANALYSES)}, this is "{kind}"')
+            raise InvalidValueError(f'[export] goes with {", ".join(_ANALYSES)}, this is "{kind}"')
         levels = None if self.fragility is None else self.fragility.levels
         if kind in _ANALYSES and (levels is None) != (kind == "cloud"):
             what = "is missing" if levels is None else "makes no sense: a cloud takes the motions as they are"
-            raise refused(f"fragility.levels {what}")
+            raise InvalidValueError(f"fragility.levels {what}")
         for place, only in _ONLY.items():
             table, _, key = place.partition(".")
             if getattr(getattr(self, table), key, None) is not None and kind != only:
-                raise refused(f'{place} goes with kind = "{only}" only, this is "{kind}"')
+                raise InvalidValueError(f'{place} goes with kind = "{only}" only, this is "{kind}"')
         if kind == "inventory":
             self._inventory_fits()
         return self
@@ -497,17 +502,21 @@ class CampaignDocument(JobTable):
     def _inventory_fits(self) -> None:
         odd = sorted(self.settings.model_fields_set - {"gravity", "friction"})
         if odd:
-            raise refused(f"settings.{odd[0]} does not go with an inventory, which takes gravity and friction only")
+            raise InvalidValueError(
+                f"settings.{odd[0]} does not go with an inventory, which takes gravity and friction only"
+            )
         families = [table for table in self.motions if table.synthetic is not None]
         if any(table.pulse is not None for table in self.motions) or (families and len(self.motions) > 1):
-            raise refused("the motions of an inventory are records, or one family of synthetic ones alone")
+            raise InvalidValueError("the motions of an inventory are records, or one family of synthetic ones alone")
         for table in families:
             odd = sorted({"pga", "pgv", "time_step"} & table.model_fields_set)
             if odd:
-                raise refused(f"motions.{odd[0]} does not go with an inventory; how strong it is stands in [inventory]")
+                raise InvalidValueError(
+                    f"motions.{odd[0]} does not go with an inventory; how strong it is stands in [inventory]"
+                )
         inventory = self.inventory
         if families and inventory is not None and inventory.pga is None and inventory.pgv is None:
-            raise refused('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
+            raise InvalidValueError('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
 
 
 class ResponseTable(JobTable):
@@ -548,16 +557,16 @@ class ResponseTables(JobTable):
     def _coefficient_of_one_history(self) -> "ResponseTables":
         drawn = self.restitution.distribution
         if drawn is not None and drawn.each == "history":
-            raise refused('restitution.distribution.each must be "impact" for one history, got "history"')
+            raise InvalidValueError('restitution.distribution.each must be "impact" for one history, got "history"')
         return self
 
 
 def check_start(moved: bool, start: ResponseTable) -> None:
     """Refuse a document in which nothing moves the body, and one with both a motion and an initial rotation."""
     if moved and start.free is not None:
-        raise refused("give a motion or response.free, not both")
+        raise InvalidValueError("give a motion or response.free, not both")
     if not moved and start.free is None and not start.dropped:
-        raise refused("what moves the body? Give a motion, or response.free (such as 0.5) for free rocking")
+        raise InvalidValueError("what moves the body? Give a motion, or response.free (such as 0.5) for free rocking")
 
 
 class ResponseDocument(ResponseTables):
@@ -583,9 +592,9 @@ class PredictedBody(JobTable):
     def _one_engine(self) -> "PredictedBody":
         odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
         if odd:
-            raise refused(f"settings.{odd[0]} does not go with a prediction, which has one engine")
+            raise InvalidValueError(f"settings.{odd[0]} does not go with a prediction, which has one engine")
         if "friction" in self.settings.model_fields_set & self.predict.model_fields_set:
-            raise refused("predict.friction and settings.friction say the same: leave one out")
+            raise InvalidValueError("predict.friction and settings.friction say the same: leave one out")
         return self
 
 
@@ -598,7 +607,7 @@ class PredictionDocument(PredictedBody):
     @model_validator(mode="after")
     def _whole(self) -> "PredictionDocument":
         if (self.motion is None) == (not self.motions):
-            raise refused("give [[motions]], or [motion] with x and y, and not both")
+            raise InvalidValueError("give [[motions]], or [motion] with x and y, and not both")
         return self
 
 
@@ -622,7 +631,7 @@ class RecordSetDocument(JobTable):
     @model_validator(mode="after")
     def _of_records(self) -> "RecordSetDocument":
         if self.motions[0].records is None:
-            raise refused("motions.records is missing: a set is one of records")
+            raise InvalidValueError("motions.records is missing: a set is one of records")
         return self
 
 
@@ -635,7 +644,9 @@ class ValidationDocument(PredictedBody):
     def _of_files(self) -> "ValidationDocument":
         known = OF_FILES - {"vertical_file"}
         if odd := sorted(self.motion.model_fields_set - known):
-            raise refused(f"[motion] takes {', '.join(sorted(known))} here, got {odd[0]}; outcomes name the rest")
+            raise InvalidValueError(
+                f"[motion] takes {', '.join(sorted(known))} here, got {odd[0]}; outcomes name the rest"
+            )
         return self
 
 
@@ -655,11 +666,13 @@ class IdentificationDocument(JobTable):
         for name in {"tilt", "clock"} & set(known):
             pair = given if isinstance(given := known[name], list) else [given, 0.0]
             if len(pair) != 2 or not all(type(each) in {int, float} and abs(each) < math.inf for each in pair):
-                raise refused(f"identify.{name} is one number, or a value and its deviation, got {given!r:.60}")
+                raise InvalidValueError(
+                    f"identify.{name} is one number, or a value and its deviation, got {given!r:.60}"
+                )
         return stated
 
     @model_validator(mode="after")
     def _of_two_clocks(self) -> "IdentificationDocument":
         if self.identify.clock is not None and self.motion is None:
-            raise refused("identify.clock goes with [motion]: it is of both clocks")
+            raise InvalidValueError("identify.clock goes with [motion]: it is of both clocks")
         return self

@@ -3,41 +3,29 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
-from rocking.bodies.formats.words import suggestion
+from rocking.bodies.formats.schema import StrictTable
 from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
 
 Positive = Annotated[float, Field(gt=0.0)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-def refused(sentence: str, kind: Literal["contradiction", "unknown_key"] = "contradiction") -> PydanticCustomError:
-    """Return an error that is a sentence already."""
-    return PydanticCustomError(kind, "{sentence}", {"sentence": sentence})
+class JobTable(StrictTable):
+    """A table of a job file."""
 
-
-class JobTable(BaseModel):
-    """A table whose keys are all known; numbers are numbers, and finite."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys(cls, stated: Any) -> Any:
-        known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in stated if isinstance(stated, dict) else ():
-            if key not in known:
-                raise refused(f"unknown key {key!r:.60}{suggestion(key, known)}", "unknown_key")
-        return stated
+    model_config = ConfigDict(defer_build=True)
 
     def chosen(self, *names: str) -> str:
         """Return which one of several keys is there."""
         stated = [name for name in names if getattr(self, name) is not None]
         if len(stated) != 1:
-            raise refused(f"exactly one of {', '.join(names)} is needed, got {' and '.join(stated) or 'none'}")
+            raise InvalidValueError(
+                f"exactly one of {', '.join(names)} is needed, got {' and '.join(stated) or 'none'}"
+            )
         return stated[0]
 
 
@@ -55,13 +43,19 @@ class Values(JobTable):
         ends = {"from": self.start, "to": self.stop, "count": self.count}
         stated = [name for name, value in ends.items() if value is not None]
         if self.values is not None and (stated or "spacing" in self.model_fields_set):
-            raise refused(f"values stand alone, without {', '.join(stated) or 'spacing'}")
+            raise InvalidValueError(f"values stand alone, without {', '.join(stated) or 'spacing'}")
         if self.values is None and len(stated) < len(ends):
-            raise refused(f"give values = [...], or from, to and count; got {', '.join(stated) or 'none of them'}")
+            raise InvalidValueError(
+                f"give values = [...], or from, to and count; got {', '.join(stated) or 'none of them'}"
+            )
         if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
-            raise refused(f"from and to must be > 0 where the spacing is log, got {self.start!r} and {self.stop!r}")
+            raise InvalidValueError(
+                f"from and to must be > 0 where the spacing is log, got {self.start!r} and {self.stop!r}"
+            )
         if self.count == 1 and self.start != self.stop:
-            raise refused(f"count must be >= 2 where from and to differ, got 1 from {self.start!r} to {self.stop!r}")
+            raise InvalidValueError(
+                f"count must be >= 2 where from and to differ, got 1 from {self.start!r} to {self.stop!r}"
+            )
         return self
 
     def numbers(self) -> FloatArray:

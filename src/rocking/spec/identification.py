@@ -24,14 +24,15 @@ from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.bodies.formats import FORMATS
 from rocking.conventions import FEET, NORMAL_95
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError, RockingError, located
 from rocking.exported import Exported
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS, TEXTS
 from rocking.identification.results import compared
+from rocking.messages import Message, by_key
 from rocking.spec.bodies import body_of
 from rocking.spec.construction import motion_of
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles
 from rocking.tables import Column, Table, text_array, to_csv
 from rocking.tables.table import written_whole
 from rocking.version import SOFTWARE
@@ -162,9 +163,9 @@ class IdentificationProblem:
         try:
             found = self.answer(path)
         except RockingError as error:
-            return _row_of(str(error).removeprefix(f"{path.name}: "), ())
+            return _row_of(_by_key(error.without_file(path.name)), ())
         if found.refused:
-            return _row_of("; ".join(found.refused), found.doubts)
+            return _row_of("; ".join(map(_by_key, found.refused)), found.doubts)
         numbers = {"r": found.mean, **{f"r_{foot}": found.coefficients[foot] for foot in FEET}}
         numbers |= {name: getattr(found, name) for name in ("scatter", "frequency_parameter", "tilt")}
         return _row_of("", found.doubts, len(found.impacts), found._common, numbers)
@@ -308,15 +309,19 @@ def bodies_in(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
 
 
+def _by_key(reason: RockingError | Message | str) -> str:
+    return reason if isinstance(reason, str) else reason.spelt(by_key)
+
+
 def _row_of(
     refused: str,
-    doubts: Iterable[str],
+    doubts: Iterable[str | Message],
     impacts: int = 0,
     common: float = math.nan,
     numbers: Mapping[str, IntervalEstimate] = MappingProxyType({}),
 ) -> Row:
     none = IntervalEstimate(math.nan, math.nan, math.nan)
-    row: Row = {"refused": refused, "doubts": " ".join(doubts), "impacts": impacts, "common": common}
+    row: Row = {"refused": refused, "doubts": " ".join(map(_by_key, doubts)), "impacts": impacts, "common": common}
     for name in _NUMBERS:
         each = numbers.get(name, none)
         row |= {name: each.value, f"{name}_low": each.low, f"{name}_high": each.high}

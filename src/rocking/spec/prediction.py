@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body, Solid
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.prediction import Prediction, predict
 from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import components_of, motion_of, motions_of, restitutions_of
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment

@@ -2,13 +2,11 @@
 
 import hashlib
 import tomllib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument
@@ -19,12 +17,6 @@ if TYPE_CHECKING:
 _PIECE = 1 << 20
 _SPECIAL = "*?["
 LARGEST_JOB = 16 * 2**20  # larger job files are refused [byte]
-
-_PLAIN = {
-    "bool_type": "must be true or false",
-    "string_too_short": "must not be empty",
-    "string_too_long": "must be shorter than 200 characters",
-}
 
 
 @dataclass
@@ -99,17 +91,6 @@ def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> N
         raise InvalidValueError(f"{added[0]}: was not there when the campaign began; remove it, or begin a new one")
 
 
-@contextmanager
-def located(where: str) -> Iterator[None]:
-    """Turn what is refused inside into an error that says where in the job file its cause stands."""
-    try:
-        yield
-    except MissingExtraError:
-        raise
-    except RockingError as error:
-        raise InvalidValueError(f"{where}: {error}") from error
-
-
 def read_text(path: Path) -> str:
     """Return the text of a job file."""
     try:
@@ -156,29 +137,12 @@ def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
     """Return tables, checked for themselves; what is wrong with them is said in one sentence."""
     from pydantic import ValidationError
 
-    from rocking.bodies.formats.words import sentence
+    from rocking.bodies.formats.words import from_pydantic
 
     try:
         return kind.model_validate(tables)
     except ValidationError as error:
-        raise InvalidValueError(_nearest(sentence(error, None), error.errors(include_url=False)[0])) from error
-
-
-def _nearest(text: str, problem: object) -> str:
-    """Say it in plain words, and add the nearest known word where one of several was expected."""
-    import difflib
-    import re
-
-    assert isinstance(problem, dict)
-    value, kind = problem.get("input"), problem["type"]
-    if kind in _PLAIN:
-        return text.replace(f"is refused ({problem['msg']})", _PLAIN[kind])
-    if kind != "literal_error" or not isinstance(value, str):
-        return text
-    known = re.findall(r"'([^']+)'", problem["ctx"]["expected"])
-    near = difflib.get_close_matches(value[:60], known, n=1)
-    head, mark, tail = text.partition(" (and ")
-    return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else text
+        raise from_pydantic(error.errors(include_url=False)) from error
 
 
 def tables_in(path: Path) -> dict[str, Any] | None:

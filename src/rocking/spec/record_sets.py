@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking import plausibility
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
-from rocking.motions.formats.record_set import RecordSet, paths_of, plane_motions, read_records, rows_of_list
+from rocking.motions.formats.record_set import Reason, RecordSet, paths_of, plane_motions, read_records, rows_of_list
 from rocking.motions.formats.stations import BETWEEN, is_station_file, station_files
 from rocking.motions.pipeline import processed, steps_of
 from rocking.motions.selection import Selection, selected
 from rocking.motions.target_spectra import target_spectrum
-from rocking.spec.reading import InputFiles, is_pattern, located
+from rocking.spec.reading import InputFiles, is_pattern
 
 if TYPE_CHECKING:
     from rocking.spec.document import MotionKeys, MotionTable
@@ -43,7 +43,7 @@ def record_set(
 ) -> tuple[RecordSet, Selection | None]:
     """Return the records of a table, and how they were chosen where it has a target."""
     records: list[Components] = []
-    left_out: list[tuple[str, str]] = []
+    left_out: list[tuple[str, Reason]] = []
     if odd := sorted({"component", "vertical", "vertical_file"} & table.model_fields_set):
         raise InvalidValueError(f"a set takes no {', '.join(odd)}: all components of its records are read")
     steps = with_files(table, inputs)
@@ -54,7 +54,7 @@ def record_set(
     own = by_path(table.file_options, [path for of_group in paths for path in of_group])
     for names, of_group in zip(groups, paths, strict=True):
         files = {path: own[path] for path in of_group if path in own}
-        with located("records" if len(names) > 1 else f"records: {names[0]}"):
+        with located("records"):
             found = _read(names, inputs, {**how, "files": files})
         records += found.records
         left_out += found.left_out
@@ -95,7 +95,7 @@ def _read(names: Sequence[str], inputs: InputFiles, how: dict[str, Any]) -> Reco
     paths = {name: inputs.folder / name for name in names}
     found = read_records([*paths.values()], **how)
     if is_pattern(names[0]) and found.left_out:  # these files were named
-        raise InvalidValueError(": ".join(found.left_out[0]))
+        raise InvalidValueError(": ".join(map(str, found.left_out[0])))
     if len(names) > 1:
         unreadable = dict(found.left_out)
         used = {part.metadata["file"] for record in found for part in record.parts if part is not None}

@@ -13,11 +13,11 @@ from rocking.dynamics.mechanics import mechanics_for, mechanics_of
 from rocking.dynamics.mechanics_base import Mechanics
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError, PureRockingWarning
+from rocking.errors import InvalidValueError, PureRockingWarning, located
 from rocking.motions.components import together
 from rocking.spec.bodies import body_moved
 from rocking.spec.construction import components_of, motion_of, restitutions_of
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
     from rocking.spec.document import ResponseDocument, ResponseTables

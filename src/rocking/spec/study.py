@@ -9,10 +9,10 @@ from rocking.bodies import Body
 from rocking.conventions import g
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.spec.bodies import body_moved
 from rocking.spec.construction import motions_of, restitutions_of
-from rocking.spec.reading import InputFiles, located
+from rocking.spec.reading import InputFiles
 from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
 

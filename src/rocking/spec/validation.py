@@ -10,8 +10,9 @@ import numpy as np
 from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.formats import FORMATS
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import InvalidValueError, RockingError, located
 from rocking.exported import Exported
+from rocking.messages import by_key
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction, Validation, predict, score
@@ -19,7 +20,7 @@ from rocking.prediction._score import EVENTS, Outcomes, Trial, UntakenRow, colum
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motion_of
 from rocking.spec.prediction import options_of
-from rocking.spec.reading import InputFiles, checked, located, tables_in
+from rocking.spec.reading import InputFiles, checked, tables_in
 
 if TYPE_CHECKING:
     from rocking.spec.document import ValidationDocument
@@ -130,7 +131,7 @@ class ValidationProblem:
                 motions[trial.files, trial.scale] = records.motion(trial)
                 trials.append(trial)
             except RockingError as error:
-                refused.append(UntakenRow(trial.line, str(error)))
+                refused.append(UntakenRow(trial.line, error.spelt(by_key)))
         refused.sort(key=lambda each: each.line)
         if not trials:
             why = f"; line {refused[0].line}: {refused[0].reason}" if refused else "; it has no rows"
@@ -155,7 +156,7 @@ class ValidationProblem:
             seen = column(self.trials, event)
             said = found.chances[event].per_motion[which]
             if event == "overturning" or not np.isnan(seen).all():
-                with located(self.outcomes.source):
+                with located(self.outcomes.source, "file"):
                     scored[event] = score(
                         said, seen, names, pga=pga, pgv=pgv, count=found.count, event=event, seed=found.seed
                     )

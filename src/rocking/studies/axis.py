@@ -316,5 +316,5 @@ def axis_of(axis: Any) -> Axis:
     name = checks.spelling(axis[0], known)
     if name not in known:
         there, near = ", ".join(sorted(known)), checks.nearest(name, known)
-        raise InvalidValueError(f"no axis named {name!r}; there are {there}{near}")
+        raise InvalidValueError(f"no axis named {name!r}; there are {there}", hint=near)
     return known[name](axis[1])

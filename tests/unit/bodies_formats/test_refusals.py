@@ -25,7 +25,7 @@ SQUARE = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0
 LOAD = "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))"
 
 TOML = {
-    "units missing": ("[block]\nwidth = 1\nheight = 2", 'units is missing: add units = "m" or another of m, cm, mm'),
+    "units missing": ("[block]\nwidth = 1\nheight = 2", 'units is missing; add units = "m" or another of m, cm, mm'),
     "unit unknown": ('units = "furlong"\n[block]\nwidth = 1\nheight = 2', "units must be one of 'm', 'cm', 'mm'"),
     "no shape": ('units = "m"', "exactly one of [block], [trapezoid]"),
     "two shapes": (
@@ -34,8 +34,8 @@ TOML = {
     ),
     "key at the top": ('units = "m"\nnme = "x"', "unknown key 'nme'; did you mean name?"),
     "key in a table": ('units = "m"\n[block]\nwidht = 1', "block: unknown key 'widht'; did you mean width?"),
-    "negative": ('units = "cm"\n[block]\nwidth = -50\nheight = 2', "block.width must be a number > 0 [cm], got -50"),
-    "density": (REGION + 'density = 0\nwkt = "x"', "section.region[0].density must be a number > 0 [kg/m3], got 0"),
+    "negative": ('units = "cm"\n[block]\nwidth = -50\nheight = 2', "block.width must be a number > 0 cm, got -50"),
+    "density": (REGION + 'density = 0\nwkt = "x"', "section.region[0].density must be a number > 0 kg/m3, got 0"),
     "boolean": ('units = "m"\n[block]\nwidth = true\nheight = 1', "block.width must be a number [m], got True"),
     "text": ('units = "m"\n[block]\nwidth = "1"\nheight = 1', "block.width must be a number [m], got '1'"),
     "date": ('units = "m"\n[block]\nwidth = 1979-05-27\nheight = 1', "block.width must be a number [m]"),
@@ -57,7 +57,7 @@ TOML = {
     "not a table": ('units = "m"\nblock = 3', "block must be a table, got 3"),
     "masses": (
         'units = "m"\n[mass_points]\npoints = [[0, 1]]\nmasses = [-1]\nfeet = [-1, 1]',
-        "mass_points.masses[0] must be a number > 0 [kg], got -1",
+        "mass_points.masses[0] must be a number > 0 kg, got -1",
     ),
     "contact": (
         'units = "m"\n[mass_points]\npoints = [[0, 1]]\nmasses = [1]\nfeet = [-1, 1]\ncontact = [[1, -1]]',

@@ -64,10 +64,10 @@ def test_cor_options(run, own, tmp_path):
 
 SIZE = "cor --width 1 --height 4"
 REFUSED = {
-    "cor --width -1 --height 4": "--width must be a number > 0 [m], got -1",
-    "cor --width 0 --height 4": "--width must be a number > 0 [m], got 0",
+    "cor --width -1 --height 4": "--width must be a number > 0 m, got -1",
+    "cor --width 0 --height 4": "--width must be a number > 0 m, got 0",
     "cor --width nan --height 4": "--width must be a finite number [m]",
-    "cor --width wide --height 4": "Invalid value for '--width': ",
+    "cor --width wide --height 4": "--width must be a number, got 'wide'",
     "cor --nope": "No such option",
     "cor --set body.slenderness_angle=20 --set body.semi_diagonal=1": "(0, pi/2) rad, got 20; degrees?",
     "cor --width 1": "--width and --height",

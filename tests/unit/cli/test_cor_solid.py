@@ -194,7 +194,7 @@ REFUSED = {
         "unknown key 'up'; allowed: mass, centre, moment_of_inertia, density",
     ),
     "options": (["body.toml", "--set", "body.up=z"], "states up itself"),
-    "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 [m], got -1.0"),
+    "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 m, got -1"),
 }
 
 

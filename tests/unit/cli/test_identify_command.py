@@ -119,7 +119,7 @@ def test_rotations_need_what_they_say(printed, refuses, tmp_path):
     lines = (f"{t:.4f},{u:.4f},1" for t, u in zip(time, moved, strict=True))
     path.write_text("\n".join(["time [s],top,other", *lines]), "utf-8")
     column = ("--set", "measurement.column=top")
-    refuses((path, *SIZE), "Say --set measurement.column= one of")
+    refuses((path, *SIZE), "say --set measurement.column= one of")
     refuses((path, *SIZE, *column), "or give --set measurement.unit=")
     unit = (*column, "--set", "measurement.unit=mm")
     refuses((path, *SIZE, *unit), "give --set measurement.height= of the sensor [m]")

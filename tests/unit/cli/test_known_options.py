@@ -81,7 +81,7 @@ def test_a_mesh_takes_mass_and_centre(answered, tmp_path):
     ("words", "said"),
     [
         ((*SIZE, "--mass", 300, "--density", 200), "not both"),
-        ((*SIZE, "--mass", 0), "mass must be a number > 0 [kg], got 0"),
+        ((*SIZE, "--mass", 0), "--mass must be a number > 0 kg, got 0"),
         ((*SIZE, "--centre", "42,-7"), "must lie within the outline"),
         ((*SIZE, "--centre", "42"), "must have at least 2 entries"),
         ((*SIZE, "--centre", "low,70"), "--centre must be numbers"),

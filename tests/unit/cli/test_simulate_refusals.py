@@ -62,7 +62,7 @@ REFUSED = {
     "free and scale": ([*SIZE, "--free", "0.5", "--scale", "2"], "takes no --scale"),
     "free nan": ([*SIZE, "--free", "nan"], "--free must be a finite number"),
     "free far": ([*SIZE, "--free", "7"], "--free is a share of the slenderness angle"),
-    "free word": ([*SIZE, "--free", "half"], "'--free'"),
+    "free word": ([*SIZE, "--free", "half"], "--free must be a number, got 'half'"),
     "no record": ([*SIZE, "none.at2"], "none.at2: no such file"),
     "pulse": ([*SIZE, "sinus:amplitude=1"], "no pulse named"),
     "pulse and units": ([*SIZE, PULSE, "--units", "g"], "a pulse takes no --units"),

@@ -96,7 +96,7 @@ def test_chains_that_make_no_sense_are_refused(words, message):
 )
 def test_a_padding_that_is_a_slip_is_refused_when_it_is_read(words):
     """Before any step is taken, with the range; an hour at both ends is still taken."""
-    with pytest.raises(InvalidValueError, match=r"(before|after) of step pad must be (in \[0, 3600\]|finite)"):
+    with pytest.raises(InvalidValueError, match=r"step pad: (before|after) must be (in \[0, 3600\]|finite)"):
         steps_of(words)
     assert len(processed(X, "pad:before=3600")) == len(X) + 2 * 360_000
 

@@ -17,9 +17,8 @@ from rocking.bodies import Body
 from rocking.bodies.formats import read_plane_body
 from rocking.bodies.formats.body_file import body_to_toml
 from rocking.bodies.formats.schema import UnitName
-from rocking.bodies.formats.words import blamed
 from rocking.conventions import FEET, g
-from rocking.errors import BodyFileError
+from rocking.errors import BodyFileError, located
 from rocking.evidence._coefficient_table import outside_evidence
 from rocking.reports.body_facts import outline_answer
 
@@ -131,7 +130,7 @@ def body_in_file(content: bytes, name: str, units: str | None, density: float | 
 
 
 def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
-    with blamed(name):
+    with located(name, "file"):
         try:
             table = parsed_toml(content.decode("utf-8-sig"))
         except (UnicodeDecodeError, Refused) as error:

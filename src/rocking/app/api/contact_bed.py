@@ -9,7 +9,8 @@ from pydantic import ConfigDict, Field, model_validator
 from rocking.app.answers import JsonAnswer, answered, shape
 from rocking.app.studies.results import plain
 from rocking.app.work import heavy
-from rocking.spec.fields import JobTable, Positive, Seed, Values, refused
+from rocking.errors import InvalidValueError
+from rocking.spec.fields import JobTable, Positive, Seed, Values
 
 router = APIRouter(prefix="/api", tags=["impact"])
 MOST_VALUES, MOST_POINTS = 200, 401
@@ -73,9 +74,9 @@ class ContactBedRequest(JobTable):
         may_vanish = self.varied in {"damping", "amplitude", "seed"}
         for each in ends:
             if each < 0.0 or (each == 0.0 and not may_vanish):
-                raise refused(f"{self.varied} must be {'>=' if may_vanish else '>'} 0, got {each:g}")
+                raise InvalidValueError(f"{self.varied} must be {'>=' if may_vanish else '>'} 0, got {each:g}")
             if self.varied == "points" and each > MOST_POINTS:
-                raise refused(f"points must be at most {MOST_POINTS}, got {each:g}")
+                raise InvalidValueError(f"points must be at most {MOST_POINTS}, got {each:g}")
         return self
 
 

@@ -18,14 +18,14 @@ from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError
+from rocking.messages import Message, Option
 from rocking.motions.formats import formats, read_record
-from rocking.motions.formats.miniseed import OF_COUNTS
+from rocking.motions.formats.miniseed import STATIONS
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.motion import GroundMotion
 
 _STAND_IN = {"units": "m/s2", "time_step": 0.01}  # what stands for an answer that is missing, to find out what else is
 _QUIETEST = 1e-100  # smaller accelerations have no energy: their squares vanish in floating point, whatever the unit
-_FOR_PROGRAMS = "; say "  # what follows in the words of the library names an argument; people see the choices instead
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
@@ -133,23 +133,22 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
                 path.write_bytes(content)
             record, reasons = _read(path, stated)
     except RecordError as error:
-        if OF_COUNTS not in str(error):
+        if error.hint is not STATIONS:
             raise
-        words = f"{name}: the samples are counts of the instrument, whose response lies in a StationXML file of its own"
-        raise RecordError(f"{words}; {_WAY}") from error
+        words = "the samples are counts of the instrument, whose response lies in a StationXML file of its own"
+        raise RecordError(words, hint=_WAY).at(name) from error
     components = [] if record is None else record.components
     choices = {
         "format": list(formats()),
         "units": list(ACCELERATION_UNITS),
         "component": [each.name for each in components],
     }
-    others = [words.removeprefix(f"{safe_name(name, 'record')}: ") for words in list(reasons.values())[1:]]
     return {
         "format": None if record is None else record.format,
         "components": [_component(each, reasons) for each in components],
         "needs": sorted(reasons, key=_ORDER.index),
         "choices": {name: choices[name] for name in reasons if name in choices},
-        "message": "; ".join([*list(reasons.values())[:1], *others]),
+        "message": f"{safe_name(name, 'record')}: {'; '.join(reasons.values())}" if reasons else "",
         "doubts": "" if record is None else record.metadata.get("doubts", ""),
     }
 
@@ -164,10 +163,10 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
         try:
             record = read_record(path, **stated)
         except RecordError as error:
-            missing = next((key for key in stated if f"say {key}=" in str(error) and stated[key] is None), None)
-            if missing is None:
+            missing = _to_state(error)
+            if missing is None or stated.get(missing, missing) is not None:
                 raise
-            reasons[missing] = str(error).partition(_FOR_PROGRAMS)[0]
+            reasons[missing] = error.without_file(path.name).cause
             if missing not in _STAND_IN:
                 return None, reasons
             stated[missing] = _STAND_IN[missing]
@@ -179,6 +178,12 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
         names = ", ".join(each.name for each in record.components)
         reasons["component"] = f"the file has the components {names}: choose the horizontal one"
     return record, reasons
+
+
+def _to_state(error: RecordError) -> str | None:
+    """Return what a file leaves open, by the option that its error asks for; None for any other error."""
+    option = error.hint.facts.get("option") if isinstance(error.hint, Message) else None
+    return option.name if isinstance(option, Option) else None
 
 
 def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from rocking.app.errors import Refused
 from rocking.app.inputs import Inputs, parsed_toml
 from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
 from rocking.app.records import is_hash
-from rocking.bodies.formats.words import sentence
+from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import Assumed
 from rocking.version import SOFTWARE
 
@@ -87,7 +87,7 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     try:
         return Inputs.model_validate(document)
     except ValidationError as error:
-        raise Refused(plain_line(sentence(error, None), 500)) from error
+        raise Refused(plain_line(str(from_pydantic(error.errors(include_url=False))), 500)) from error
 
 
 def _head(inputs: Inputs) -> list[str]:

@@ -17,8 +17,8 @@ from rocking.app.projects.store import LARGEST, Project
 from rocking.app.records import is_hash
 from rocking.app.security.request_body import check_json
 from rocking.app.studies.job_document import JobDocument
-from rocking.bodies.formats.words import sentence
-from rocking.errors import RecordError, RockingError
+from rocking.bodies.formats.words import from_pydantic
+from rocking.errors import RecordError, RockingError, located
 from rocking.version import __version__
 
 if TYPE_CHECKING:
@@ -87,14 +87,13 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
     archive = Archive(data, MOST_FILES)
     if _WHAT not in archive.names:
         raise Refused(f"the archive is no project of rocking: it holds no {_WHAT}")
-    try:
+    with located(_WHAT, "file"):
         content = archive.content(_WHAT, 8 * LARGEST)
         check_json(content, _DEEPEST)
-        whole = _ProjectFile.model_validate_json(content)
-    except ValidationError as error:
-        raise Refused(f"{_WHAT}: {sentence(error, None)}") from error
-    except Refused as error:
-        raise Refused(f"{_WHAT}: {error}") from error
+        try:
+            whole = _ProjectFile.model_validate_json(content)
+        except ValidationError as error:
+            raise from_pydantic(error.errors(include_url=False), kind=Refused) from error
     if len(whole.studies) > MOST_STUDIES:
         raise TooLarge(f"a file may bring {MOST_STUDIES} studies, this has {len(whole.studies)}")
     for study in whole.studies:

@@ -24,6 +24,7 @@ from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.work import kill
 from rocking.campaigns.disk import write_new
+from rocking.errors import RockingError
 from rocking.motions.formats import formats
 from rocking.restitution.from_file import file_of
 
@@ -69,6 +70,7 @@ class HostedQuestion:
     asked: Annotated[str, "when, in UTC"]
     state: State = "waiting"
     message: Annotated[str, "why there is no answer; empty while nothing is wrong"] = ""
+    refusal: Annotated[dict[str, Any] | None, "the same with its text and facts, as of any error"] = None
     seconds: Annotated[float, "that it took [s]"] = 0.0
     files: Annotated[list[str], "that can be taken away"] = field(default_factory=list)
     starts: int = 0  # how often it was begun
@@ -319,8 +321,11 @@ class QuestionDesk:
             seconds = (datetime.now(UTC) - begun).total_seconds()
             names = [name.rpartition("=")[2] for name in _written(question)]
             there = [name for name in names if (place / name).is_file()]
-            state, why = ("done", "") if code == 0 else ("refused", _why(place, code))
-            self._become(replace(question, state=state, message=why, seconds=seconds, files=there))  # type: ignore[arg-type]
+            state, refusal = ("done", None) if code == 0 else ("refused", _refusal(place, code))
+            why = refusal["message"] if refusal else ""
+            self._become(
+                replace(question, state=state, message=why, refusal=refusal, seconds=seconds, files=there)  # type: ignore[arg-type]
+            )
 
     def _fail(self, question: HostedQuestion) -> None:
         with self._changed:
@@ -362,17 +367,23 @@ def refuse_outside(tables: dict[str, Any]) -> None:
                 raise Refused(f"{word!r:.60} leads out of the question: send the file, and name it by its name alone")
 
 
-def _why(place: Path, code: int | None) -> str:
-    """Return why there is no answer, in words that a user may see."""
+def _refusal(place: Path, code: int | None) -> dict[str, Any]:
+    """Return why there is no answer, as data that a user may see."""
     if code is None:
-        return (
+        why = (
             f"it took longer than {_SECONDS / 60.0:.0f} minutes, which is more than a page waits: use the command line"
         )
-    lines = (place / _LOG).read_text(encoding="utf-8", errors="replace").splitlines()
-    said = [line.removeprefix("rocking: ") for line in lines if line.startswith("rocking: ")]
-    if code in {1, 2} and said:
-        return said[-1].replace(f"{place}{os.sep}", "").removeprefix(f"{QUESTION}: ")[:1000]
-    return "it needed more memory or time than a page gives, or failed: its log is in the data folder"
+        return RockingError(why).data()
+    log = (place / _LOG).read_text(encoding="utf-8", errors="replace").replace(f"{place}{os.sep}", "")
+    for line in reversed(log.splitlines()):
+        with suppress(ValueError, TypeError, KeyError):
+            refusal: dict[str, Any] = json.loads(line)["error"]
+            refusal["places"] = [each for each in refusal["places"] if each["name"] != QUESTION]
+            refusal["message"] = refusal["message"].removeprefix(f"{QUESTION}: ")
+            return refusal
+    said = [line.removeprefix("rocking: ") for line in log.splitlines() if line.startswith("rocking: ")]
+    lost = "it needed more memory or time than a page gives, or failed: its log is in the data folder"
+    return RockingError(said[-1][:1000] if code in {1, 2} and said else lost).data()
 
 
 def _link(source: Path, target: Path) -> None:

@@ -164,8 +164,8 @@ def check_session(head: RequestHead, request: HTTPConnection) -> None:
     public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
     if not public and not is_signed_in(request):
         raise Refused(
-            "nobody is signed in: open the link that `rocking serve` prints, "
-            "or send Authorization: Bearer with the key in the file api-key of the data folder",
+            "nobody is signed in: open the link that `rocking serve` prints",
+            hint="a script sends Authorization: Bearer with the key in the file api-key of the data folder",
             status=401,
         )
 

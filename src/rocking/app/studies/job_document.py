@@ -12,8 +12,8 @@ from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
 from rocking.app.records import is_hash
-from rocking.bodies.formats.words import sentence
-from rocking.errors import InvalidValueError
+from rocking.bodies.formats.words import from_pydantic
+from rocking.errors import InvalidValueError, located
 from rocking.restitution.from_file import file_of
 from rocking.spec.document import CampaignDocument, MotionTable
 
@@ -56,10 +56,11 @@ class JobDocument:
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
         if isinstance(kind, str) and kind not in KINDS:
             raise InvalidValueError(f"campaign.kind must be one of {', '.join(KINDS)}, got {kind!r:.60}")
-        try:
-            job = cls(tables, CampaignDocument.model_validate(tables))
-        except ValidationError as error:
-            raise InvalidValueError(f"job: {sentence(error, None)}") from error
+        with located("job"):
+            try:
+                job = cls(tables, CampaignDocument.model_validate(tables))
+            except ValidationError as error:
+                raise from_pydantic(error.errors(include_url=False)) from error
         job._check_counts()
         return job
 

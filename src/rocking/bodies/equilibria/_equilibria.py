@@ -454,7 +454,7 @@ def _notes(hull: Polytope, stable: Sequence[StablePose], left_out: int, least: f
     if count := sum(pose.barrier < _SHALLOW * size for pose in stable):
         notes.append(
             f"{count} of {len(stable)} stable poses are left by a rise of less than {1e3 * _SHALLOW * size:.2g} mm: "
-            "the body is round or rough there; least_barrier= takes such poses together"
+            "the body is round or rough there; a least barrier takes such poses together"
         )
     if left_out:
         notes.append(

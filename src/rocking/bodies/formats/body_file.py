@@ -15,13 +15,13 @@ from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.wkt import regions_from_wkt
-from rocking.bodies.formats.words import blamed, check_count, read_text, validated
+from rocking.bodies.formats.words import check_count, read_text, validated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
 from rocking.conventions import FloatArray
-from rocking.errors import BodyFileError, InvalidValueError
+from rocking.errors import BodyFileError, InvalidValueError, located
 
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
@@ -63,7 +63,7 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
     >>> body_from_toml('units = "cm"\n[block]\nwidth = 50\nheight = 200').slenderness_ratio
     4.0
     """
-    with blamed(name):
+    with located(name, "file"):
         return body_from_tables(parsed_toml(text), folder)
 
 
@@ -99,7 +99,7 @@ def parsed_toml(text: Any) -> dict[str, Any]:
 
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:
-    with blamed("block"):
+    with located("block"):
         width, height = table.width * scale, table.height * scale
         return Block(width=width, height=height, feet=_pair(table.feet, scale), **_options(table, scale))
 
@@ -110,7 +110,7 @@ def _shape(document: "schema.BodyFile", scale: float) -> Section:
     kind = next(each for each in _OUTLINES if getattr(document, each))  # the schema lets exactly one table through
     table: schema.ShapeTable = getattr(document, kind)
     sizes = table.model_dump(exclude=set(schema.ShapeTable.model_fields))
-    with blamed(kind):
+    with located(kind):
         outline = _OUTLINES[kind](**{key: value * (1 if key == "sides" else scale) for key, value in sizes.items()})
         return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
 
@@ -140,7 +140,7 @@ def _known(table: "schema.KnownTable", scale: float) -> dict[str, Any]:
 def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
     contact = None if table.contact is None else [(a * scale, b * scale) for a, b in table.contact]
     check_count(len(table.points))
-    with blamed("mass_points"):
+    with located("mass_points"):
         for i, (a, b) in enumerate(table.contact or ()):
             if not a < b:
                 raise BodyFileError(f"contact[{i}] must run from left to right, got [{a:g}, {b:g}]")
@@ -152,10 +152,10 @@ def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> S
     scale = length_unit(units)
     regions: list[Region] = []
     for i, part in enumerate(table.region):
-        with blamed(f"section.region[{i}]"):
+        with located(f"section.region[{i}]"):
             regions += _regions(part, units, folder)
         check_count(sum(len(ring) for region in regions for ring in region.rings))
-    with blamed("section"):
+    with located("section"):
         depth = 1.0 if table.depth is None else table.depth * scale
         known, feet = _known(table, scale), _pair(table.feet, scale)
         return Section(regions, feet, depth=depth, ground=table.ground * scale, **known)
@@ -168,7 +168,7 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
         return regions_from_wkt(table.wkt, density, units=own, name="wkt")
     if table.geojson is not None:
         path = beside(folder, table.geojson)
-        with blamed(path.name):
+        with located(path.name, "file"):
             text = read_text(path)
         return regions_from_geojson(text, density, units=own, name=path.name)
     if table.dxf is not None:

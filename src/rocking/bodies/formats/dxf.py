@@ -14,11 +14,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.words import Placement, blamed, check_count, checked_file, suggestion
+from rocking.bodies.formats.words import Placement, check_count, checked_file, suggestion, unit_to_state
 from rocking.bodies.region import Region, nested
 from rocking.bodies.section import Section
 from rocking.conventions import LENGTH_UNITS, FloatArray
-from rocking.errors import BodyFileError, MissingExtraError, how_to_install
+from rocking.errors import BodyFileError, MissingExtraError, how_to_install, located
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -82,7 +82,7 @@ def section_from_dxf(
     that an inlay is drawn as a hole on one layer and as an outline on another.
     """
     regions = regions_from_dxf(path, density, units=units, layers=layers, chord_tolerance=chord_tolerance)
-    with blamed(Path(path).name):
+    with located(Path(path).name, "file"):
         return Section(regions, **placement)
 
 
@@ -96,7 +96,7 @@ def regions_from_dxf(
 ) -> list[Region]:
     """Return the polygons that a DXF drawing shows, layer by layer, in the order of the drawing."""
     path = Path(path)
-    with blamed(path.name):
+    with located(path.name, "file"):
         drawing = _opened(path)
         scale = LENGTH_UNITS[_unit(drawing, units)]
         if chord_tolerance is not None:
@@ -142,7 +142,7 @@ def _unit(drawing: "Drawing", asked: str | None) -> str:
     code = drawing.header.get("$INSUNITS", 0)
     if code == 0:
         if asked is None:
-            raise BodyFileError(f"states no unit ($INSUNITS is 0); give units=, one of {', '.join(LENGTH_UNITS)}")
+            raise BodyFileError("states no unit ($INSUNITS is 0)", hint=unit_to_state())
         return asked
     if code not in INSUNITS:
         raise BodyFileError(f"states a unit ($INSUNITS is {code}) other than {', '.join(LENGTH_UNITS)}")
@@ -158,7 +158,7 @@ def _curves(drawing: "Drawing", layers: Mapping[str, float] | None, tolerance: f
     known |= {entity.dxf.layer for entity in entities}
     for layer in layers or ():
         if layer not in known:
-            raise BodyFileError(f"has no layer {layer!r}{suggestion(layer, sorted(known))}")
+            raise BodyFileError(f"has no layer {layer!r}", hint=suggestion(layer, sorted(known)))
     for entity in entities:
         layer, kind = entity.dxf.layer, entity.dxftype()
         if kind in _PASSED_OVER or (layers is not None and layer not in layers):
@@ -166,7 +166,7 @@ def _curves(drawing: "Drawing", layers: Mapping[str, float] | None, tolerance: f
         name = f"{kind} {entity.dxf.handle} on layer {layer!r}"
         if kind not in _READERS:
             raise BodyFileError(f"{name} is not a closed outline; join it into a closed polyline, or choose layers")
-        with blamed(name):
+        with located(name, "file"):
             try:
                 yield name, layer, _READERS[kind](entity, tolerance)
             except (ArithmeticError, AttributeError, LookupError, TypeError) as error:

@@ -12,11 +12,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.words import Placement, blamed, check_count
+from rocking.bodies.formats.words import Placement, check_count
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.conventions import FloatArray
-from rocking.errors import BodyFileError
+from rocking.errors import BodyFileError, located
 
 DEEPEST = 16  # collections nested deeper are refused
 _Found = tuple[str, list[Any], float]
@@ -66,7 +66,7 @@ def section_from_geojson(
     8000.0
     """
     regions = regions_from_geojson(source, density, units=units, name=name)
-    with blamed(name):
+    with located(name, "file"):
         return Section(regions, **placement)
 
 
@@ -78,12 +78,12 @@ def regions_from_geojson(
     name: str = "GeoJSON",
 ) -> list[Region]:
     """Return the polygons that GeoJSON describes, in its order; coordinate reference systems are not interpreted."""
-    with blamed(name):
+    with located(name, "file"):
         scale = checks.length_unit(units)
         given = _parsed(source) if isinstance(source, str) else source
         regions, vertices = [], 0
         for where, coordinates, value in _polygons(given, "", density, 0):
-            with blamed(where):
+            with located(where):
                 rings = [_ring(ring, f"coordinates[{i}]") for i, ring in enumerate(coordinates)]
                 vertices += sum(map(len, rings))
                 check_count(vertices)

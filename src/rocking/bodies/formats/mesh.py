@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.formats.words import MOST_VERTICES, blamed, checked_file
+from rocking.bodies.formats.words import MOST_VERTICES, checked_file
 from rocking.bodies.solid._changes import InnerParts, Repair, in_words
 from rocking.bodies.solid._repair import Repaired, repaired
 from rocking.bodies.solid._skin import Surface
@@ -24,7 +24,7 @@ from rocking.bodies.solid.standing import settled, stands
 from rocking.bodies.solid.surfaces import vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
-from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install, located
 from rocking.portable import applied, norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # formats that are read, by the end of the file's name
@@ -53,7 +53,7 @@ def mesh_from_file(
     path = Path(path)
     scale = length_unit(units)
     turn = _turn(up)
-    with blamed(path.name):
+    with located(path.name, "file"):
         kind = path.suffix[1:].lower()
         if kind not in MESH_FORMATS:
             raise BodyFileError(f"is no mesh that is read here: {', '.join(MESH_FORMATS)}")
@@ -103,7 +103,7 @@ def solid_from_mesh(
     # are known, as the mesh is before it is let down
     path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
-    with blamed(path.name):
+    with located(path.name, "file"):
         part, said = mesh.part(density), mesh.repairs
         tolerance = base_tolerance or _BASE_TOLERANCE * float(np.ptp(part.box(), axis=0).max())
         points, place = mesh.shape.vertices, mesh.shape.moments().centre

@@ -17,14 +17,13 @@ from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.mesh import MESH_FORMATS, solid_from_mesh
 from rocking.bodies.formats.solid_file import solid_from_toml
 from rocking.bodies.formats.wkt import regions_from_wkt
-from rocking.bodies.formats.words import Placement, blamed, read_text, readable
+from rocking.bodies.formats.words import Placement, read_text, readable, unit_to_state
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.bodies.solid._changes import InnerParts, Repair
 from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.solid import Solid
-from rocking.conventions import LENGTH_UNITS
-from rocking.errors import BodyFileError, RockingError
+from rocking.errors import BodyFileError, RockingError, located
 
 T = TypeVar("T")
 
@@ -209,14 +208,14 @@ def describes_solid(path: str | Path) -> bool:
 
 
 def _toml(request: Request) -> Body | Solid:
-    with blamed(request.path.name):
+    with located(request.path.name, "file"):
         solid = "solid" in parsed_toml(read_text(request.path, LARGEST_TOML))
     return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
 
 
 def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     path = request.path
-    with blamed(path.name):
+    with located(path.name, "file"):
         text = read_text(path, LARGEST_TOML)
         if given := request.given(("density", *Options.__annotations__)):
             raise BodyFileError(f"a TOML body file states {given} itself; change it there")
@@ -229,16 +228,16 @@ def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
 
 def _text(request: Request, read: Callable[..., list[Region]]) -> Section:
     name = request.path.name
-    with blamed(name):
+    with located(name, "file"):
         if request.units is None:
-            raise BodyFileError(f"does not state its unit; give units=, one of {', '.join(LENGTH_UNITS)}")
+            raise BodyFileError("does not state its unit", hint=unit_to_state())
         text = read_text(request.path)
     return _standing(read(text, request.some_density, units=request.units, name=name), request)
 
 
 def _standing(regions: list[Region], request: Request) -> Section:
     lowest = min(float(region.outline[:, 1].min()) for region in regions)
-    with blamed(request.path.name):
+    with located(request.path.name, "file"):
         if given := request.given((*MeshOptions.__annotations__, "inertia")):
             raise BodyFileError(f"is a drawing and takes no {given}: these are for meshes")
         placement: Any = {"ground": lowest, **request.options}
@@ -256,9 +255,7 @@ def _mesh(request: Request) -> Solid:
     taken = [words for words, silent in said if silent]
     density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)
     if units is None and not by_specification:
-        raise BodyFileError(
-            f"{path.name}: {kind.upper()} files do not state their unit; give units=, one of {', '.join(LENGTH_UNITS)}"
-        )
+        raise BodyFileError(f"{kind.upper()} files do not state their unit", hint=unit_to_state()).at(path.name)
     options.setdefault("up", "y" if by_specification else "z")
     solid = solid_from_mesh(path, density, units=units or "m", **options)
     if taken:

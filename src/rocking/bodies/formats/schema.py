@@ -3,9 +3,9 @@
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from rocking.bodies.formats.words import suggestion
+from rocking.errors import InvalidValueError
 
 Positive = Annotated[float, Field(gt=0.0)]
 Mass = Annotated[float, Field(gt=0.0, le=1e36)]
@@ -23,13 +23,17 @@ class StrictTable(BaseModel):
     @classmethod
     def _known_keys(cls, given: Any) -> Any:
         for key in given if isinstance(given, dict) else ():
-            if key not in cls.model_fields:
-                raise _refused("unknown_key", f"unknown key {key!r}{cls._hint(key)}")
+            if key not in cls._names():
+                raise cls._unknown(key)
         return given
 
     @classmethod
-    def _hint(cls, key: str) -> str:
-        return suggestion(key, cls.model_fields)
+    def _names(cls) -> list[str]:
+        return [field.alias or name for name, field in cls.model_fields.items()]
+
+    @classmethod
+    def _unknown(cls, key: str) -> InvalidValueError:
+        return InvalidValueError(f"unknown key {key!r:.60}", hint=suggestion(key, cls._names()))
 
 
 class KnownTable(StrictTable):
@@ -104,10 +108,10 @@ class RegionTable(StrictTable):
         sources = [key for key in ("outline", "wkt", "geojson", "dxf") if getattr(self, key) is not None]
         if len(sources) != 1:
             got = " and ".join(sources) or "none"
-            raise _refused("contradiction", f"a region has one of outline, wkt, geojson or dxf, got {got}")
+            raise InvalidValueError(f"a region has one of outline, wkt, geojson or dxf, got {got}")
         for key, owners in (("holes", "outline"), ("units", "wkt geojson dxf"), ("layers", "dxf")):
             if getattr(self, key) is not None and sources[0] not in owners.split():
-                raise _refused("contradiction", f"{key} cannot stand beside {sources[0]}")
+                raise InvalidValueError(f"{key} cannot stand beside {sources[0]}")
         return self
 
 
@@ -147,14 +151,17 @@ class BodyFile(StrictTable):
     mass_points: MassPointsTable | None = Field(None, description="what the body is, one a file")
 
     @classmethod
-    def _hint(cls, key: str) -> str:
+    def _unknown(cls, key: str) -> InvalidValueError:
         if key in SHAPES:
-            return f" outside of a part: write [[solid.part]] in a line above [solid.part.{key}]"
+            where = f"a part: write [[solid.part]] in a line above [solid.part.{key}]"
+            return InvalidValueError(f"unknown key {key!r} outside of {where}")
         tables = [name for name, table in _TABLES.items() if key in table.model_fields]
         if not tables:
-            return super()._hint(key)
-        several = f"; other tables with {key} are {', '.join(f'[{name}]' for name in tables[1:])}" if tables[1:] else ""
-        return f" outside of a table: write [{tables[0]}] in a line above {key}{several}"
+            return super()._unknown(key)
+        others = f"other tables with {key} are {', '.join(f'[{name}]' for name in tables[1:])}" if tables[1:] else ""
+        return InvalidValueError(
+            f"unknown key {key!r} outside of a table: write [{tables[0]}] in a line above {key}", hint=others
+        )
 
     @model_validator(mode="after")
     def _one_body(self) -> "BodyFile":
@@ -170,15 +177,11 @@ BODIES = tuple(_TABLES)
 """Tables that say what the body is."""
 
 
-def _refused(kind: Literal["unknown_key", "contradiction"], words: str) -> PydanticCustomError:
-    return PydanticCustomError(kind, "{words}", {"words": words})
-
-
 def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str = "{}") -> None:
     present = [shown.format(key) for key in keys if getattr(table, key) is not None]
     if len(present) != 1:
         choice = ", ".join(map(shown.format, keys))
-        raise _refused("contradiction", f"{owner} has exactly one of {choice}, got {' and '.join(present) or 'none'}")
+        raise InvalidValueError(f"{owner} has exactly one of {choice}, got {' and '.join(present) or 'none'}")
 
 
 Cut = Annotated[float, Field(ge=0.0)]

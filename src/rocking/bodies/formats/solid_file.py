@@ -10,14 +10,14 @@ import numpy as np
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.body_file import beside, parsed_toml
 from rocking.bodies.formats.mesh import mesh_from_file
-from rocking.bodies.formats.words import blamed, check_count, validated
+from rocking.bodies.formats.words import check_count, validated
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.prism import box, extrusion
 from rocking.bodies.solid.solid import Solid
 from rocking.bodies.solid.surfaces import Shape
 from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution
 from rocking.checks import length_unit
-from rocking.errors import BodyFileError
+from rocking.errors import BodyFileError, located
 
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
@@ -66,15 +66,15 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
     """
     from rocking.bodies.formats.schema import SolidDocument
 
-    with blamed(name):
+    with located(name, "file"):
         document = validated(SolidDocument, parsed_toml(text))
         root = None if folder is None else Path(folder)
         repairs: list[str] = []
         parts: list[Part] = []
         for number, table in enumerate(document.solid.part):
-            with blamed(f"solid.part[{number}]"):
+            with located(f"solid.part[{number}]"):
                 parts.append(_part(table, document.units, root, repairs))
-        with blamed("solid"):
+        with located("solid"):
             solid = _standing(document, parts)
             solid.name, solid.repairs = document.name or name, tuple(repairs)
             return solid

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.words import Placement, blamed, check_count
+from rocking.bodies.formats.words import Placement, check_count
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
-from rocking.errors import BodyFileError
+from rocking.errors import BodyFileError, located
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -62,7 +62,7 @@ def section_from_wkt(
     (0.4, 1.0)
     """
     regions = regions_from_wkt(text, density, units=units, name=name)
-    with blamed(name):
+    with located(name, "file"):
         return Section(regions, **placement)
 
 
@@ -74,12 +74,12 @@ def regions_from_wkt(
     name: str = "WKT",
 ) -> list[Region]:
     """Return the polygons that well-known text describes, in its order."""
-    with blamed(name):
+    with located(name, "file"):
         scale = length_unit(units)
         polygons = _polygons(_geometry(text))
         regions = []
         for i, (polygon, value) in enumerate(zip(polygons, _densities(density, len(polygons)), strict=True)):
-            with blamed(f"polygon {i}"):
+            with located(f"polygon {i}"):
                 outline, *holes = (np.asarray(r.coords)[:, :2] * scale for r in (polygon.exterior, *polygon.interiors))
                 regions.append(Region(outline, value, holes))
         return regions

@@ -1,34 +1,45 @@
 """What all formats share: limits, reading a file, saying which file an error is about, and words for errors."""
 
 import difflib
-import reprlib
-from collections.abc import Iterable, Iterator
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
+from rocking.checks import number_hint
 from rocking.conventions import LENGTH_UNITS
-from rocking.errors import BodyFileError, MissingExtraError, RockingError
+from rocking.errors import BodyFileError, InvalidValueError, RockingError
+from rocking.messages import Message, Option, Place, Range
 
 if TYPE_CHECKING:
-    from pydantic import BaseModel, ValidationError
+    from pydantic import BaseModel
     from pydantic_core import ErrorDetails
 
 T = TypeVar("T", bound="BaseModel")
+E = TypeVar("E", bound=RockingError)
 
-_MUST_BE = {
-    "float_type": "must be a number",
-    "finite_number": "must be a finite number",
-    "greater_than": "must be a number > {gt:g}",
-    "greater_than_equal": "must be a number >= {ge:g}",
-    "less_than_equal": "must be a number <= {le:g}",
-    "int_type": "must be a whole number",
-    "int_from_float": "must be a whole number",
-    "string_type": "must be text",
-    "list_type": "must be a list",
-    "dict_type": "must be a table",
-    "model_type": "must be a table",
-    "literal_error": "must be one of {expected}",
+_KINDS = {
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text",
+    "list_type": "a list",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "bool_type": "true or false",
+}
+_BOUNDS = {"greater_than": "gt", "greater_than_equal": "ge", "less_than": "lt", "less_than_equal": "le"}
+_TEXTS = {
+    "missing": "{parameter} is missing",
+    "too_short": "{parameter} must have at least {min_length} entries, got {actual_length}",
+    "too_long": "{parameter} must have at most {max_length} entries, got {actual_length}",
+    "string_too_short": "{parameter} must not be empty, got {value}",
+    "string_too_long": "{parameter} must have at most {max_length} characters, got {value}",
 }
 _UNITS = {
     **dict.fromkeys(("density", "layers"), "kg/m3"),
@@ -37,27 +48,64 @@ _UNITS = {
     **dict.fromkeys(("sides", "axis"), ""),
     "degrees": "degree",
 }
-_SHOWN = reprlib.Repr()
-_SHOWN.maxstring = _SHOWN.maxother = 60
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return what to say after an unknown word: the nearest known one and all that are allowed.
+    """Return the hint about an unknown word: the nearest known one and all that are allowed.
 
     >>> suggestion("heigth", ["height", "width"])
-    '; did you mean height? Allowed: height, width'
+    'did you mean height? Allowed: height, width'
     """
     known = list(known)
     near = difflib.get_close_matches(word[:60], known, n=1)
     allowed = ", ".join(known[:30])
-    return f"; did you mean {near[0]}? Allowed: {allowed}" if near else f"; allowed: {allowed}"
+    return f"did you mean {near[0]}? Allowed: {allowed}" if near else f"allowed: {allowed}"
 
 
-def sentence(error: "ValidationError", units: Any) -> str:
-    """Return a validation error as one sentence with key path, value and allowed range."""
-    problems = error.errors(include_url=False)
-    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-    return _first(problems[0], units) + more
+def from_pydantic(problems: "Sequence[ErrorDetails]", units: Any = None, kind: type[E] = InvalidValueError) -> E:  # type: ignore[assignment]
+    """Return the first error of a validation by pydantic as one of ours, with the number of the others."""
+    # units: unit of the lengths among the values
+    path, own = _path(problems[0]["loc"]), problems[0].get("ctx", {}).get("error")
+    if isinstance(own, RockingError):
+        made = own.copied(kind)
+        made.places = (*([Place(path, "key")] if path else []), *own.places)
+    else:
+        made = kind(**_stated(problems[0], path, units))
+    made.more = len(problems) - 1
+    return made
+
+
+def _stated(problem: "ErrorDetails", path: str, units: Any) -> dict[str, Any]:
+    """Return what `RockingError` takes, of an error of pydantic."""
+    kind, value, context, unit = problem["type"], problem["input"], problem.get("ctx", {}), _unit(problem["loc"], units)
+    stated = {"parameter": path, "value": value}
+    if kind in _TEXTS:
+        hint = UNITS_FIRST if (kind, path) == ("missing", "units") else ""
+        return {**stated, **context, "text": _TEXTS[kind], "hint": hint}
+    if kind in _KINDS:
+        number = "number" in _KINDS[kind]
+        words = f"{_KINDS[kind]} [{unit}]" if unit and number else _KINDS[kind]
+        hint = number_hint(value) if number and "whole" not in _KINDS[kind] and isinstance(value, str) else ""
+        return {**stated, "allowed": words, "hint": hint}
+    if kind in _BOUNDS:
+        bound = float(context[_BOUNDS[kind]])
+        low, high = (bound, math.inf) if kind in {"greater_than", "greater_than_equal"} else (-math.inf, bound)
+        allowed = Range(low, high, unit, kind == "greater_than", kind == "less_than")
+        return {**stated, "allowed": allowed, "text": "{parameter} must be a number {allowed}, got {value}"}
+    if kind == "literal_error":
+        near = difflib.get_close_matches(str(value)[:60], re.findall(r"'([^']+)'", context["expected"]), n=1)
+        return {
+            **stated, "allowed": f"one of {context['expected']}", "hint": f"did you mean {near[0]}?" if near else ""
+        }  # fmt: skip
+    return {**stated, "text": "{parameter} is refused ({reason}), got {value}", "reason": problem["msg"]}
+
+
+UNITS_FIRST = f'add units = "m" or another of {", ".join(LENGTH_UNITS)}; units are never guessed'
+
+
+def unit_to_state() -> Message:
+    """Return the hint that a unit of length has to be stated."""
+    return Message("give {option}, one of {units}", {"option": Option("body.units"), "units": ", ".join(LENGTH_UNITS)})
 
 
 def validated(kind: type[T], given: dict[str, Any]) -> T:
@@ -67,27 +115,7 @@ def validated(kind: type[T], given: dict[str, Any]) -> T:
     try:
         return kind.model_validate(given)
     except ValidationError as error:
-        raise BodyFileError(sentence(error, given.get("units"))) from error
-
-
-def _first(problem: "ErrorDetails", units: Any) -> str:
-    path, kind, context = _path(problem["loc"]), problem["type"], problem.get("ctx", {})
-    if kind == "missing":
-        return _missing(path)
-    if kind in {"unknown_key", "contradiction"}:
-        return f"{path}: {problem['msg']}" if path else problem["msg"]
-    if kind in {"too_short", "too_long"}:
-        bound = f"at least {context['min_length']}" if kind == "too_short" else f"at most {context['max_length']}"
-        return f"{path} must have {bound} entries, got {context['actual_length']}"
-    words = _MUST_BE[kind].format(**context) if kind in _MUST_BE else f"is refused ({problem['msg']})"
-    unit = _unit(problem["loc"], units) if "number" in words else ""
-    return f"{path} {words}{unit}, got {_SHOWN.repr(problem['input'])}"
-
-
-def _missing(path: str) -> str:
-    if path == "units":
-        return f'units is missing: add units = "m" or another of {", ".join(LENGTH_UNITS)}; units are never guessed'
-    return f"{path} is missing"
+        raise from_pydantic(error.errors(include_url=False), given.get("units"), BodyFileError) from error
 
 
 def _path(loc: tuple[int | str, ...]) -> str:
@@ -96,7 +124,7 @@ def _path(loc: tuple[int | str, ...]) -> str:
 
 def _unit(loc: tuple[int | str, ...], units: Any) -> str:
     unit = next((_UNITS[part] for part in loc if isinstance(part, str) and part in _UNITS), units)
-    return f" [{unit}]" if isinstance(unit, str) and unit in {*LENGTH_UNITS, *_UNITS.values()} - {""} else ""
+    return unit if isinstance(unit, str) and unit in {*LENGTH_UNITS, *_UNITS.values()} else ""
 
 
 LARGEST_FILE = 64 * 2**20  # larger files are refused [byte]
@@ -109,23 +137,6 @@ class Placement(TypedDict, total=False):
     feet: tuple[float, float] | None
     depth: float
     ground: float
-
-
-@contextmanager
-def blamed(where: str) -> Iterator[None]:
-    """Put a place in front of every refusal that is raised inside.
-
-    >>> with blamed("pier.toml"):
-    ...     raise BodyFileError("no [section]")
-    Traceback (most recent call last):
-    rocking.errors.BodyFileError: pier.toml: no [section]
-    """
-    try:
-        yield
-    except RockingError as error:
-        if isinstance(error, MissingExtraError):
-            raise
-        raise type(error)(f"{where}: {error}") from error
 
 
 @contextmanager

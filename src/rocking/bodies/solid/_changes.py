@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.bodies.moments import SolidMoments
 from rocking.conventions import FloatArray, percent
 from rocking.errors import GeometryError
+from rocking.messages import Message, Option
 
 Repair = Literal["none", "safe", "all"]
 
@@ -21,9 +22,11 @@ InnerParts = Literal["refuse", "solid", "cavity"]
 MOST_VOLUME = 0.01  # what safe repairs together may change of the volume [-]
 MOST_SHIFT = 0.005  # how far safe repairs together may move the centre of mass, over the size of the body [-]
 
-HELP = (
-    'repair="all" takes it all the same, surface="wrap" or surface="hull" a skin over its points instead; best is to '
-    "mend it in the program that made it"
+SKINS = {"wrap": Option("body.surface", "wrap"), "hull": Option("body.surface", "hull")}
+HELP = Message(
+    "{all} takes it all the same, {wrap} or {hull} a skin over its points instead; best is to mend it in the program "
+    "that made it",
+    {"all": Option("body.repair", "all"), **SKINS},
 )
 
 
@@ -49,7 +52,10 @@ class Changes:
     def say(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
         """Note a repair; volume: what it can have changed [m3], about a place [m], or anywhere."""
         if self.allowed == "none":
-            raise GeometryError(f'it needs a repair, which repair="none" refuses: {sentence}')
+            stated = Option("body.repair", "none")
+            raise GeometryError(
+                "it needs a repair, which {stated} refuses: {sentence}", stated=stated, sentence=sentence
+            )
         self.note(sentence, volume, where)
 
     def note(self, sentence: str, volume: float = 0.0, where: FloatArray | None = None) -> None:
@@ -81,6 +87,7 @@ class Changes:
                 f"its repairs may change {percent(share)} of the volume and move the centre by "
                 f"{1000.0 * shift:.2g} mm, more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the size "
                 f"({1000.0 * MOST_SHIFT * size:.2g} mm) that are safe: "
-                f"{'; '.join(words for words, pair in zip(listed, bounds, strict=True) if pair[0])}; {HELP}"
+                f"{'; '.join(words for words, pair in zip(listed, bounds, strict=True) if pair[0])}",
+                hint=HELP,
             )
         return tuple(listed)

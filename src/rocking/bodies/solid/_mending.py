@@ -3,13 +3,14 @@
 import numpy as np
 
 from rocking.bodies.moments import polyhedron_moments
-from rocking.bodies.solid._changes import MOST_VOLUME, Changes
+from rocking.bodies.solid._changes import MOST_VOLUME, SKINS, Changes
 from rocking.bodies.solid._self_crossing import check_crossings, pierced
 from rocking.bodies.solid._shells import connected, neighbours
 from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
+from rocking.messages import Message
 
 THIN = 0.05  # thickness of a sheet over its width [-]
 DUST, SPECK = 1e-3, 1e-6  # boxes of pieces left out over the largest one's: open pieces, closed ones [-]
@@ -95,9 +96,12 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     if found.pairs or swept.sum() > most * abs(polyhedron_moments(before[faces]).mass):
         raise GeometryError(
             f"the surface passes through itself, most plainly near {changes.place(first.place)}; {first.pairs} pair(s) "
-            'of faces cross, more than smoothing parts: what it encloses is not defined; surface="wrap" or '
-            'surface="hull" takes a skin over its points instead; best is to repair it in the program that made it, '
-            "for instance by a boolean union"
+            "of faces cross, more than smoothing parts: what it encloses is not defined",
+            hint=Message(
+                "{wrap} or {hull} takes a skin over its points instead; best is to repair it in the program that made "
+                "it, for instance by a boolean union",
+                SKINS,
+            ),
         )
     if first.pairs:
         changes.say(

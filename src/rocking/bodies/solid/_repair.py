@@ -14,7 +14,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid._changes import HELP, Changes, InnerParts, Repair, in_words
+from rocking.bodies.solid._changes import HELP, SKINS, Changes, InnerParts, Repair, in_words
 from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, decimated, hollowed, oriented_shells, turned_consistently
 from rocking.bodies.solid._skin import Surface, skin
@@ -23,6 +23,7 @@ from rocking.bodies.solid.polyhedron import Polyhedron, alone, checked_triangles
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
+from rocking.messages import Message, Option
 
 LOW = 0.1  # a rim is that of a bottom if half of it lies so low, over the height of the body [-]
 
@@ -54,7 +55,7 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
             del path[at + 1 :]
         if len(path) > 1:
             raise GeometryError(
-                f"the open edges of the surface form no rings, as more than two faces meet there; {HELP}"
+                "the open edges of the surface form no rings, as more than two faces meet there", hint=HELP
             )
     return loops
 
@@ -65,11 +66,13 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
     if not loops:
         return points, faces
     if changes.allowed == "none":
-        raise GeometryError(f'{_listed(loops, points, changes)}; repair="safe" closes an open bottom and small holes')
+        hint = Message("{safe} closes an open bottom and small holes", {"safe": Option("body.repair", "safe")})
+        raise GeometryError(_listed(loops, points, changes), hint=hint)
     if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
         raise GeometryError(
             f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang "
-            f"together; {HELP}"
+            "together",
+            hint=HELP,
         )
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for ring in loops:
@@ -248,8 +251,8 @@ def _closed_surface(
     if count := len(open_edges(faces)):
         raise GeometryError(
             f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
-            'do more than two faces meet along them, or is the surface one-sided? surface="wrap" stretches a skin over '
-            "its points instead"
+            "do more than two faces meet along them, or is the surface one-sided?",
+            hint=Message("{wrap} stretches a skin over its points instead", SKINS),
         )
     return points, faces
 

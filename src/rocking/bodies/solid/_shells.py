@@ -11,6 +11,7 @@ from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray, percent
 from rocking.errors import GeometryError
+from rocking.messages import Message, Option
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -21,13 +22,16 @@ WORTH = 0.7  # it is done if no more than so much of the faces stays [-]
 _MOST_DISTANCES = 20_000_000
 
 
+_READINGS = {reading: Option("body.inner_parts", reading) for reading in ("solid", "cavity")}
+
+
 def manifold(points: FloatArray, faces: IntArray) -> "Manifold":
     """Return a closed, oriented surface as manifold3d holds it."""
     from manifold3d import Error, Manifold, Mesh64
 
     found = Manifold(Mesh64(np.ascontiguousarray(points), np.ascontiguousarray(faces, dtype=np.uint64)))
     if found.status() != Error.NoError:
-        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name}); {HELP}")
+        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name})", hint=HELP)
     return found
 
 
@@ -218,8 +222,8 @@ def _inner_parts(
     share = (solid - hollow) / solid
     if share > MOST_VOLUME:
         raise GeometryError(
-            f"{words} can be matter or cavities: {differ}, which is {percent(share)} of the volume; state "
-            'inner_parts="solid" or inner_parts="cavity"'
+            f"{words} can be matter or cavities: {differ}, which is {percent(share)} of the volume",
+            hint=Message("state {solid} or {cavity}", _READINGS),
         )
     where = np.average(middles, axis=0, weights=sizes)
     changes.say(f'took {words}, as solid; inner_parts="cavity" states the other reading', solid - hollow, where)
@@ -254,7 +258,7 @@ def _united(
     involved = np.unique(crossing)
     if (within[involved].sum(axis=1) % 2).any():
         i, j = crossing[0]
-        raise GeometryError(f"shells {i} and {j} of the surface pass through each other within another one; {HELP}")
+        raise GeometryError(f"shells {i} and {j} of the surface pass through each other within another one", hint=HELP)
     bodies = [_outward(points, shells[i]) for i in involved]
     whole = Manifold.batch_boolean([manifold(points, shell) for shell in bodies], OpType.Add)
     volumes = [polyhedron_moments(points[shell]).mass for shell in bodies]

@@ -34,8 +34,8 @@ from rocking.campaigns.jobs.rounds import (
 )
 from rocking.campaigns.ledger import Verification
 from rocking.campaigns.status import CampaignStatus, Summary
-from rocking.errors import InvalidValueError
-from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
+from rocking.errors import InvalidValueError, located
+from rocking.spec.reading import InputFiles, document_of, refuse_changes
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument
@@ -120,13 +120,13 @@ class JobFolder:
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
-        with located(str(path)):
+        with located(str(path), "file"):
             files = InputFiles(base)
             for item in content["files"]:  # before they are read: what has changed may not be readable
                 files.file(item["path"])
             refuse_changes(content["files"], files.facts())
         job = Job.of_text(text, content["job_file"], base)
-        with located(str(path)):
+        with located(str(path), "file"):
             refuse_changes(content["files"], job.inputs)
         return cls(path, job)
 
@@ -256,7 +256,7 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
 
 def _document(path: Path) -> "CampaignDocument":
     text, content = _kept(path)
-    with located(content["job_file"]):
+    with located(content["job_file"], "file"):
         return document_of(text)
 
 

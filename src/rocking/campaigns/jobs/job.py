@@ -15,9 +15,10 @@ import numpy as np
 from rocking.campaigns.identity import software
 from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.plane import fast_engine
+from rocking.errors import located
 from rocking.motions.summary import summaries_of
 from rocking.restitution import RestitutionModel
-from rocking.spec.reading import document_of, located, read_text
+from rocking.spec.reading import document_of, read_text
 from rocking.studies.motion_sets import MotionList
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ class Job:
             The job.
         """
         job = cls(text, name, Path(folder))
-        with located(name):
+        with located(name, "file"):
             _ = job.study
         return job
 

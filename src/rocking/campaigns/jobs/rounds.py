@@ -59,8 +59,9 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         yield
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
-        if NAME not in str(error):  # a shard or the ledger: whoever goes on makes it anew
-            raise CampaignDamagedError(f"{str(error).split('; run ')[0]}; go on with: {resume(folder)}") from error
+        if not any(place.name.endswith(NAME) for place in error.places):  # a shard or the ledger, which is made anew
+            error.hint = f"go on with: {resume(folder)}"
+            raise
         raise CampaignDamagedError(
             f"{path / NAME} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
         ) from error

@@ -13,6 +13,7 @@ from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray, g
 from rocking.errors import MeasurementError, extra
 from rocking.identification.measurement import ImpactTimes, RotationSeries
+from rocking.messages import Message, Option
 from rocking.motions.formats.column_text import ColumnText
 from rocking.motions.formats.numbers import gap_words
 from rocking.motions.formats.record import Source
@@ -129,7 +130,7 @@ class MeasuredTable:
             return self.place("time_column", options.time_column)
         called = [place for place, name in enumerate(self.names) if _NAMED_TIME.fullmatch(name.strip())]
         if len(called) > 1:
-            raise self.source.error(None, f"several columns are called a time; say time_column= one of {self.listed()}")
+            raise self.source.error(None, "several columns are called a time", hint=self.to_state("time_column"))
         return called[0] if called else None
 
     def unit(self, place: int, given: str | None, argument: str) -> str:
@@ -137,12 +138,19 @@ class MeasuredTable:
         stated = self.units[place]
         if stated is None and given is None:
             name = self.names[place]
-            raise self.source.error(None, f"column {name!r} states no unit: write {name} [unit], or give {argument}=")
+            hint = Message(f"write {name} [unit], or give {{option}}", {"option": Option(f"measurement.{argument}")})
+            raise self.source.error(None, f"column {name!r} states no unit", hint=hint)
         if None not in (stated, given) and stated != given:
             raise self.source.error(
                 None, f"column {self.names[place]!r} is in {stated}, {argument}={given!r} was given"
             )
         return str(stated if given is None else given)
+
+    def to_state(self, argument: str) -> Message:
+        """Return the hint that the name of a column has to be stated."""
+        return Message(
+            "say {option} one of {names}", {"option": Option(f"measurement.{argument}"), "names": self.listed()}
+        )
 
     def listed(self) -> str:
         """Return the names of all columns."""
@@ -152,13 +160,13 @@ class MeasuredTable:
 def impact_list(source: Source, options: ReaderOptions) -> ImpactTimes:
     """Return the times of impacts that a column lists."""
     if options.height is not None:
-        raise source.error(None, "a list of times takes no height=")
+        raise source.error(None, "a list of times takes no {option}", option=Option("measurement.height"))
     table = MeasuredTable.of(source)
     name = options.column if options.column is not None else options.time_column
     place = table.place("column", name) if name is not None else table.times(options)
     if place is None:
         if len(table.names) > 1:
-            raise source.error(None, f"which column has the times of impacts? Say column= one of {table.listed()}")
+            raise source.error(None, "which column has the times of impacts?", hint=table.to_state("column"))
         place = 0
     unit = table.unit(place, options.unit if options.unit is not None else options.time_unit, "unit")
     factor = TIME_UNITS[checks.one_of("unit of the times", unit, TIME_UNITS)]
@@ -172,18 +180,18 @@ def motion_series(source: Source, options: ReaderOptions) -> RotationSeries | Im
     if len(table.names) == 1 and options.kind is None and (at is not None or table.units[0] in TIME_UNITS):
         return impact_list(source, options)
     if at is None:
-        raise source.error(None, f"which column is the time? Call it time [s], or say time_column= of {table.listed()}")
+        hint = table.to_state("time_column")
+        raise source.error(None, "which column is the time? One that is called time [s] is taken", hint=hint)
     factor = TIME_UNITS[checks.one_of("unit of the times", table.unit(at, options.time_unit, "time_unit"), TIME_UNITS)]
     others = [place for place in range(len(table.names)) if place != at]
     if options.column is None and len(others) != 1:
-        raise source.error(None, f"which column was measured? Say column= one of {table.listed()}")
+        raise source.error(None, "which column was measured?", hint=table.to_state("column"))
     place = others[0] if options.column is None else table.place("column", options.column)
     unit = table.unit(place, options.unit, "unit")
     kind = _kind(table, unit, options.kind)
     if (kind in _NEEDS_HEIGHT) != (options.height is not None):
-        raise source.error(
-            None, f"{kind}: {'give' if options.height is None else 'takes no'} height= of the sensor [m]"
-        )
+        need = "give" if options.height is None else "takes no"
+        raise source.error(None, f"{kind}: {need} {{option}} of the sensor [m]", option=Option("measurement.height"))
     time = _increasing(table, at, factor)
     values = table.values[:, place] * UNITS[kind][unit]
     doubts = clock_doubts(time)

@@ -10,6 +10,7 @@ from rocking.identification.readers.columns import ReaderOptions, impact_list, m
 from rocking.identification.readers.recording import COMPRESSED, read_compressed, read_wav
 from rocking.identification.readers.sound import impacts_heard, refuse_sound
 from rocking.identification.readers.video import VIDEOS, rotation_seen
+from rocking.messages import Option
 from rocking.motions.formats.record import Source
 
 Measurement = ImpactTimes | RotationSeries
@@ -93,11 +94,14 @@ def read_measurement(  # noqa: PLR0913 - what may be said of a file
         if path.suffix.lower() in VIDEOS:
             return _filmed(path, options)
         if (region, frame_rate) != (None, None):
-            raise MeasurementError(f"{path.name}: is no video, and takes no region= or frame_rate=")
+            raise MeasurementError(
+                "is no video, and takes no {region} or {rate}",
+                region=Option("measurement.region"), rate=Option("measurement.frame_rate"),
+            ).at(path.name)  # fmt: skip
         source = Source.of_path(path)
         return _reader(path, kind)(source, options)
     except RecordError as error:  # from what reads the columns of ground motions too
-        raise MeasurementError(str(error)) from error
+        raise error.copied(MeasurementError) from error
     except RockingError:
         raise
     except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained

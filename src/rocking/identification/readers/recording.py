@@ -43,7 +43,7 @@ class Recording:
 
     def error(self, cause: str) -> MeasurementError:
         """Return the error for a cause, to be raised."""
-        return MeasurementError(f"{self.name}: {cause}")
+        return MeasurementError(cause).at(self.name)
 
     @property
     def channel(self) -> FloatArray:

@@ -44,7 +44,7 @@ class Film:
 
     def error(self, cause: str) -> MeasurementError:
         """Return the error for a cause, to be raised."""
-        return MeasurementError(f"{self.name}: {cause}")
+        return MeasurementError(cause).at(self.name)
 
     @cached_property
     def changes(self) -> FloatArray:

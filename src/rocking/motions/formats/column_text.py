@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
 from rocking.motions.formats.directions import orientation
-from rocking.motions.formats.headers import acceleration_unit
+from rocking.motions.formats.headers import acceleration_unit, unit_to_state
 from rocking.motions.formats.numbers import plain_table, read_rows
 from rocking.motions.formats.record import Source, readable
 
@@ -375,7 +375,7 @@ class NamedColumns:
         silent = [one for one in self.accelerations if one.unit is None]
         if silent and asked is None and len(silent) < len(self.accelerations):
             states = f"{_listed(silent)} state{'s' if len(silent) == 1 else ''} no unit"
-            raise source.error(None, f"{states}: write one behind, or remove the column; say units= one of {_UNITS}")
+            raise source.error(None, f"{states}: write one behind, or remove the column", hint=unit_to_state())
         said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
         return replace(self, accelerations=tuple(said))
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
 from rocking.errors import RecordError
+from rocking.messages import Message, Option
 from rocking.motions.formats.record import Component, Record, Source, metadata_of
 
 Channel = tuple[list[str], str, Component]
@@ -18,11 +19,17 @@ Channel = tuple[list[str], str, Component]
 LONGEST_LINE = 200  # characters of a header line that patterns look at
 
 
+def unit_to_state() -> Message:
+    """Return the hint that a unit of acceleration has to be stated."""
+    units = ", ".join(ACCELERATION_UNITS)
+    return Message("say {option} one of {units}", {"option": Option("motion.units"), "units": units})
+
+
 def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:
     """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing."""
     asked = None if asked is None else checks.one_of("units", asked, ACCELERATION_UNITS)
     if stated is None and asked is None:
-        raise source.error(None, f"the file does not state its unit; say units= one of {', '.join(ACCELERATION_UNITS)}")
+        raise source.error(None, "the file does not state its unit", hint=unit_to_state())
     if stated is not None and asked is not None and ACCELERATION_UNITS[stated] != ACCELERATION_UNITS[asked]:
         raise source.error(None, f"the file states the unit {stated}, you say {asked}")
     return stated or asked or ""
@@ -60,7 +67,8 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
     """Return the step of a file: what it states, or what the user says where it states nothing; 1e-6 to 10 s [s]."""
     step = stated if stated is not None else asked
     if step is None:
-        raise source.error(None, "the file does not state its time step; say time_step= in seconds")
+        hint = Message("say {option} in seconds", {"option": Option("motion.time_step")})
+        raise source.error(None, "the file does not state its time step", hint=hint)
     if stated is not None and asked is not None and abs(stated - asked) > 1e-9 * stated:
         raise source.error(None, f"the file states a time step of {stated:g} s, you say {asked:g}")
     if not 1e-6 <= step <= 10.0:

@@ -16,6 +16,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
+from rocking.messages import Message, Option
 from rocking.motions.formats import directions, headers
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.formats.sac import Trace, need_obspy, read_traces, trace_of
@@ -26,9 +27,9 @@ _ENCODING = 1000
 """Blockette that says how samples are encoded, and how long a record is (SEED Reference Manual, version 2.4)."""
 _SI = "SI"
 """Location code of real numbers in m/s2: what the format leaves to whoever writes, and no network is known to use."""
-OF_COUNTS = (
-    '; name their StationXML file or a folder of such files, process="response:stations=FILE.xml", or the folder '
-    "that holds both"
+STATIONS = Message(
+    "name their StationXML file or a folder of such files, {process}, or the folder that holds both",
+    {"process": Option("motion.process", "response:stations=FILE.xml")},
 )
 """How the counts of a recorder become accelerations."""
 
@@ -135,7 +136,7 @@ def _component(
     side = directions.orientation(trace.about["channel"])
     if trace.channels is None:
         if trace.samples.dtype.kind in "iu":
-            raise source.error(None, f"{trace.id} holds counts, no accelerations{OF_COUNTS}")
+            raise source.error(None, f"{trace.id} holds counts, no accelerations", hint=STATIONS)
         headers.doubt_channel(source, trace.about["channel"])
         stated = "m/s2" if trace.id.split(".")[2:3] == [_SI] else None
         about[directions.KEY] = directions.as_text(side)

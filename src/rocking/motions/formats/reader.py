@@ -12,6 +12,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
+from rocking.messages import Message, Option
 from rocking.motions.components import with_vertical
 from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
@@ -367,14 +368,14 @@ def _recognised(source: Source) -> RecordFormat:
     found = [one for one in known if one.recognises(source)]
     if len(found) > 1:
         names = ", ".join(one.name for one in found)
-        raise source.error(None, f"it could be {names}; say format= one of these")
+        hint = Message("say {option} one of these", {"option": Option("motion.format")})
+        raise source.error(None, f"it could be {names}", hint=hint)
     if found:
         return found[0]
     last = format_named(LAST_RESORT)
     if near := next((one for one in known if one.resembles(source)), None):
-        raise source.error(
-            None, f"its header is nearly that of {near.name}; damaged? Say format={near.name} to see where"
-        )
+        hint = Message("say {option} to see where", {"option": Option("motion.format", near.name)})
+        raise source.error(None, f"its header is nearly that of {near.name}; damaged?", hint=hint)
     if last.recognises(source):
         return last
     unknown = f"not recognised as any of {', '.join(_CLASSES)}; damaged, or another format?"
@@ -390,10 +391,13 @@ def _chosen(record: Record, what: str, name: str | None, other: Component | None
     if name is None:
         left = [part for part in record.components if part is not other]
         if len(record.components) > 1 or not left:
-            raise InvalidValueError(f"the file has the components {', '.join(names)}; say {what}= one of these")
+            hint = Message("say {option} one of these", {"option": Option(f"motion.{what}")})
+            raise InvalidValueError(
+                "the file has the components {names}", hint=hint, names=", ".join(names), components=tuple(names)
+            )
         return left[0]
     found = [part for part in record.components if part.name.casefold() == str(name).strip().casefold()]
     if len(found) != 1 or found[0] is other:
-        hint = "it is the vertical one already" if found and found[0] is other else f"the file has {', '.join(names)}"
-        raise InvalidValueError(f"{what} must name one component, got {name!r:.60}; {hint}")
+        why = "it is the vertical one already" if found and found[0] is other else f"the file has {', '.join(names)}"
+        raise InvalidValueError(f"{what} must name one component, got {name!r:.60}", hint=why)
     return found[0]

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -84,9 +84,9 @@ class Source:
             last -= 1
         return last
 
-    def error(self, line: int | None, cause: str) -> RecordError:
-        """Return the error for a line, to be raised."""
-        return RecordError(f"{self.name}{'' if line is None else f', line {line + 1}'}: {cause}")
+    def error(self, line: int | None, cause: str, **facts: Any) -> RecordError:
+        """Return the error for a line, to be raised; facts: as of `RockingError`."""
+        return RecordError(cause, **facts).at(self.name, 0 if line is None else line + 1)
 
     def doubt(self, line: int | None, cause: str) -> None:
         """Keep a doubt about a line, which is said once the file is read."""

@@ -53,6 +53,9 @@ _TOP = 500  # lines within which PEER's list of files begins
 _SPECIAL = "*?["
 
 
+Reason = str | RockingError
+
+
 @dataclass(frozen=True, eq=False)
 class RecordSet:
     """Records of several stations or earthquakes, and what was left out.
@@ -61,7 +64,7 @@ class RecordSet:
     ----------
     records : tuple of Components
         One motion a record: two horizontal components x and y, and z, upwards; None where there is none.
-    left_out : tuple of pairs of str
+    left_out : tuple of pairs of str and str or RockingError
         File and reason of what could not be read, and of components that could not be put together.
 
     Examples
@@ -73,7 +76,7 @@ class RecordSet:
     """
 
     records: tuple[Components, ...]
-    left_out: tuple[tuple[str, str], ...] = ()
+    left_out: tuple[tuple[str, Reason], ...] = ()
 
     def __len__(self) -> int:
         return len(self.records)
@@ -195,7 +198,7 @@ def read_records(  # noqa: PLR0913 - every one of them is a property of some set
     options: dict[str, Any] = {"format": format, "units": units, "time_step": time_step, "skip": skip}
     read = partial(_read, **options, stations=stations or beside or None)
     records: list[Components] = []
-    left_out: list[tuple[str, str]] = []
+    left_out: list[tuple[str, Reason]] = []
     paths = [one for one in paths if one not in beside]
     in_lists = [file for path, rows in lists for row in rows for file in row.paths(path.parent).values()]
     own = by_path(files, [*paths, *in_lists])
@@ -275,7 +278,7 @@ def mapped(
         raise InvalidValueError(f"{workers} workers could not be started, or one died; {why}") from error
 
 
-Read = tuple[list[GroundMotion] | str, list[str]]  # the components or why there are none, and doubts
+Read = tuple[list[GroundMotion] | RockingError, list[str]]  # the components or why there are none, and doubts
 
 
 def _read(item: "Item", **options: Any) -> Read:
@@ -284,17 +287,17 @@ def _read(item: "Item", **options: Any) -> Read:
     with warnings.catch_warnings(record=True) as doubts:
         warnings.simplefilter("always")
         try:
-            found: list[GroundMotion] | str = motions_in(path, **{**options, **dict(own)})
+            found: list[GroundMotion] | RockingError = motions_in(path, **{**options, **dict(own)})
         except RockingError as error:
-            found = str(error).removeprefix(f"{path.name}: ")
+            found = error.without_file(path.name)
     return found, [str(each.message) for each in doubts]
 
 
-def _motions(path: Path, read: Read, left_out: list[tuple[str, str]], doubted: list[str]) -> list[GroundMotion]:
+def _motions(path: Path, read: Read, left_out: list[tuple[str, Reason]], doubted: list[str]) -> list[GroundMotion]:
     found, doubts = read
     said = [doubt.removeprefix("check the input: ").removeprefix(f"{path.name}: ") for doubt in doubts]
     doubted += (f"{path.name}: {doubt}" for doubt in said)
-    if isinstance(found, str):
+    if isinstance(found, RockingError):
         left_out.append((str(path), found))
         return []
     told = {"file": path.name} | ({"doubts": "; ".join(said)} if said else {})
@@ -311,7 +314,7 @@ def _warn(doubted: list[str]) -> None:
 def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
     """Return the records of files, of which those that belong together by their names or headers are one."""
     groups: dict[Any, list[tuple[GroundMotion, str]]] = {}
-    left_out: list[tuple[str, str]] = []
+    left_out: list[tuple[str, Reason]] = []
     doubted: list[str] = []
     for path, read in files:
         for motions in _by_sensor(_motions(path, read, left_out, doubted)):
@@ -563,7 +566,7 @@ def _is_number(text: str) -> bool:
 
 def _listed(rows: Iterable[tuple[ListedRecord, Mapping[str, Read]]]) -> RecordSet:
     records: list[Components] = []
-    left_out: list[tuple[str, str]] = []
+    left_out: list[tuple[str, Reason]] = []
     doubted: list[str] = []
     for row, reads in rows:
         parts = {axis: _motions(Path(name), reads[axis], left_out, doubted) for axis, name in row.files.items()}

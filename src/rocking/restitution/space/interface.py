@@ -63,7 +63,7 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     name = name if name in _MODELS else checks.spelling(f"{model}-3d", _MODELS)
     if name not in _MODELS:
         there, near = ", ".join(_MODELS), checks.nearest(model, _MODELS)
-        raise UnknownModelError(f"no restitution model in space is called {model!r}; there are {there}{near}")
+        raise UnknownModelError(f"no restitution model in space is called {model!r}; there are {there}", hint=near)
     return _MODELS[name]()
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import Message, Option
 from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
@@ -24,6 +25,7 @@ Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
 COMMON = "common-dispersion"  # method of curves that share one dispersion
 ROCKING = NAMED["rocking"].name
+STATES = Option("export.states")
 TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
 
 
@@ -356,7 +358,9 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
     except InvalidValueError as error:
         names = ", ".join(curve.state for curve in model.curves)
-        raise InvalidValueError(f"{error} The states are {names}: model_of(..., states=) leaves some out") from error
+        hint = Message(f"the states are {names}: {{option}} leaves some out", {"option": STATES})
+        error.hint = hint
+        raise
     unit, size = _shown(model.measure, model.unit)
     states = ", ".join(curve.state for curve in model.curves)
     adjusted = f"One dispersion was fitted to the states {states}, so that their curves do not cross."
@@ -452,13 +456,13 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
     model = without_crossing(model, crossing)
     if (worst := crosses(model, highest)) is None:
         return model
-    way_out = (
-        "no common dispersion fits these states: leave one out with states="
-        if model.adjusted
-        else 'their dispersions differ: crossing="keep-uplift" fits one for all states but rocking'
-    )
+    if model.adjusted:
+        hint = Message("no common dispersion fits these states: leave one out with {option}", {"option": STATES})
+    else:
+        keep = Option("export.crossing", "keep-uplift")
+        hint = Message("their dispersions differ: {option} fits one for all states but rocking", {"option": keep})
     raise InvalidValueError(
-        f"curves must not cross, but {worst.words(model)}, at most {TOLERANCE:g} is allowed; {way_out}"
+        f"curves must not cross, but {worst.words(model)}, at most {TOLERANCE:g} is allowed", hint=hint
     )
 
 

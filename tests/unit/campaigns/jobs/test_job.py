@@ -160,7 +160,7 @@ REFUSED = {
     "empty name": ('name = ""', 'name = "a small overturning-map"', r"campaign\.name must not be empty, got ''"),
     "units left out": ("", 'units = "m"\n', r"body: .*units is missing"),
     "unknown unit": ('units = "yards"', 'units = "m"', r"body: .*units must be one of .*got 'yards'"),
-    "negative width": ("width = -0.5", "width = 0.5", r"body: block\.width must be a number > 0 \[m\], got -0\.5"),
+    "negative width": ("width = -0.5", "width = 0.5", r"body: block\.width must be a number > 0 m, got -0\.5"),
     "width as words": ('width = "wide"', "width = 0.5", r"body: .*width must be a number \[m\], got 'wide'"),
     "infinite width": ("width = inf", "width = 0.5", r"body: .*width must be a finite number"),
     "date as width": ("width = 2026-01-01", "width = 0.5", r"body: "),

@@ -56,8 +56,6 @@ export const saveBlob = (blob, name) => {
 /** @type {Map<string, Line>} */
 const lines = new Map();
 
-const SIGNED_OUT = "this browser is not signed in; open the link that `rocking serve` prints";
-
 /** @param {Line} line */
 const follow = async (line) => {
   if (!line.next) return;
@@ -109,9 +107,8 @@ const addressOf = (path, query) => {
 const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-  const words = { message: `the server answered ${answer.status}`, ...told.error };
-  // What the server says of keys is for scripts.
-  return /Authorization/.test(words.message) ? { ...words, message: SIGNED_OUT } : words;
+  const error = { message: `the server answered ${answer.status}`, ...told.error };
+  return answer.status === 401 && error.text ? { ...error, message: error.text } : error; // its hint is for scripts
 };
 
 /** @param {Response} answer */

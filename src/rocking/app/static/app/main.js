@@ -12,7 +12,7 @@ import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { learnModels } from "/app/palette.js";
 import { whenBack } from "/app/offline.js";
 import { mountLent } from "/app/lent.js";
-import { fieldOf, placeOf, plainWords } from "/app/refusal.js";
+import { inPlainWords } from "/app/refusal.js";
 import { say } from "/app/say.js";
 import { showFailure } from "/app/failure.js";
 import { exchange, linkForAnother, showDoor } from "/app/session.js";
@@ -67,13 +67,6 @@ const createApp = (inputs, info) => {
   app.linkForAnother = () => linkForAnother(app).catch((error) => say(error.message, "error"));
   app.body = createBodyFacts(app);
   return app;
-};
-
-/** @param {any} error @param {Server.BodyInput} body */
-const inPlainWords = (error, body) => {
-  error.field = fieldOf(error.message);
-  error.place = placeOf(error.message, body);
-  error.message = plainWords(error.message, body);
 };
 
 /** @param {App} app @param {string} [view] */

@@ -1,95 +1,134 @@
-/** The server's refusals in the words of the page: names of fields, regions counted from one, its units. */
+/** The server's refusals in the words of the page, made from their facts: fields, regions counted from one, its units. */
 
 import { number, pretty } from "/app/format.js";
 
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
 /** @type {{ [path: string]: string | undefined }} */
-const FIELDS = {
-  "settings.gravity": "Gravity", "body.name": "Name", "body.units": "The unit of length",
-  time_step: "The time between two samples", units: "The unit",
+const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", "motion.time_step": "time between two samples", "motion.units": "unit" };
+
+/** A refusal in plain words, the field of the body that it is about, and where in the drawing it is; lengths are in the
+ * unit of the body. @param {any} error @param {Server.BodyInput} [body] */
+export const inPlainWords = (error, body) => {
+  if (!error.text) return;
+  const ofBody = error.places[0]?.name === "body" || error.parameter.startsWith("body.");
+  const units = ofBody && body && METRES[body.units] ? body.units : "m";
+  error.field = ofBody ? nameOf(error.parameter) : null;
+  error.place = ofBody ? placeOf(error) : null;
+  error.message = sentenceOf(error, units);
 };
 
-/** A refusal in plain words; lengths in metres are told in the body's unit.
- * @param {string} message @param {Server.BodyInput} [body] */
-export const plainWords = (message, body) => {
-  const units = body && METRES[body.units] ? body.units : "m";
-  return [withoutPlaces, withFields, withRegions, withLimits, withCurves, withMore, withChoices, capital]
-    .reduce((words, change) => change(words), inUnits(message, units));
+/** What the page has in place of an option that a message tells its reader to state.
+ * @type {{ [path: string]: string | undefined }} */
+const WAYS = {
+  "motion.units": "state it in the form", "motion.time_step": "state it in the form", "motion.format": "state it in the form",
+  "measurement.unit": "say it under \u201cUnit\u201d", "measurement.time_unit": "say it under \u201cUnit\u201d",
+  "identify.trend": "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d",
 };
 
-/** The key of the body's field that a refusal is about; nothing if it names none. @param {string} message */
-export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z_]+) must /)?.[1]
-  ?? (/ foot must lie /.test(message) ? "feet" : / centre of mass .*must lie /.test(message) ? "centre" : null);
+/** A message as the page spells its facts. @param {{ text: string, facts: { [name: string]: any } }} message
+ * @param {Server.BodyInput["units"]} [units] @returns {string} */
+export const spelt = ({ text, facts }, units = "m") => {
+  const kinds = Object.values(facts);
+  if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for it
+  const way = kinds.map((fact) => (fact?.kind === "option" ? WAYS[fact.path] : undefined)).find(Boolean);
+  return way ?? text.replace(/\{(\w+)\}/g, (_, name) => spelling(facts[name], units));
+};
+
+/** A refusal of a question in words; what it tells to state stands in the form. @param {any} refusal */
+export const refusalWords = (refusal) => {
+  const places = refusal.places.filter((/** @type {any} */ { kind }) => kind === "file" || kind === "step")
+    .map((/** @type {any} */ { name, kind, number: line }) => [name, kind === "file" && line ? `line ${line}` : ""].filter(Boolean).join(", "));
+  const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
+  const mark = Object.values(WAYS).includes(hint) ? ": " : "; ";
+  return [...places, spelt(refusal)].join(": ") + (hint && mark + hint);
+};
+
+/** The key of a form that a refusal is about. @param {any} refusal @returns {string | undefined} */
+export const keyOf = (refusal) => {
+  const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the field is that of a key of one file
+  return (ofOneFile ?? nameOf(refusal.parameter)).toLowerCase() || undefined;
+};
+
+/** @param {any} error @param {Server.BodyInput["units"]} units */
+const sentenceOf = (error, units) => {
+  const region = regionOf(error);
+  const where = region === undefined ? "" : `Region ${region + 1}: `;
+  const hint = error.hint?.text ? `; ${spelt(error.hint, units)}` : "";
+  const words = capital(spelt({ text: pageText(error), facts: { ...error.facts, ...valueOf(error) } }, units));
+  return `${where}${where ? words[0].toLowerCase() + words.slice(1) : words}${hint}${error.more ? "; more is wrong beside it" : ""}`;
+};
+
+// The page has the value of a number in its field already.
+const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
+/** @param {any} error */
+const pageText = ({ text, facts }) => (MUST.includes(text) && facts.allowed?.kind === "range"
+  ? "The {parameter} must be {allowed}; it is {value}" : text);
+
+/** The refused value, in the unit of its range. @param {any} error */
+const valueOf = ({ text, facts }) => {
+  const known = MUST.includes(text) && facts.allowed?.kind === "range" && Number.isFinite(Number(facts.value));
+  return known ? { value: { kind: "amount", value: Number(facts.value), unit: facts.allowed.unit } } : {};
+};
+
+/** @param {any} fact @param {Server.BodyInput["units"]} units @returns {string} */
+const spelling = (fact, units) => {
+  switch (fact?.kind) {
+    case "parameter": return FIELDS[fact.path] ?? nameOf(fact.path).replaceAll("_", " ");
+    case "option": return FIELDS[fact.path] ?? nameOf(fact.path).replaceAll("_", " ");
+    case "index": return String(fact.number + 1);
+    case "amount": return amount(fact.value, fact.unit, units);
+    case "range": return range(fact, units);
+    case "message": return spelt(fact, units);
+    default:
+      if (Array.isArray(fact)) return fact.map((part) => spelling(part, units)).join("; ");
+      return typeof fact === "number" ? number(fact) : String(fact ?? "");
+  }
+};
+
+/** A number with its unit; lengths and areas in metres are told in the unit of the body.
+ * @param {number} value @param {string} unit @param {Server.BodyInput["units"]} units */
+const amount = (value, unit, units) => {
+  const power = { m: 1, m2: 2 }[unit];
+  if (!power) return `${number(value)}${unit ? ` ${pretty(unit)}` : ""}`;
+  return `${number(value / METRES[units] ** power)} ${pretty(power === 1 ? units : `${units}2`)}`;
+};
+
+/** @param {any} range @param {Server.BodyInput["units"]} units */
+const range = ({ low, high, low_open: lowOpen, high_open: highOpen, unit }, units) => {
+  const [shown, scale] = unit === "m" ? [units, METRES[units]] : [unit, 1];
+  const [from, to] = [low, high].map((end) => (end === null ? null : number(end / scale)));
+  const behind = shown ? ` ${pretty(shown)}` : "";
+  if (high === null) return `${lowOpen ? "more than" : "at least"} ${from}${low === 0 ? "" : behind}`;
+  if (low === null) return `${highOpen ? "less than" : "at most"} ${to}${behind}`;
+  return `in ${lowOpen ? "(" : "["}${from}, ${to}${highOpen ? ")" : "]"}${behind}`;
+};
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index.
- * @param {string} message @param {Server.BodyInput} [body] */
-export const placeOf = (message, body) => {
-  if (!message.startsWith("body")) return null;
-  /** @param {RegExp} pattern */
-  const found = (pattern) => message.match(pattern)?.slice(1).map(Number);
-  const [x, y] = found(/ x = (\S+) m, y = (\S+?) m\b/) ?? [
-    found(/ foot must lie on the base, .*, got (\S+)$/)?.[0],
-    found(/ lowest point is y = (\S+) m/)?.[0] ?? (/ foot must lie on the base/.test(message) ? METRES[body?.units ?? "m"] * (body?.section?.ground ?? 0) : undefined),
-  ];
-  const regions = found(/\bregions (\d+) and (\d+)\b/) ?? found(/section\.region\[(\d+)\]/) ?? [];
-  const hole = found(/ hole (\d+)\b/)?.[0];
-  return x === undefined && y === undefined && !regions.length ? null : { x, y, regions, hole };
+ * @param {any} error */
+const placeOf = (error) => {
+  const { x, y, first, second, ring } = error.facts;
+  const region = regionOf(error);
+  const regions = first?.kind === "index" ? [first.number, second.number] : region === undefined ? [] : [region];
+  const hole = ring?.facts?.hole?.number;
+  const place = { x: x?.value, y: y?.value, regions, hole };
+  return place.x === undefined && place.y === undefined && !regions.length ? null : place;
 };
 
-/** @param {string} words */
-const withoutPlaces = (words) =>
-  words.replace(/^body: /, "")
-    .replace(/^section\.region\[(\d+)\]: region: /, (_, index) => `Region ${Number(index) + 1}: `)
-    .replace(/^(block|trapezoid|ellipse|regular_polygon|section|mass_points): /, "");
+/** The region of a section in which something is refused. @param {any} error @returns {number | undefined} */
+const regionOf = (error) => {
+  const index = [...error.places.map((/** @type {any} */ { name }) => name), error.parameter].map(indexOf).find((one) => one !== undefined);
+  return index;
+};
 
-/** @param {string} words */
-const withFields = (words) =>
-  words.replace(/^body\.section\.region\[(\d+)\]\.(\w+)(\[\d+\])*/, (_, index, key) =>
-    `The ${key} of region ${Number(index) + 1}`)
-    .replace(/^[a-z]+(?:\.[a-z]+)?(?:_[a-z]+)*(?= must )/, (path) => FIELDS[path] ?? path)
-    .replace(/^body\.(?:[a-z_]+\.)?([a-z]+)(?= must )/, (_, key) => `The ${key}`);
+/** @param {string} path */
+const indexOf = (path) => {
+  const index = path.match(/section\.region\[(\d+)\]/)?.[1];
+  return index === undefined ? undefined : Number(index);
+};
 
-/** @param {string} words */
-const withRegions = (words) =>
-  words.replace(/\bregions (\d+) and (\d+)\b/g, (_, first, second) =>
-    `regions ${Number(first) + 1} and ${Number(second) + 1}`);
-
-/** @param {string} words */
-const withLimits = (words) =>
-  words.replace(/must be a number > 0\b/, "must be more than 0")
-    .replace(/must be a number >= (\d+)/, "must be at least $1")
-    .replace(/ \[([^\]\d][^\]]*)\](?=,|$)/, "")
-    .replace(/(?<=must be .*), got '?(.*?)'?(?= \(and|$)/, (_, given) =>
-      (/^[-\d.e]+$/.test(given) ? `; it is ${number(Number(given))}` : ""));
-
-// What follows is an argument of scripts; the page has a button for it.
-/** @param {string} words */
-const withCurves = (words) => words.replace(/(; their dispersions differ): crossing=.*$/, "$1");
-
-/** @param {string} words */
-const withMore = (words) => words.replace(/ \(and \d+ more\)$/, "; more is wrong beside it");
-
-/** @param {string} words */
-const withChoices = (words) =>
-  words.replace(/^(\S+): does not state its unit; give units=.*$/,
-    "$1 does not say its unit: choose the unit of the file.");
+/** The last key of a path. @param {string} path */
+const nameOf = (path) => path.split(".").at(-1)?.replace(/(\[\d+\])+$/, "") ?? "";
 
 /** @param {string} words */
 const capital = (words) => words.replace(/^[a-z](?!\S*\.)(?![a-z]* ?[=[])/, (first) => first.toUpperCase());
-
-// Lengths and areas of a sentence about a body are in metres, whatever the drawing is in.
-/** @param {string} message @param {Server.BodyInput["units"]} units */
-const inUnits = (message, units) => {
-  if (units === "m" || !/^body: /.test(message)) return message;
-  /** @param {string} value */
-  const length = (value) => number(Number(value) / METRES[units]);
-  return message
-    .replace(/\[(-?[\d.e-]+), (-?[\d.e-]+)\] m, got (-?[\d.e-]+)$/, (_, low, high, given) =>
-      `[${length(low)}, ${length(high)}] ${units}; it is ${length(given)} ${units}`)
-    .replace(/\b(-?[\d.]+(?:e-?\d+)?) and (-?[\d.]+(?:e-?\d+)?) m\b(?!2)/g, (_, first, second) =>
-      `${length(first)} and ${length(second)} ${units}`)
-    .replace(/(-?\b[\d.]+(?:e-?\d+)?) m\b(?!2)/g, (_, value) => `${length(value)} ${units}`)
-    .replace(/(\b[\d.]+(?:e-?\d+)?) m2\b/g, (_, value) =>
-      `${number(Number(value) / METRES[units] ** 2)} ${pretty(`${units}2`)}`);
-};

@@ -54,6 +54,6 @@ const load = async (name, app, forget) => {
 
 // A module that did not come is asked for again when the view is next shown; the inputs outlast a reload.
 /** @param {any} error */
-const failure = (error) => (/import|fetch/i.test(error.message)
+const failure = (error) => (error instanceof TypeError
   ? "This part did not come from the server; is `rocking serve` still running?"
   : `This part could not be shown: ${error.message}`);

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
+import { keyOf, refusalWords } from "/app/refusal.js";
 import { Fetched } from "/charts/pictured.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
@@ -79,17 +80,8 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
 
 const AT_ONCE = 6; // files that are sent beside one another
 
-/** What a command says, as one says it who has the fields of the page in place of options and files. @param {string} words */
-export const ofThePage = (words) => WAYS.reduce((said, [option, field]) => said.replace(option, field), words);
-/** @type {[RegExp, string][]} */
-const WAYS = [
-  [/ See [\w-]+\.\w+\.$/, ""],
-  [/\btry (?:--set identify\.)?trend=true/i, "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d"],
-  [/(?:write \S+ \[unit\], or )?give (?:--set measurement\.)?(?:time_)?unit=/, "say it under \u201cUnit\u201d"],
-  [/; say (?:(?:--units|units=) one of [^;]*|(?:--set motion\.)?(?:time_step= in seconds|format= one of these))$/,
-    ": state it in the form"],
-  [/; least_barrier= takes such poses together/, ""],
-];
+/** Why a question is refused, in words of the page. @param {{ message: string, refusal?: any }} question */
+export const reasonOf = ({ message, refusal }) => sentence(refusal ? refusalWords(refusal) : message);
 
 // What stands of a question: being answered, refused, or its answer.
 /** @param {{ questions: Questions, answer: any }} props */
@@ -106,7 +98,7 @@ const Outcome = ({ questions, answer: Answer }) => {
       <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
       ${question.state === "refused" && html`
-        <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" words=${sentence(ofThePage(question.message))} /></div>
+        <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" words=${reasonOf(question)} /></div>
         <${Drawing} question=${question} alt="What was found all the same" />`}
       ${question.state === "stopped" && html`<${Note} words="It was stopped." />`}
       ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
@@ -167,13 +159,9 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
-const OF_ONE_FILE = /^motions\[\d+\]\.files\.(.+\.\w+) must /; // the field is that of a key of one file
-
-/** A refusal of the server as fields know it: the key that it names, and its words. @param {string} message */
-export const refusedOf = (message) => ({
-  key: (OF_ONE_FILE.exec(message) ?? /^(?:[\w-]+(?:\[\d+\])?\.)*(\w+)(?:\[\d+\])? must /.exec(message))?.[1].toLowerCase(),
-  words: sentence(ofThePage(message)),
-});
+/** A refusal of the server as fields know it: the key that it names, and its words.
+ * @param {{ message: string, refusal?: any }} refused */
+export const refusedOf = (refused) => ({ key: refused.refusal ? keyOf(refused.refusal) : undefined, words: reasonOf(refused) });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
  * asking, as words or as {key, words} of a field.
@@ -184,7 +172,7 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
   const { value: question } = questions.shown;
   const refused = useMemo(/** @returns {{ key?: string, words?: string }} */ () => {
     if (wrong) return typeof wrong === "string" ? { words: wrong } : wrong;
-    return question?.state === "refused" && questions.isOfForm(question.id) ? refusedOf(question.message) : {};
+    return question?.state === "refused" && questions.isOfForm(question.id) ? refusedOf(question) : {};
   }, [asked.value, wrong, question?.id, question?.state]);
   useEffect(() => {
     if (refused.key && asked.value && (wrong || !isTyping())) toWrong(form.current);

@@ -4,7 +4,7 @@ import { html, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { Button, Choice } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
-import { Drawing, ofThePage } from "/questions/parts.js";
+import { Drawing } from "/questions/parts.js";
 import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 
@@ -89,7 +89,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
         joules(each.energy, most), millimetres(each.nearest_edge)])} />
     ${poses.length > FEW && html`<p class="field-help">And ${poses.length - FEW} more, which a rise of
       ${millimetres(poses[FEW].barrier)} mm or less leaves.</p>`}
-    ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${ofThePage(note)}</p>`)}`;
+    ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 
 // A place a little before the surface, where a mark is not cut in halves by it.

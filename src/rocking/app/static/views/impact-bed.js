@@ -32,7 +32,7 @@ export const Laboratory = ({ app, body }) => {
       found.value = await app.call("contact-bed", { json });
       refused.value = {};
     } catch (error) {
-      refused.value = refusedOf(error.message);
+      refused.value = refusedOf({ message: error.message, refusal: error.text ? error : undefined });
       toWrong(event.target);
     }
     busy.value = false;

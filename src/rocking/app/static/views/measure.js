@@ -2,10 +2,11 @@
 
 import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
+import { spelt } from "/app/refusal.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, Field, Note } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
-import { Drawing, FileDrop, QuestionView, ofThePage, useForm } from "/questions/parts.js";
+import { Drawing, FileDrop, QuestionView, useForm } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
 
 const KINDS = [
@@ -108,7 +109,7 @@ const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${(answer.doubts ?? []).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${ofThePage(words)} />`)}
+    ${(answer.messages ?? []).map(spelt).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
     ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
       rows=${models.map((/** @type {object} */ each) => Object.values(each).map(shown))} />`}`;

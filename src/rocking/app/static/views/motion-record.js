@@ -46,7 +46,7 @@ export const createRecord = (app, onChange) => {
   /** @param {Server.RecordFacts} found */
   const took = (found) => {
     if (found.needs.length && !enough(found.needs)) {
-      said.value = { words: `${found.message.split("; say ")[0]}.`, kind: "warning" };
+      said.value = { words: `${found.message}.`, kind: "warning" };
       return ask(found);
     }
     answer.value = found;

@@ -3,6 +3,7 @@ import { batch, computed, html, render, signal } from "/parts/preact.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
 import { Button, Card, Note, Segmented, sentence } from "/parts/fields.js";
+import { keyOf } from "/app/refusal.js";
 import { createAnswer } from "/views/answer.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
 import { Pulse, forgetPulses, usualPulse } from "/views/motion-pulse.js";
@@ -84,7 +85,7 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
       <div class="motion-left"><${Card} title="The motion">
         <${Segmented} label="Where the motion comes from" options=${WAYS} value=${way.value} on=${choose} />
         <div class="motion-editor">${Editor && html`<${Editor} app=${app} motion=${wayOf(motion) === way.value ? motion : null}
-          record=${record} lost=${refused?.status === 404} blamed=${refused && blamedOf(refused.message)} onChange=${set} />`}</div>
+          record=${record} lost=${refused?.status === 404} blamed=${refused && blamedOf(refused)} onChange=${set} />`}</div>
         ${motion && html`<${Scale} value=${motion.scale ?? 1} on=${(scale) => app.inputs.set("motion", { ...motion, scale })} />`}<//></div>
       <div class="motion-right">
         <div aria-live="polite" data-testid="motion-refusal">
@@ -100,10 +101,10 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
 };
 
 // A motion without energy is one of a factor or a peak of 0, or so small that its square is.
-/** @param {string} message */
-const blamedOf = (message) => {
-  if (/must have energy/.test(message)) return { key: "amplitude", words: "Not 0: nothing would move." };
-  return { key: /(\w+) must /.exec(message)?.[1].toLowerCase(), words: sentence(message) };
+/** @param {any} refused */
+const blamedOf = (refused) => {
+  const key = refused.parameter ? keyOf(refused) : undefined;
+  return key === "energy" ? { key: "amplitude", words: "Not 0: nothing would move." } : { key, words: sentence(refused.message) };
 };
 
 /** @param {Server.MotionInput} motion @param {boolean} faulty @param {boolean} waits */

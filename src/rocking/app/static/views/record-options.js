@@ -1,6 +1,7 @@
 /** Options of single record files of a set: unit, time step, format, lines to skip, in place of those for all files. */
 
 import { html } from "/parts/preact.js";
+import { spelt } from "/app/refusal.js";
 import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { filled } from "/questions/parts.js";
 
@@ -20,10 +21,12 @@ export const optionsOf = (byFile, records, app) => {
 export const reasonsOf = (question, records) => {
   /** @type {{ file: string, why: string }[]} */
   const leftOut = question?.answer?.left_out ?? [];
-  const message = question?.state === "refused" ? question.message : "";
+  const refusal = question?.state === "refused" ? question.refusal : null;
+  /** @param {string} path */
+  const last = (path) => path.split("/").at(-1);
   /** @param {string} name */
-  const reasonOf = (name) => leftOut.find(({ file }) => file.split("/").at(-1) === name)?.why
-    ?? (message.split(/[\s/]/).includes(`${name}:`) ? message.slice(message.indexOf(`${name}: `) + name.length + 2) : "");
+  const reasonOf = (name) => leftOut.find(({ file }) => last(file) === name)?.why
+    ?? (refusal?.places.some((/** @type {any} */ place) => place.kind === "file" && last(place.name) === name) ? spelt(refusal) : "");
   return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, why]) => why).slice(0, MOST_REASONS));
 };
 
@@ -50,7 +53,7 @@ export const FileOptions = ({ app, form, names, reasons }) => {
         <div class="toolbar"><strong translate=${false}>${name}</strong>
           ${name in byFile && html`<${Button} kind="quiet" aria-label=${`Remove the options of ${name}`}
             onClick=${() => (form.at("by_file").value = without(name))}>remove<//>`}</div>
-        ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name].split("; say ")[0])} />`}
+        ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name])} />`}
         <div class="fields">${KEYS.map((key) => field(name, key))}</div></li>`)}</ul>`}
       ${others.length > 0 && html`<${Choice} label="Add a file with other options" value=${added}
         help="Its unit, time step, format and lines to skip replace those of all files."

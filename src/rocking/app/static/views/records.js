@@ -4,11 +4,12 @@ import { freshId } from "/app/dom.js";
 import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";
 import { number, parseNumber } from "/app/format.js";
+import { spelt } from "/app/refusal.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
-import { Drawing, FileDrop, QuestionView, filled, ofThePage, recordEndings, useForm } from "/questions/parts.js";
+import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
 
 const G = 9.80665;
 const FIRST = { files: [], curve: [], steps: [], motion: {}, by_file: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
@@ -101,10 +102,10 @@ const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " 
 // Which step a refusal is about: its place if it says one, else its name.
 /** @param {Questions} questions @param {{ steps: RecordStep[], asked?: string }} form */
 const faultyOf = (questions, { steps, asked }) => {
-  const found = /step (?:(\d+), )?([a-z]+)[: ]/.exec(questions.shown.value?.state === "refused" ? questions.shown.value.message : "");
-  if (!found || asked !== chainOf(steps).join("; ")) return null;
-  const place = found[1] ? Number(found[1]) - 1 : steps.findIndex(({ name }) => name === found[2]);
-  return { place, words: sentence((questions.shown.value?.message ?? "").replace(/^.*?step (?:\d+, )?/, "")) };
+  const refusal = questions.shown.value?.state === "refused" ? questions.shown.value.refusal : null;
+  const step = refusal?.places.find((/** @type {any} */ { kind }) => kind === "step");
+  if (!step || asked !== chainOf(steps).join("; ")) return null;
+  return { place: step.number - 1, words: sentence(spelt(refusal)) };
 };
 
 /** @param {{ app: App, form: Form, stations: SentFile[], faulty: { place: number, words: string } | null }} props */
@@ -270,5 +271,5 @@ const Chosen = ({ answer, question }) => {
     ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
       rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
-      rows=${left.map((/** @type {any} */ { file, why }) => [file, ofThePage(why)])} />`}`;
+      rows=${left.map((/** @type {any} */ { file, why }) => [file, why])} />`}`;
 };

@@ -9,10 +9,9 @@ import numpy as np
 from rocking.campaigns.jobs.study import Study, along, labels_along, motions_along
 from rocking.conventions import FloatArray
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.intensity import measure
 from rocking.spec.document import CampaignDocument
-from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, fragility_question
 from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
 from rocking.studies.motion_sets import MotionList, MotionSet

@@ -12,11 +12,10 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Pulse
 from rocking.spec.construction import MOST_IN_MEMORY
 from rocking.spec.document import MinimumTable
-from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, searched
 from rocking.studies.motion_sets import MotionList

@@ -11,10 +11,9 @@ from rocking.campaigns.jobs.study import Study, along, labels_along, motions_alo
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.parameters import sides_of
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import provenance_of
 from rocking.spec.document import HistoriesTable
-from rocking.spec.reading import located
 from rocking.spec.study import StudyProblem, inventory_of
 from rocking.studies.histories import JoinedHistories, Product
 from rocking.studies.inventory.assessment import assessment_plan

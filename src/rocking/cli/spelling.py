@@ -1,0 +1,88 @@
+"""Errors and hints in the words of the command line: its own options, and --set for keys without one."""
+
+from contextvars import ContextVar
+from typing import Any
+
+import typer
+from typer.core import TyperCommand
+
+from rocking.errors import RockingError
+from rocking.messages import Fact, Message, Option, Parameter, Spelling
+
+_OF_BODIES = {"width", "height", "depth", "density", "mass", "centre", "moment_of_inertia"}
+
+
+class RefusedCommandError(Exception):
+    """A command is refused; its text names what was typed."""
+
+
+_RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs", default=None)
+_KEYS = {"restitution.model": "restitution"}  # options by keys whose last part they do not have for a name
+
+
+class Command(TyperCommand):
+    """A command whose messages name its options as they are typed."""
+
+    def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # typer brings click with it
+        _RUNNING.set(context)
+        return super().invoke(context)
+
+
+def spelled(message: Message | RockingError | str) -> str:
+    """Return a message or an error as the command that runs spells it."""
+    context = _RUNNING.get()
+    if isinstance(message, str) or context is None:
+        return str(message)
+    if isinstance(message, RockingError):
+        return message.spelt(spelling(context), within=False)
+    return message.spelt(spelling(context))
+
+
+def no_command() -> None:
+    """Forget the command that ran before in this process."""
+    _RUNNING.set(None)
+
+
+def spelling(context: typer.Context) -> Spelling:
+    """Return how a command spells what a message names."""
+
+    def spelt(fact: Fact) -> str:
+        if isinstance(fact, Option):
+            return _stated(context, fact)
+        if isinstance(fact, Parameter):
+            return _named(context, fact)
+        return str(fact)
+
+    return spelt
+
+
+def _stated(context: typer.Context, option: Option) -> str:
+    """Return an option as it is typed: --units g, or --set motion.skip=3."""
+    value = {True: "true", False: "false"}.get(option.value, option.value)
+    if option.name in context.params:
+        return f"--{option.name.replace('_', '-')}{'' if value is None else f' {value}'}"
+    key = f"{option.path}={'' if value is None else value}"
+    return f"--set {key}" if "sets" in context.params else key
+
+
+def _named(context: typer.Context, parameter: Parameter) -> str:
+    """Return the option that was typed for a parameter, or its key if --set states it; its name otherwise."""
+    if any(text.partition("=")[0].strip() == parameter.path for text in context.params.get("sets") or ()):
+        return parameter.path
+    table = parameter.path.partition(".")[0]
+    name = _KEYS.get(parameter.path, parameter.name)
+    foreign = name in _OF_BODIES and table not in {"body", "block", parameter.path}
+    if foreign or name not in context.params:
+        return str(parameter)
+    return next(iter(typed(context, name)), str(parameter))
+
+
+def typed(context: typer.Context, *names: str) -> list[str]:
+    """Return which of some parameters were typed, as they are spelt."""
+    spelt = {"record": "second word", "motions": "second word", "sets": "--set"}
+    sources = {name: context.get_parameter_source(name) for name in names}
+    return [
+        spelt.get(name, f"--{name.replace('_', '-')}")
+        for name, source in sources.items()
+        if source is not None and source.name == "COMMANDLINE"
+    ]

@@ -1,0 +1,136 @@
+"""Errors as data: parameter, value, allowed values, hint and places; the sentence is made of them, and never read."""
+
+import ast
+import math
+import pickle
+import re
+from pathlib import Path
+
+import pytest
+
+import rocking as rk
+from rocking.bodies.formats import read_body
+from rocking.errors import BodyFileError, InvalidValueError, RecordError, located
+from rocking.messages import Amount, Index, Message, Option, Range, by_key
+
+SOURCE = Path(rk.__file__).parent
+
+
+def caught(call, *given, **more):
+    with pytest.raises(rk.errors.RockingError) as stop:
+        call(*given, **more)
+    return stop.value
+
+
+def test_a_value_out_of_range_is_known_by_its_parts():
+    """Parameter, value, range and unit can be read without the sentence."""
+    error = caught(rk.Block, width=-0.5, height=2.0)
+    assert (error.parameter, error.value, error.unit) == ("width", -0.5, "m")
+    assert error.value not in error.allowed
+    assert 0.5 in error.allowed
+    assert str(error) == "width must be > 0 m, got -0.5"
+
+
+def test_tables_and_files_make_the_path(tmp_path):
+    """A key of a file is named with its tables, in metres where the file is; pydantic's errors have the same form."""
+    file = tmp_path / "pier.toml"
+    file.write_text('units = "cm"\n[block]\nwidth = -50\nheight = 200\n', encoding="utf-8")
+    error = caught(read_body, file)
+    assert (type(error), error.parameter, error.value, error.unit) == (BodyFileError, "block.width", -50, "cm")
+    with pytest.raises(InvalidValueError) as stop, located("body"), located("pier.toml", "file"), located("block"):
+        raise InvalidValueError(parameter="width", allowed=Range(0.0, math.inf, "m", low_open=True), value=0.0)
+    assert stop.value.parameter == "body.block.width"
+    assert str(stop.value) == "body: pier.toml: block: width must be > 0 m, got 0"
+    # negative control: a file is no table
+    assert "pier" not in stop.value.parameter
+
+
+def test_each_door_spells_a_hint_in_its_own_way():
+    """The option of a hint is data: Python, the command line and a form spell it."""
+    error = RecordError(
+        "the file does not state its unit", hint=Message("give {unit}", {"unit": Option("motion.units", "g")})
+    )
+    assert str(error) == 'the file does not state its unit; give units="g"'
+    assert error.spelt(by_key) == "the file does not state its unit; give motion.units = g"
+    assert (
+        error.spelt(lambda option: f"--{option.name} {option.value}")
+        == "the file does not state its unit; give --units g"
+    )
+    assert error.data()["hint"]["facts"]["unit"] == {"kind": "option", "path": "motion.units", "value": "g"}
+
+
+def test_braces_of_a_value_stay():
+    """What a user typed is no template."""
+    error = InvalidValueError(parameter="name", allowed="text", value={"a": "{b}"})
+    assert str(error) == "name must be text, got {'a': '{b}'}"
+    assert str(RecordError("a {b} c")) == "a {b} c"
+
+
+def test_errors_survive_another_process():
+    """Pools of processes send errors as bytes, with all their parts."""
+    error = RecordError("line of {count} numbers", count=3, hint="damaged?").at("a.txt", 7)
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.places, again.facts) == (
+        "a.txt, line 7: line of 3 numbers; damaged?",
+        error.places,
+        {"count": 3},
+    )
+    assert str(again.without_file("a.txt")) == "line 7: line of 3 numbers; damaged?"
+
+
+def test_amounts_and_indices_are_data_too():
+    """A page can say a length in the unit of its drawing and count regions from one."""
+    overlap = caught(
+        rk.Section,
+        [rk.Region([(x, 0), (x + 1, 0), (x + 1, 1), (x, 1)], 2000.0) for x in (0.0, 0.5)],
+    )
+    assert (overlap.facts["first"], overlap.facts["second"]) == (Index(0), Index(1))
+    assert overlap.facts["area"] == Amount(0.5, "m2", ".6g")
+
+
+# texts of other libraries, or of processes, which have no parts
+OTHERS = {
+    "rocking/tables/arrays.py", "rocking/spec/reading.py", "rocking/motions/formats/obspy_reader.py",
+    "rocking/motions/formats/foreign_worker.py", "rocking/motions/formats/reader.py",
+    "rocking/bodies/formats/geojson.py", "rocking/identification/readers/reader.py",
+    "rocking/bodies/formats/body_file.py", "rocking/bodies/formats/wkt.py", "rocking/app/api/body.py",
+    "rocking/app/inputs.py", "rocking/evidence/measurement_file.py", "rocking/bodies/formats/words.py",
+}  # fmt: skip
+TAKEN_APART = re.compile(
+    r"str\(\w*error\w*\)\s*\.\s*(?:partition|rpartition|split|startswith|endswith|removeprefix|removesuffix)"
+    r"|re\.\w+\([^\n]*str\(\w*error\w*\)|\bin str\(\w*error\w*\)|str\(\w*error\w*\)\[?:"
+)
+
+
+def taken_apart(text):
+    return TAKEN_APART.findall(text)
+
+
+def test_no_sentence_of_an_error_is_read_back():
+    """Whoever needs a fact of an error takes the fact: nothing splits, searches or compares its sentence."""
+    named = {
+        str(path.relative_to(SOURCE.parent)): taken_apart(path.read_text(encoding="utf-8"))
+        for path in SOURCE.rglob("*.py")
+    }
+    assert {name: found for name, found in named.items() if found and name not in OTHERS} == {}
+    scripts = [path for path in (SOURCE / "app/static").rglob("*.js") if "vendor" not in path.parts]
+    pattern = re.compile(
+        r"\.message(?:\s*\?\?\s*\"\")?\)?\.(?:match|split|replace|slice|startsWith|includes)|\.test\(\w+\.message|\.exec\(\w*message"
+    )
+    assert {path.name: found for path in scripts if (found := pattern.findall(path.read_text(encoding="utf-8")))} == {}
+    # negative control: what was there before
+    assert taken_apart('found = str(error).removeprefix("a: ")')
+    assert pattern.findall("const [, key] = error.message.match(/must/)")
+
+
+def test_every_template_has_its_facts():
+    """A field in the text of an error that is made here is one of the facts given with it."""
+    for path in SOURCE.rglob("*.py"):
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id.endswith("Error")):
+                continue
+            names = {keyword.arg for keyword in call.keywords}
+            if not call.args or not isinstance(call.args[0], ast.Constant) or None in names or not names - {"hint"}:
+                continue
+            fields = set(re.findall(r"\{(\w+)\}", str(call.args[0].value)))
+            assert fields <= names | {"parameter", "value", "allowed"}, (path.name, call.lineno)
