@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib import import_module
+from pathlib import PurePath
 from types import ModuleType
 from typing import Any, Literal, Self, TypeVar
 
@@ -176,7 +177,10 @@ def located(name: str, kind: Literal["table", "file", "step"] = "table", number:
     except MissingExtraError:
         raise
     except RockingError as error:
-        if not any((place.name, place.kind) == (name, kind) for place in error.places[:1]):
+        inner = error.places[0] if error.places else None
+        if inner is not None and inner.kind == kind == "file" and PurePath(name).name == inner.name:
+            error.places = (Place(name, kind, inner.number), *error.places[1:])  # the same file with its folder
+        elif inner is None or (inner.name, inner.kind) != (name, kind):
             error.places = (Place(name, kind, number), *error.places)
         raise
 

@@ -110,7 +110,7 @@ def _holes_that_cross(words: str, origin: FloatArray) -> GeometryError:
 _NEAR = " near x = {x}, y = {y}"
 
 
-def _split(words: str, origin: FloatArray) -> tuple[str, dict[str, Amount]]:
+def _split(words: str, origin: FloatArray) -> tuple[str, dict[str, Any]]:
     """Return the fault that GEOS sees, and where, of words such as "Self-intersection[1 2]"."""
     kind, x, y = re.fullmatch(r"(.*?)\[(\S+) (\S+)\]", words).groups()  # type: ignore[union-attr]
     places = float(x) + float(origin[0]), float(y) + float(origin[1])

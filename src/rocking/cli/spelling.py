@@ -59,7 +59,7 @@ def spelling(context: typer.Context) -> Spelling:
 def _stated(context: typer.Context, option: Option) -> str:
     """Return an option as it is typed: --units g, or --set motion.skip=3."""
     value = {True: "true", False: "false"}.get(option.value, option.value)
-    if option.name in context.params:
+    if option.name in context.params and not _is_of_another_table(option):
         return f"--{option.name.replace('_', '-')}{'' if value is None else f' {value}'}"
     key = f"{option.path}={'' if value is None else value}"
     return f"--set {key}" if "sets" in context.params else key
@@ -69,12 +69,15 @@ def _named(context: typer.Context, parameter: Parameter) -> str:
     """Return the option that was typed for a parameter, or its key if --set states it; its name otherwise."""
     if any(text.partition("=")[0].strip() == parameter.path for text in context.params.get("sets") or ()):
         return parameter.path
-    table = parameter.path.partition(".")[0]
     name = _KEYS.get(parameter.path, parameter.name)
-    foreign = name in _OF_BODIES and table not in {"body", "block", parameter.path}
-    if foreign or name not in context.params:
+    if name not in context.params or _is_of_another_table(parameter):
         return str(parameter)
     return next(iter(typed(context, name)), str(parameter))
+
+
+def _is_of_another_table(fact: Option | Parameter) -> bool:
+    """Return whether a fact has the name of an option of bodies, but is of no body."""
+    return fact.name in _OF_BODIES and fact.path.partition(".")[0] not in {"body", "block", fact.path}
 
 
 def typed(context: typer.Context, *names: str) -> list[str]:

@@ -279,12 +279,11 @@ class Identification(Exported):
             By the names of the attributes; NaN where something does not exist. Of a measurement that was refused there
             is why, and no number.
         """
+        messages = [doubt if isinstance(doubt, Message) else Message(doubt) for doubt in self.doubts]
         words = {
-            "source": self.source,
-            "verdict": self.verdict,
-            "refused": tuple(map(str, self.refused)),
-            "doubts": tuple(map(str, self.doubts)),
-        }
+            "source": self.source, "verdict": self.verdict, "refused": tuple(map(str, self.refused)),
+            "doubts": tuple(map(str, messages)), "messages": [message.data() for message in messages],
+        }  # fmt: skip
         if self.refused:
             return words
         found = {name: value for name, value in vars(self).items() if not name.startswith("_")} | words

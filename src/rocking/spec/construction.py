@@ -177,7 +177,7 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     own = by_path(table.file_options, [inputs.folder / name for name in names])
     for name in names:
         path = inputs.file(name)
-        with located("records"), located(path.name, "file"):
+        with located("records"), located(name, "file"):
             motions.append(_record(path, table.model_copy(update=own.get(path, {})), inputs))
     return motions
 

@@ -130,7 +130,7 @@ def test_what_is_named_and_cannot_be_used_is_refused(run, tmp_path):
         (tmp_path / folder).mkdir()
     shutil.copy(paths[0], tmp_path / "a" / "same.at2")
     shutil.copy(damaged, tmp_path / "b" / "same.at2")
-    with pytest.raises(InvalidValueError, match=r"records: b/same\.at2: "):
+    with pytest.raises(RecordError, match=r"records: b/same\.at2: "):
         motions_of([MotionTable(records=["a/same.at2", "b/same.at2"])], InputFiles(tmp_path))
     with pytest.raises(InvalidValueError, match="named twice"):
         motions_of([MotionTable(records=[names[0], names[0]])], InputFiles(tmp_path))

@@ -77,7 +77,7 @@ def test_the_page_states_the_start(printed, body):
         (("--start-height", "0.1"), "without friction a body neither slides nor flies"),
         (("--friction", "0.5", "--start-velocity", "1,2"), "start_velocity must be 3 numbers, x, y, up"),
         (("--friction", "0.5", "--start-velocity", "a"), "--start-velocity must be numbers with commas between"),
-        (("--friction", "0.5", "--start-height=-1"), "start_height must be a number >= 0"),
+        (("--friction", "0.5", "--start-height=-1"), "--start-height must be a number >= 0"),
         (("--friction", "0.5", "--start-height", "1e9"), "height must be in [0, 10000] m"),
         (("--friction", "0.5", "--start-height", "0.1", "--scale", "2"), "a drop has no motion"),
     ],

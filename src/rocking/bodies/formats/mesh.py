@@ -80,7 +80,8 @@ def _turn(up: str | ArrayLike) -> FloatArray:
     direction = np.asarray(_UP.get(up, ()) if isinstance(up, str) else up)
     known = direction.shape == (3,) and direction.dtype.kind in "iuf" and np.isfinite(direction).all()
     if not known or not direction.any():
-        raise InvalidValueError(f'up must be "z", "y", or a direction (x, y, z) in the file, got {up!r:.60}')
+        directions = '"z", "y", or a direction (x, y, z) in the file'
+        raise InvalidValueError(parameter="up", allowed=directions, value=up)
     return set_down(-direction / norm(direction.astype(np.float64)))
 
 
