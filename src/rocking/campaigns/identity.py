@@ -129,10 +129,11 @@ class Identity:
                 raise CampaignMismatchError(f"{path}: format {content['plan']['format']}, this is {FORMAT}")
             return cls(Plan(**content["plan"]), content["histories"])
         except (ValueError, KeyError, TypeError, InvalidValueError) as error:
-            raise CampaignDamagedError(
-                f"{path} is damaged ({error}); the shards are intact: create a campaign of the same histories and "
-                "chunk size elsewhere, copy them into its folder shards, and run it"
-            ) from error
+            hint = (
+                "the shards are intact: create a campaign of the same histories and chunk size elsewhere, copy them "
+                "into its folder shards, and run it"
+            )
+            raise CampaignDamagedError(f"it is damaged ({error})", hint=hint).at(str(path)) from error
 
     def write(self, folder: Path) -> None:
         """Write it; a folder becomes a campaign by this."""

@@ -344,7 +344,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
     assert str(picture) in err
     assert picture.stat().st_size > 10_000
     found = identify(read_measurement(path), BLOCK)
-    assert set(found.to_dict()) == {"source", "verdict", "refused", "doubts"}
+    assert set(found.to_dict()) == {"source", "verdict", "refused", "doubts", "messages"}
 
 
 @pytest.mark.speed

@@ -5,7 +5,7 @@ import shlex
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, TypeVar
 
 from rocking.campaigns import (
@@ -59,7 +59,7 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         yield
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
-        if not any(place.name.endswith(NAME) for place in error.places):  # a shard or the ledger, which is made anew
+        if not any(PurePath(place.name).name == NAME for place in error.places):  # a shard or the ledger: made anew
             error.hint = f"go on with: {resume(folder)}"
             raise
         raise CampaignDamagedError(

@@ -239,7 +239,7 @@ def test_what_is_wrong_with_the_file_is_said(own, source, words):
     """A file that fails, twice in a row, and one without the class: with the key of the job."""
     (own / "mine.py").write_text(source, encoding="utf-8")
     for _ in range(2):
-        with pytest.raises(InvalidValueError, match=f"job.toml: restitution: .*mine.py.*{words}"):
+        with pytest.raises(UnknownModelError, match=f"job.toml: restitution: .*mine.py.*{words}"):
             Job.read(own / "job.toml")
     with pytest.raises(UnknownModelError, match="no file"):
         model_in_file("nowhere.py:Mine")

@@ -13,7 +13,7 @@ import rocking as rk
 from rocking.campaigns.jobs import Job, forecast
 from rocking.campaigns.jobs.study import TYPES, Study
 from rocking.dynamics.plane.fast_engine import RESULTS
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
 from rocking.tables.table import blocks
@@ -228,7 +228,7 @@ REFUSED = {
 
 def refusal(words, folder):
     """What is said of a job, in one line that begins with its name."""
-    with pytest.raises(InvalidValueError) as found:
+    with pytest.raises(RockingError) as found:
         Job.of_text(words, "my job.toml", folder)
     said = str(found.value)
     assert said.startswith("my job.toml: ")

@@ -9,9 +9,9 @@ import pytest
 import rocking as rk
 from rocking import examples
 from rocking.cli import main
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.spec.document import ResponseDocument
-from rocking.spec.reading import InputFiles, located, read_text, tables_in, validated
+from rocking.spec.reading import InputFiles, read_text, tables_in, validated
 from rocking.spec.response import ResponseProblem, response_problem
 
 EXAMPLES = [
@@ -28,7 +28,7 @@ def problem_of(text, folder, files=None):
 
 
 def problem_in(path):
-    with located(str(path)):
+    with located(str(path), "file"):
         return problem_of(read_text(path), path.parent)
 
 
