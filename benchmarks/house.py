@@ -19,7 +19,7 @@ SOURCE, TESTS = ROOT / "src" / "rocking", ROOT / "tests"
 # rooms from the lowest up: what stands on one line does not know each other
 FLOORS = (
     ("messages",),
-    ("conventions", "errors", "lazy", "version"),
+    ("conventions", "errors", "version"),
     ("language", "outcome", "checks", "plausibility", "portable"),
     ("quantities",),
     ("answers",),
@@ -62,8 +62,19 @@ def trees(folder: Path) -> dict[str, ast.Module]:
     found = {}
     for path in sorted(folder.rglob("*.py")):
         parts = path.relative_to(folder.parent).with_suffix("").parts
-        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = ast.parse(path.read_text("utf-8"))
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+        found[name] = ast.parse(path.read_text("utf-8"))
+        if (stub := path.with_suffix(".pyi")).exists():
+            found[name].body.append(_exports(ast.parse(stub.read_text("utf-8")), name))
     return found
+
+
+def _exports(stub: ast.Module, package: str) -> ast.If:
+    """Return the names that a package fetches when they are first asked for, as imports for type checkers alone."""
+    for node in stub.body:
+        if isinstance(node, ast.ImportFrom) and node.level:
+            node.module, node.level = f"{package}.{node.module}" if node.module else package, 0
+    return ast.If(test=ast.Name("TYPE_CHECKING"), body=stub.body, orelse=[])
 
 
 def lines(folder: Path) -> tuple[int, int, int]:

@@ -12,8 +12,6 @@ from types import ModuleType
 import pytest
 
 import rocking
-import rocking.studies
-from rocking.lazy import exports
 
 ROOT = Path(__file__).parents[2]
 CHECKS = set(
@@ -90,13 +88,6 @@ def test_no_module_stands_in_the_place_of_an_export() -> None:
     for package in (each for each in packages() if hasattr(each, "__getattr__")):
         modules = {each.name for each in pkgutil.iter_modules(package.__path__)} & set(package.__all__)
         assert [name for name in modules if not isinstance(getattr(package, name), ModuleType)] == []
-
-
-def test_a_package_without_its_source_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Names are read from the source: a bundle that leaves it out is told, rather than that there are no names."""
-    monkeypatch.setattr(rocking.studies.__spec__, "loader", None)
-    with pytest.raises(ImportError, match="bundle"):
-        exports("rocking.studies")
 
 
 def test_a_missing_parameter_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

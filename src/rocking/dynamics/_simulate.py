@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, TypeVar, Unpack, overload
 
 from rocking.bodies import Body
 from rocking.dynamics.mechanics import mechanics_for
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.hull.response import HullResponse
     from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
-    BodyInSpace = Solid | SpatialBody
+    BodyInSpace: TypeAlias = Solid | SpatialBody
 
 Called = TypeVar("Called", bound=Callable[..., Any])
 

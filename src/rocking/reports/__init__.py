@@ -1,11 +1,5 @@
 """Reports: one content, rendered as HTML, PDF and tables."""
 
-from typing import TYPE_CHECKING
+from lazy_loader import attach_stub
 
-from rocking.lazy import exports
-
-if TYPE_CHECKING:
-    from rocking.reports._report import report as report
-    from rocking.reports.document import Document as Document
-else:
-    __all__, __getattr__, __dir__ = exports(__name__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

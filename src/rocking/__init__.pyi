@@ -1,0 +1,34 @@
+from . import bodies as bodies
+from . import dynamics as dynamics
+from . import errors as errors
+from . import evidence as evidence
+from . import examples as examples
+from . import motions as motions
+from . import plots as plots
+from . import restitution as restitution
+from .assessment import assess as assess
+from .bodies import Block as Block
+from .bodies import MassPoints as MassPoints
+from .bodies import Region as Region
+from .bodies import Section as Section
+from .bodies import Solid as Solid
+from .bodies.formats import read_body as read_body
+from .dynamics import Response as Response
+from .dynamics import free_rocking as free_rocking
+from .dynamics import simulate as simulate
+from .dynamics import simulate_many as simulate_many
+from .identification import identify as identify
+from .motions import GroundMotion as GroundMotion
+from .motions import pulses as pulses
+from .motions import synthetic as synthetic
+from .motions.formats import read_motion as read_motion
+from .outcome import Outcome as Outcome
+from .prediction import predict as predict
+from .restitution import coefficient_of_restitution as coefficient_of_restitution
+from .studies._overturning_map import overturning_map as overturning_map
+from .studies._rocking_spectrum import rocking_spectrum as rocking_spectrum
+from .studies.fragility import fragility as fragility
+from .studies.inventory import inventory as inventory
+from .studies.minimum_acceleration import minimum_overturning_acceleration as minimum_overturning_acceleration
+
+__version__: str

@@ -1,0 +1,10 @@
+from . import shapes as shapes
+from . import solid as solid
+from .block import Block as Block
+from .body import Body as Body
+from .body import Side as Side
+from .mass_points import MassPoints as MassPoints
+from .region import Region as Region
+from .section import Section as Section
+from .solid import Part as Part
+from .solid import Solid as Solid

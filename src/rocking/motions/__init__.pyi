@@ -1,0 +1,49 @@
+import rocking.motions.segments
+
+from . import pulses as pulses
+from . import synthetic as synthetic
+from .components import rotated as rotated
+from .components import rotd_pga as rotd_pga
+from .components import with_vertical as with_vertical
+from .flatfiles import Flatfile as Flatfile
+from .flatfiles import flatfile as flatfile
+from .integrals import arias_intensity as arias_intensity
+from .integrals import ground_displacement as ground_displacement
+from .integrals import ground_velocity as ground_velocity
+from .integrals import peak_ground_displacement as peak_ground_displacement
+from .integrals import peak_ground_velocity as peak_ground_velocity
+from .integrals import significant_duration as significant_duration
+from .integrals import significant_times as significant_times
+from .intensity import IntensityMeasure as IntensityMeasure
+from .intensity import Measure as Measure
+from .intensity import RockingScale as RockingScale
+from .intensity import cumulative_absolute_velocity as cumulative_absolute_velocity
+from .intensity import housner_intensity as housner_intensity
+from .intensity import intensity_measures as intensity_measures
+from .intensity import measure as measure
+from .intensity import measures as measures
+from .intensity import normalised_acceleration as normalised_acceleration
+from .intensity import normalised_velocity as normalised_velocity
+from .intensity import peak_ground_acceleration as peak_ground_acceleration
+from .intensity import spectral_acceleration as spectral_acceleration
+from .intensity import spectral_measure as spectral_measure
+from .motion import GroundMotion as GroundMotion
+from .pipeline import processed as processed
+from .processing import bandpassed as bandpassed
+from .processing import demeaned as demeaned
+from .processing import detrended as detrended
+from .processing import padded as padded
+from .processing import resampled as resampled
+from .processing import scaled_to as scaled_to
+from .processing import tapered as tapered
+from .processing import trimmed as trimmed
+from .processing import trimmed_to_significant as trimmed_to_significant
+from .pulse import Pulse as Pulse
+from .selection import selected as selected
+from .spectrum import ResponseSpectrum as ResponseSpectrum
+from .spectrum import fourier_amplitudes as fourier_amplitudes
+from .spectrum import response_spectrum as response_spectrum
+from .spectrum import rotd_spectrum as rotd_spectrum
+from .target_spectra import target_spectrum as target_spectrum
+
+Segments = rocking.motions.segments.Segments

@@ -1,0 +1,2 @@
+from ._report import report as report
+from .document import Document as Document

@@ -1,0 +1,11 @@
+from .censored import fit_crossings as fit_crossings
+from .counts import count_outcomes as count_outcomes
+from .counts import count_states as count_states
+from .counts import share_interval as share_interval
+from .least_squares import regression as regression
+from .lognormal import LognormalFit as LognormalFit
+from .lognormal import fit_lognormal as fit_lognormal
+from .maximum_likelihood import Separation as Separation
+from .ordered_probit import fit_ordered as fit_ordered
+from .scores import Forecasts as Forecasts
+from .scores import logistic_left_out as logistic_left_out
