@@ -53,7 +53,8 @@ The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers ar
 
 A script sends with every request `Authorization: Bearer KEY`, where KEY stands in the file `api-key` of the data
 folder and is new at every start, and with every POST or DELETE also `Origin: {origin}`, the server's
-own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
+own address. Errors are `{{"error": {{"kind", "message", ...}}}}`: `message` is a sentence, `parameter`, `text` with its
+`facts`, `hint`, `places` and `more` are what it is made of."""
 
 
 def refused_input(error: ValidationError | RequestValidationError) -> RockingError:

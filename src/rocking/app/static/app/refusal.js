@@ -26,13 +26,13 @@ const WAYS = {
   "identify.trend": "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d",
 };
 
-/** A message as the page spells its facts. @param {{ text: string, facts: { [name: string]: any } }} message
+/** A message as the page spells its facts. @param {any} message
  * @param {Server.BodyInput["units"]} [units] @returns {string} */
 export const spelt = ({ text, facts }, units = "m") => {
   const kinds = Object.values(facts);
   if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for it
   const way = kinds.map((fact) => (fact?.kind === "option" ? WAYS[fact.path] : undefined)).find(Boolean);
-  return way ?? text.replace(/\{(\w+)\}/g, (_, name) => spelling(facts[name], units));
+  return way ?? text.replace(/\{(\w+)\}/g, (/** @type {string} */ _, /** @type {string} */ name) => spelling(facts[name], units));
 };
 
 /** A refusal of a question in words; what it tells to state stands in the form. @param {any} refusal */
