@@ -191,3 +191,14 @@ def test_cor_says_which_model_to_use(run):
         code, out, err = run(*words, "--recommend", *more)
         assert (code, out) == (2, "")
         assert sentence in err
+
+
+def test_with_json_a_refusal_is_data(run):
+    """Scripts read parameter, limits and place of an error, in the same form as from the API; without, a sentence."""
+    code, out, err = run("cor", "--width", -1, "--height", 4, "--json")
+    error = json.loads(err)["error"]
+    assert (code, out, error["parameter"]) == (2, "", "body.block.width")
+    assert error["message"] == "--width must be a number > 0 m, got -1"
+    assert (error["facts"]["allowed"]["low"], error["facts"]["allowed"]["unit"]) == (0.0, "m")
+    code, out, err = run("cor", "--width", -1, "--height", 4)
+    assert (code, out, err) == (2, "", f"rocking: {error['message']}\n")
