@@ -107,7 +107,13 @@ class RockingError(Exception):
         return Message(self.text or "{parameter} must be {allowed}, got {value}", stated)
 
     def data(self) -> dict[str, Any]:
-        """Return the error as plain values: sentence, parameter, template with facts, hint, places, further errors."""
+        """Return the error as plain values.
+
+        Returns
+        -------
+        dict
+            `message` (the sentence), `parameter`, `text` with its `facts`, `hint`, `places`, `more`.
+        """
         return {
             "message": str(self),
             "parameter": self.parameter,
@@ -118,7 +124,20 @@ class RockingError(Exception):
         }
 
     def spelt(self, spelling: Spelling = str, *, within: bool = True) -> str:
-        """Return the error as a sentence; within: whether it names the tables that are not in a file."""
+        """Return the error as a sentence.
+
+        Parameters
+        ----------
+        spelling : callable
+            Takes a fact of `rocking.messages` and returns it as text; by default as Python has it.
+        within : bool
+            Whether the sentence names the tables that are not in a file.
+
+        Returns
+        -------
+        str
+            Places, fault and hint.
+        """
         places = list(self.places)
         while places and not within and places[0].kind == "table":
             places.pop(0)
@@ -130,7 +149,18 @@ class RockingError(Exception):
         return self.spelt()
 
     def copied(self, kind: type[Family]) -> Family:
-        """Return the same as an error of another class."""
+        """Return the same as an error of another class.
+
+        Parameters
+        ----------
+        kind : type
+            The class.
+
+        Returns
+        -------
+        RockingError
+            The new error.
+        """
         made = kind(
             self.text, parameter=self._name, value=self.value, allowed=self.allowed, hint=self.hint, **self.facts
         )
@@ -138,16 +168,46 @@ class RockingError(Exception):
         return made
 
     def add_hint(self, hint: str) -> None:
-        """Add to what there is to do about it."""
+        """Add a hint to those that there are.
+
+        Parameters
+        ----------
+        hint : str
+            What to do about the fault.
+        """
         self.hint = Message("{first}; {second}", {"first": self.hint, "second": hint}) if self.hint else hint
 
     def at(self, name: str, line: int = 0) -> Self:
-        """Return the error itself, with a file and perhaps a line of it as its outermost place."""
+        """Add a file to the places of the error, as the outermost one.
+
+        Parameters
+        ----------
+        name : str
+            Name of the file.
+        line : int
+            Line of the file, from 1; 0 for all of it.
+
+        Returns
+        -------
+        RockingError
+            The error itself.
+        """
         self.places = (Place(name, "file", line), *self.places)
         return self
 
     def without_file(self, name: str) -> Self:
-        """Return the error itself without the name of a file, for readers who know it; its line stays."""
+        """Remove the name of a file from the places of the error; its line stays.
+
+        Parameters
+        ----------
+        name : str
+            Name of the file.
+
+        Returns
+        -------
+        RockingError
+            The error itself.
+        """
         kept = (
             replace(place, name="") if (place.name, place.kind) == (name, "file") else place for place in self.places
         )
@@ -165,8 +225,24 @@ def _shown(value: Any) -> str:
 
 @contextmanager
 def located(name: str, kind: Literal["table", "file", "step"] = "table", number: int = 0) -> Iterator[None]:
-    """Add a table, a file or a step to the places of each refusal inside.
+    """Add a table, a file or a step to the places of each error that is raised inside.
 
+    Parameters
+    ----------
+    name : str
+        Name of the table, path of the file, or the step.
+    kind : {"table", "file", "step"}
+        What it is.
+    number : int
+        Number of the step, from 1.
+
+    Yields
+    ------
+    None
+        Nothing.
+
+    Examples
+    --------
     >>> with located("pier.toml", "file"), located("block"):
     ...     raise InvalidValueError(parameter="width", allowed="a number", value="wide")
     Traceback (most recent call last):

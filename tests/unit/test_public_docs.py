@@ -71,8 +71,12 @@ def faults(name: str) -> list[str]:
     from numpydoc.validate import validate
 
     value = NAMES[name]
-    # what an enumeration, a number or a protocol is made of is Python's to say
-    theirs = inspect.isclass(value) and (issubclass(value, (Enum, float)) or getattr(value, "_is_protocol", False))
+    # what an enumeration, a number or a protocol is made of is Python's to say, that of an error stands with its base
+    theirs = inspect.isclass(value) and (
+        issubclass(value, (Enum, float))
+        or getattr(value, "_is_protocol", False)
+        or (issubclass(value, Exception) and "__init__" not in vars(value))
+    )
     wanted = CHECKS - {"PR01"} if theirs else CHECKS
     return [f"{name}: {code} {words}" for code, words in validate(name)["errors"] if code in wanted]
 

@@ -135,11 +135,12 @@ def shape(name: str, meaning: str, base: type[AnswerShape] = AnswerShape, /, **f
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
 
 
-def shape_of(kind: type, name: str, *, without: tuple[str, ...] = ()) -> Any:
+def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: Any) -> Any:
     """Return a dataclass as a table of an answer; its annotations hold the words: `Annotated[str, "of what"]`."""
+    # more: keys as of `shape`, in place of those of the dataclass
     hints = {key: hint for key, hint in get_type_hints(kind, include_extras=True).items() if key not in without}
     told = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
-    return shape(name, inspect.getdoc(kind) or "", **told)
+    return shape(name, inspect.getdoc(kind) or "", **{**told, **more})
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
@@ -182,12 +183,10 @@ PlaceData: Any = shape(
     kind=Literal["table", "key", "file", "step"],
     number=(int, "of the line or step, from 1; 0 for none"),
 )
-ErrorDetail: Any = shape(
-    "ErrorDetail",
-    "What went wrong; all beside kind and message where more than a sentence is known.",
-    kind=Kind,
+Refusal: Any = shape(
+    "Refusal",
+    "Why something is refused; all beside the message where more than a sentence is known.",
     message=(str, "in one sentence"),
-    needs=(list[str], []),
     parameter=(str, Field("", description="path of the refused parameter in the request, such as body.block.width")),
     text=(str, Field("", description="the sentence without place and hint, with named fields")),
     facts=(dict[str, Any], Field({}, description="what fills the fields")),
@@ -195,6 +194,7 @@ ErrorDetail: Any = shape(
     places=(list[PlaceData], []),
     more=(int, Field(0, description="number of further errors")),
 )
+ErrorDetail: Any = shape("ErrorDetail", "What went wrong.", Refusal, kind=Kind, needs=(list[str], []))
 
 
 class ErrorAnswer(BaseModel):

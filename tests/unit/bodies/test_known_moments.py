@@ -178,7 +178,7 @@ def test_mirror_scale_feet_and_section():
         (
             {"centre": (0.9, 0.5)},
             GeometryError,
-            r"x in \(0, 0\.8\), .* got \(0\.9, 0\.5\) m; was it",
+            r"x in \(0, 0\.8\) m, .* got \(0\.9 m, 0\.5 m\); was it",
         ),
         ({"centre": (0.4, 0.0)}, GeometryError, "within the outline"),
         ({"centre": (0.4, 2.1)}, GeometryError, "within the outline"),

@@ -77,7 +77,7 @@ def test_identity_that_changed_is_refused(finished, work):
     for bit in np.random.default_rng(3).integers(0, 8 * len(good), 300):
         path.write_bytes(good)
         flip(path, int(bit))
-        with pytest.raises(CampaignDamagedError, match=r"campaign\.json is damaged .* the shards are intact"):
+        with pytest.raises(CampaignDamagedError, match=r"campaign\.json: it is damaged .* the shards are intact"):
             Campaign.open(finished.folder, work)
     for length in range(0, len(good), 97):
         path.write_bytes(good[:length])

@@ -1,5 +1,6 @@
 """Progress on standard error where it is no terminal: a line every few seconds, and none with --json."""
 
+import json
 import time
 
 import pytest
@@ -86,4 +87,4 @@ def test_commands_have_lines(run, monkeypatch, place, words, line):
     code, out, err = run(*words)
     assert (code, out) == (2, "")
     assert f"rocking: {line}, 0 s\n" in err
-    assert run(*words, "--json")[2] == "rocking: enough\n"
+    assert json.loads(run(*words, "--json")[2])["error"]["message"] == "enough"

@@ -33,7 +33,7 @@ def test_a_fragility_prints_its_curves(stripes):
 
 def test_states_of_a_model_are_chosen(stripes):
     """Rocking of a body that leans hardly overlaps with rest: one dispersion is refused, with the way out."""
-    with pytest.raises(InvalidValueError, match=r"states are rocking, .* model_of\(\.\.\., states=\) leaves some out"):
+    with pytest.raises(InvalidValueError, match=r"the states are rocking, .*: states= leaves some out"):
         model_of(stripes, "leaning", crossing="common-dispersion")
     chosen = model_of(stripes, "leaning", crossing="common-dispersion", states=["rotation > 0.5 alpha", "Overturned"])
     assert [curve.state for curve in chosen.curves] == ["rotation > 0.5 alpha", "overturned"]

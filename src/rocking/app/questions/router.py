@@ -14,6 +14,7 @@ from rocking.app.answers import (
     MEDIA_TYPES,
     Deleted,
     JsonAnswer,
+    Refusal,
     answered,
     answered_with_file,
     attachment_headers,
@@ -29,7 +30,9 @@ _TABLES = """\
 The tables of a file that the command of the same name takes, as JSON; those of `equilibria` and `cor` have a table
 `response` beside `body`, and `simulate` is of a body in space with friction; `paper` has none. Files in them are named
 as in `files`, and were sent to `/api/files` or `/api/records`."""
-QuestionFacts: Any = shape_of(HostedQuestion, "QuestionFacts", without=("starts",))
+QuestionFacts: Any = shape_of(
+    HostedQuestion, "QuestionFacts", without=("starts",), refusal=(Refusal | None, "why it is refused, as data")
+)
 Questions: Any = shape("Questions", "All questions, the last one first.", questions=list[QuestionFacts])
 WholeQuestion: Any = shape(
     "WholeQuestion",
