@@ -155,7 +155,6 @@ def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
         "scale": scale,
         "peak_ground_acceleration": size * summary.peak,
         "peak_ground_velocity": size * summary.peak_velocity,
-        "provenance": provenance_of(motion),
         "warnings": plausibility.of_acceleration(size * summary.peak),
     }
 
