@@ -127,7 +127,7 @@ class AnswerShape(BaseModel):
 def shape(name: str, meaning: str, base: type[AnswerShape] = AnswerShape, /, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    fields: by key the type; type and words; or type, words and the quantity whose unit it has. Of a key that is a
+    fields: by key the type; type and words; or type, words and the quantity whose unit it has, "" for none. Of a key that is a
     quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such as a
     default, is a `Field` in place of the words.
     """
@@ -144,7 +144,7 @@ def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: An
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
-    entry = QUANTITIES.get(quantity or key)
+    entry = QUANTITIES.get(key if quantity is None else quantity)
     if words is None and entry is not None:
         words = entry.meaning
     if not isinstance(words, str):
