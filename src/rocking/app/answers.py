@@ -127,9 +127,9 @@ class AnswerShape(BaseModel):
 def shape(name: str, meaning: str, base: type[AnswerShape] = AnswerShape, /, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    fields: by key the type; type and words; or type, words and the quantity whose unit it has, "" for none. Of a key that is a
-    quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such as a
-    default, is a `Field` in place of the words.
+    fields: by key the type; type and words; or type, words and the quantity whose unit it has, "" for none. Of a key
+    that is a quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such
+    as a default, is a `Field` in place of the words.
     """
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
