@@ -9,7 +9,7 @@ import pytest
 import rocking as rk
 from rocking import examples
 from rocking.cli import main
-from rocking.errors import InvalidValueError, located
+from rocking.errors import InvalidValueError, RockingError, located
 from rocking.spec.document import ResponseDocument
 from rocking.spec.reading import InputFiles, read_text, tables_in, validated
 from rocking.spec.response import ResponseProblem, response_problem
@@ -76,7 +76,7 @@ def test_examples_run_as_they_say(path, capsys):
     printed = json.loads(capsys.readouterr().out)
     assert [*printed["other_models"]] == [*question.restitutions][1:]
     first = question.answer(next(iter(question.restitutions.values())))
-    assert printed["peak_rotation_rad"] == first.peak_rotation
+    assert printed["peak_rotation"] == first.peak_rotation
 
 
 def test_the_example_of_a_decision_shows_one():
@@ -127,7 +127,7 @@ def test_slips_are_refused_by_name(case, tmp_path):
     text, words = REFUSED[case]
     path = tmp_path / "question.toml"
     path.write_text(text)
-    with pytest.raises(InvalidValueError) as refused:
+    with pytest.raises(RockingError) as refused:
         problem_in(path)
     assert words in str(refused.value)
     assert str(refused.value).startswith(str(path))
