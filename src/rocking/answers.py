@@ -118,7 +118,7 @@ class Display:
 
     >>> display = Display(length="mm")
     >>> display.text("semi_diagonal", 0.5), display.text("slenderness_angle", 0.25), display.heading("duration")
-    ('500 mm', '14.32 deg', 'duration [s]')
+    ('500 mm', '14.3 deg', 'duration [s]')
     """
 
     length: str = "m"

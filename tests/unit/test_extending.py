@@ -83,7 +83,7 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path)
     assert made.description()["rms_m_s2"] == 1.0
     pulse = ("motion", "sine:amplitude=3,period=0.8")
     assert "root mean square of the acceleration" in printed(capsys, *pulse)
-    assert json.loads(printed(capsys, *pulse, "--json"))["intensity"]["rms_m_s2"] == pytest.approx(4.5**0.5, rel=1e-3)
+    assert json.loads(printed(capsys, *pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
     file = tmp_path / "curves.xml"
     words = ("fragility", "--width", "0.4", "--height", "1.6", "--synthetic", "point-source", "--count", "30")
     more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--out", str(file), "--crossing", "common-dispersion")

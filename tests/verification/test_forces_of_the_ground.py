@@ -246,14 +246,14 @@ def test_what_nobody_hears_is_not_followed_and_what_is_asked_is_followed_once(mo
     assert response.lost_contact
     assert followed == []
     assert response.doubts() == response.doubts() == ["flew"]
-    assert followed == [None]
+    assert followed == [math.inf]
     with warnings.catch_warnings():
         # a filter of sentences may let some through
         warnings.filterwarnings("ignore", message="flew", category=PureRockingWarning)
         rk.simulate(LEANING, motion, 0.9)
     with pytest.warns(PureRockingWarning, match="flew"):
         rk.simulate(LEANING, motion, 0.9)
-    assert followed == [None] * 3
+    assert followed == [math.inf] * 3
 
 
 @pytest.mark.verifies("negative control", "a weak motion without a vertical part")

@@ -192,7 +192,7 @@ def test_commands(tmp_path, capsys):
     told = json.loads(capsys.readouterr().out)
     one = rk.simulate(SHORT, PULSE, friction=0.2)
     assert told["outcome"] == "slid"
-    assert told["sliding_distance_m"] == pytest.approx(one.sliding_distance, rel=1e-9)
+    assert told["sliding_distance"] == pytest.approx(one.sliding_distance, rel=1e-9)
     assert (tmp_path / "a.png").stat().st_size > 1000
     assert "friction 0.2" in (tmp_path / "a.html").read_text()
     assert (tmp_path / "a.csv").read_text().startswith("time [s],quaternion_s")
@@ -374,7 +374,7 @@ def test_commands_of_studies(tmp_path, capsys):
     grid = overturning_map(tall, PULSE, ("scale", [1, 2, 3, 4]), ("period", [0.4, 0.6, 0.8]), friction=0.6)
     assert told["mode"] == grid["mode"].values.tolist()
     assert (tmp_path / "map.png").stat().st_size > 1000
-    least = asked("minimum", *words, "--points", "20", "--levels", "0")["minimum_m_s2"]
+    least = asked("minimum", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
     python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
     assert least == pytest.approx(python, rel=1e-9)
 

@@ -136,7 +136,7 @@ def test_inner_parts_are_stated_at_every_door(tmp_path, capsys):
             main([*said, "--set", f"body.inner_parts={how}"])
         printed = json.loads(capsys.readouterr().out)
         solids = read_body(path, units="m", density=1000.0, inner_parts=how), solid_from_toml(text, folder=tmp_path)
-        found = [(printed["body"]["mass_kg"], printed["repairs"]), *((each.mass, each.repairs) for each in solids)]
+        found = [(printed["body"]["mass"], printed["body"]["repairs"]), *((each.mass, each.repairs) for each in solids)]
         for weight, repairs in found:
             assert weight == pytest.approx(mass, rel=1e-12)
             assert any(f'as inner_parts="{how}" states' in each for each in repairs)

@@ -145,7 +145,7 @@ def test_components(run, answered, tmp_path):
     assert (answer["component"], answer["vertical_component"]) == ("column 3", "column 4")
     assert answer["intensity"]["pga"] == 2.0
     assert answer["peak_vertical_acceleration"] == 0.3
-    assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "vertical_acceleration [m/s2]" in (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "upwards" in run(*words)[1]
 
 

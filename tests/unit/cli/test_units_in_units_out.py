@@ -15,7 +15,7 @@ PULSE = "sine:amplitude=3,period=0.8"
 def drawn(monkeypatch):
     """Every figure that a command writes."""
     figures = []
-    monkeypatch.setattr("rocking.plots.style.write", lambda figure, path: figures.append(figure) or path)
+    monkeypatch.setattr("rocking.plots.write", lambda figure, path: figures.append(figure) or path)
     return figures
 
 

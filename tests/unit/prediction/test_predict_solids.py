@@ -137,7 +137,7 @@ def test_a_prediction_of_a_solid():
     motions = [rk.pulses.sine(amplitude, 0.9) for amplitude in (0.5, 4.0, 8.0)]
     given = {"count": 16, "friction": 0.6, "shares": False, "seed": 3}
     one, two = (predict(stone(), motions, threads=threads, **given) for threads in (1, 2))
-    assert one.answer().plain()["probability"]["uplift"]["per_motion"].tolist()[0] == 0.0
+    assert one.answer().plain()["probability"]["uplift"]["per_motion"][0] == 0.0
     assert one.chances["overturning"].per_motion.tolist() == two.chances["overturning"].per_motion.tolist()
     assert np.all(np.diff(one.chances["overturning"].per_motion) >= 0.0)
     assert one.chances["overturning"].per_motion[-1] > 0.5

@@ -135,7 +135,7 @@ class Job:
         engine = fast_engine.chosen(histories.engine, histories.law)
         motions = {name: value for name, value in problem.motions.description().items() if name != "motions"}
         if isinstance(problem.motions, MotionList):
-            motions["sources"] = [dict(each.answer().values) for each in summaries_of(problem.motions)]
+            motions["sources"] = [each.answer().plain() for each in summaries_of(problem.motions)]
         return {
             "software": f"rocking {software()}",
             "campaign": campaign.name,

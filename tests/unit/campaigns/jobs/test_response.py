@@ -76,7 +76,7 @@ def test_examples_run_as_they_say(path, capsys):
     printed = json.loads(capsys.readouterr().out)
     assert [*printed["other_models"]] == [*question.restitutions][1:]
     first = question.answer(next(iter(question.restitutions.values())))
-    assert printed["peak_rotation_rad"] == first.peak_rotation
+    assert printed["peak_rotation"] == first.peak_rotation
 
 
 def test_the_example_of_a_decision_shows_one():

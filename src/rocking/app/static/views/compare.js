@@ -185,7 +185,7 @@ const marginOf = (margins, label) => {
   if (!found) return "\u2013";
   const key = Object.keys(found).find((each) => each === label || (each.split(":")[0] === label));
   if (!key) return "\u2013";
-  return found[key].lowest === null ? "none found" : number(found[key].lowest, 3);
+  return found[key].min_factor === null ? "none found" : number(found[key].min_factor, 3);
 };
 
 /** @param {{ app: App, margins: Margins }} props */

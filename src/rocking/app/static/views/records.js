@@ -255,11 +255,11 @@ const SHOWN = [["pga", "PGA [g]", 1 / G], ["pgv", "PGV [m/s]", 1], ["arias", "Ar
 /** @param {Given} given */
 const Chosen = ({ answer, question }) => {
   const { records, selection, left_out: left } = answer;
-  const scaled = selection && selection.factor.length === records.length;
+  const scaled = selection && selection.scale.length === records.length;
   const rows = records.map((/** @type {any} */ row, /** @type {number} */ k) => {
     const seen = ["x", "y", "z"].filter((axis) => row[`pga_${axis}`] !== null);
     const lead = [...seen].sort((a, b) => Number(a === "z") - Number(b === "z") || row[`pga_${b}`] - row[`pga_${a}`])[0];
-    return [row.record, ...(scaled ? [number(selection.factor[k], 3), number(selection.misfit[k], 2)] : []),
+    return [row.record, ...(scaled ? [number(selection.scale[k], 3), number(selection.misfit[k], 2)] : []),
       ...SHOWN.map(([key, , size]) => number(row[`${key}_${lead}`] * size, 4)), seen.join(" ")];
   });
   return html`
