@@ -103,7 +103,7 @@ const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " 
 /** @param {Questions} questions @param {{ steps: RecordStep[], asked?: string }} form */
 const faultyOf = (questions, { steps, asked }) => {
   const refusal = questions.shown.value?.state === "refused" ? questions.shown.value.refusal : null;
-  const step = refusal?.places.find((/** @type {any} */ { kind }) => kind === "step");
+  const step = refusal?.places?.find((/** @type {any} */ { kind }) => kind === "step");
   if (!step || asked !== chainOf(steps).join("; ")) return null;
   return { place: step.number - 1, words: sentence(spelt(refusal)) };
 };
