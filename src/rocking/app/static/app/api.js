@@ -108,7 +108,7 @@ const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
   const error = { message: `the server answered ${answer.status}`, ...told.error };
-  return answer.status === 401 && error.text ? { ...error, message: error.text } : error; // its hint is for scripts
+  return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // its hint is for scripts
 };
 
 /** @param {Response} answer */

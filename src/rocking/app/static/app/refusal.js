@@ -10,6 +10,7 @@ const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", 
 /** A refusal in plain words, the field of the body that it is about, and where in the drawing it is; lengths are in the
  * unit of the body. @param {any} error @param {Server.BodyInput} [body] */
 export const inPlainWords = (error, body) => {
+  if (!error.text) error.message = capital(error.message);
   if (!error.text) return;
   const ofBody = error.places[0]?.name === "body" || error.parameter.startsWith("body.");
   const units = ofBody && body && METRES[body.units] ? body.units : "m";
