@@ -36,10 +36,13 @@ export const spelt = ({ text, facts }, units = "m") => {
   return way ?? text.replace(/\{(\w+)\}/g, (/** @type {string} */ _, /** @type {string} */ name) => spelling(facts[name], units));
 };
 
+/** Files, with their lines, and steps in which something is refused. @param {any} refusal @returns {string[]} */
+const outerPlaces = ({ places }) => places.filter((/** @type {any} */ { kind }) => kind === "file" || kind === "step")
+  .map((/** @type {any} */ { name, kind, number: line }) => [name, kind === "file" && line ? `line ${line}` : ""].filter(Boolean).join(", "));
+
 /** A refusal of a question in words; what it tells to state stands in the form. @param {any} refusal */
 export const refusalWords = (refusal) => {
-  const places = refusal.places.filter((/** @type {any} */ { kind }) => kind === "file" || kind === "step")
-    .map((/** @type {any} */ { name, kind, number: line }) => [name, kind === "file" && line ? `line ${line}` : ""].filter(Boolean).join(", "));
+  const places = outerPlaces(refusal);
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
   const mark = Object.values(WAYS).includes(hint) ? ": " : "; ";
   return [...places, spelt(refusal)].join(": ") + (hint && mark + hint);
@@ -56,8 +59,10 @@ const sentenceOf = (error, units) => {
   const region = regionOf(error);
   const where = region === undefined ? "" : `Region ${region + 1}: `;
   const hint = error.hint?.text ? `; ${spelt(error.hint, units)}` : "";
-  const words = capital(spelt({ text: pageText(error), facts: { ...error.facts, ...valueOf(error) } }, units));
-  return `${where}${where ? words[0].toLowerCase() + words.slice(1) : words}${hint}${error.more ? "; more is wrong beside it" : ""}`;
+  const words = spelt({ text: pageText(error), facts: { ...error.facts, ...valueOf(error) } }, units);
+  const places = outerPlaces(error).map((/** @type {string} */ place) => `${place}: `).join("");
+  return `${places}${where}${where || places ? words[0].toLowerCase() + words.slice(1) : capital(words)}${hint}${
+    error.more ? "; more is wrong beside it" : ""}`;
 };
 
 // The page has the value of a number in its field already.

@@ -58,22 +58,22 @@ export const createRecord = (app, onChange) => {
   const ask = (found) => ([asked.value, blamed.value, waiting.value] = [{ answer: found, given: { ...held.given } }, null, true]);
   /** @param {object} words @param {string} as */
   const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);
-  /** @param {string} words */
-  const why = (words) => {
+  /** @param {string} words @param {any[]} [places] */
+  const why = (words, places = []) => {
     const stays = app.inputs.get().motion ? " The motion stays as it was." : "";
-    const named = words.startsWith(`${held.file.name}:`) ? `The file ${words}` : words;
+    const named = places.some(({ kind }) => kind === "file") ? `The file ${words}` : words;
     return { words: `${named.replace(/([^.?!])$/, "$1.")}${stays}`, kind: "error" };
   };
   // What was answered stays as it was typed, with the refusal beside the field that it is about.
   /** @param {any} error */
   const refuse = ({ message, ...error }) => {
     if (!asked.value || error.needs?.length) {
-      end(why(message), "unread");
+      end(why(message, error.places), "unread");
       if (error.needs?.length) ask({ message, ...error });
       return;
     }
     blamed.value = blamedOf(asked.value.answer.needs, message);
-    said.value = blamed.value ? null : why(message);
+    said.value = blamed.value ? null : why(message, error.places);
   };
   // Counts are no accelerations without their StationXML: both go to the step that reads them together.
   /** @param {File[]} files */
