@@ -45,7 +45,8 @@ export const refusalWords = (refusal) => {
   const places = outerPlaces(refusal);
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
   const mark = Object.values(WAYS).includes(hint) ? ": " : "; ";
-  return [...places, spelt(refusal)].join(": ") + (hint && mark + hint);
+  const words = spelt({ text: pageText(refusal, ""), facts: { ...refusal.facts, ...valueOf(refusal) } });
+  return [...places, words].join(": ") + (hint && mark + hint);
 };
 
 /** The key of a form that a refusal is about. @param {any} refusal @returns {string | undefined} */
@@ -59,7 +60,8 @@ const sentenceOf = (error, units) => {
   const region = regionOf(error);
   const where = region === undefined ? "" : `Region ${region + 1}: `;
   const hint = error.hint?.text ? `; ${spelt(error.hint, units)}` : "";
-  const words = spelt({ text: pageText(error), facts: { ...error.facts, ...valueOf(error) } }, units);
+  const article = error.parameter.startsWith("body.") ? "The " : "";
+  const words = spelt({ text: pageText(error, article), facts: { ...error.facts, ...valueOf(error) } }, units);
   const places = outerPlaces(error).map((/** @type {string} */ place) => `${place}: `).join("");
   return `${places}${where}${where || places ? words[0].toLowerCase() + words.slice(1) : capital(words)}${hint}${
     error.more ? "; more is wrong beside it" : ""}`;
@@ -67,14 +69,14 @@ const sentenceOf = (error, units) => {
 
 // The page has the value of a number in its field already.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
-/** @param {any} error */
-const pageText = ({ text, facts }) => (MUST.includes(text) && facts.allowed?.kind === "range"
-  ? "The {parameter} must be {allowed}; it is {value}" : text);
+/** @param {any} error @param {string} article */
+const pageText = ({ text, facts }, article) => (MUST.includes(text) && facts.allowed?.kind === "range"
+  ? `${article}{parameter} must be {allowed}; it is {value}` : text);
 
 /** The refused value, in the unit of its range. @param {any} error */
 const valueOf = ({ text, facts }) => {
   const known = MUST.includes(text) && facts.allowed?.kind === "range" && Number.isFinite(Number(facts.value));
-  return known ? { value: { kind: "amount", value: Number(facts.value), unit: facts.allowed.unit } } : {};
+  return known ? { value: { kind: "amount", value: Number(facts.value), unit: facts.allowed.unit === "m" ? "m" : "" } } : {};
 };
 
 /** @param {any} fact @param {Server.BodyInput["units"]} units @returns {string} */
