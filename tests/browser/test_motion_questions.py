@@ -86,7 +86,15 @@ def test_read_it_so_says_what_is_missing(asked: Any) -> None:
 
 def test_what_the_server_refuses_stands_beside_its_field(asked: Any) -> None:
     """A step that only the server refuses is marked at its field, in words and not by a name of the code."""
-    words = {"error": {"kind": "invalid-value", "message": "time_step must be a number > 0, got '0.5'"}}
+    allowed = {"kind": "range", "low": 0, "high": None, "low_open": True, "high_open": False, "unit": ""}
+    parameter = {"kind": "parameter", "path": "time_step", "shown": "time_step"}
+    data = {
+        "parameter": "time_step", "text": "{parameter} must be a number {allowed}, got {value}",
+        "places": [], "more": 0,
+        "facts": {"parameter": parameter, "allowed": allowed, "value": "0.5"}, "hint": {"text": "", "facts": {}},
+    }  # fmt: skip
+    message = "time_step must be a number > 0, got 0.5"
+    words = {"error": {"kind": "invalid-value", "message": message, **data}}
     asked.route(re.compile(r"/api/records\?.*time_step="), lambda route: route.fulfill(status=422, json=words))
     needs = asked.get_by_test_id("record-needs")
     needs.get_by_label(UNIT).select_option("gal")

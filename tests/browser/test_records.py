@@ -67,7 +67,7 @@ def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any
     band.get_by_label("low").fill("0,2")
     band.get_by_label("high").fill("80")
     asked(section, "refused")
-    expect(band.get_by_role("alert")).to_contain_text("high must be in (0.2, 50) Hz, got 80")
+    expect(band.get_by_role("alert")).to_contain_text("High must be in (0.2, 50) Hz, got 80")
     expect(section.get_by_role("listitem", name="Step 1, mean").get_by_role("alert")).to_have_count(0)
 
     band.get_by_label("high").fill("20")

@@ -5,7 +5,8 @@ import { number, pretty } from "/app/format.js";
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
 /** @type {{ [path: string]: string | undefined }} */
-const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", "motion.time_step": "time between two samples", "motion.units": "unit" };
+const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", "motion.time_step": "time between two samples", "motion.units": "unit",
+  time_step: "time between two samples", units: "unit" };
 
 /** A refusal in plain words, the field of the body that it is about, and where in the drawing it is; lengths are in the
  * unit of the body. @param {any} error @param {Server.BodyInput} [body] */
@@ -60,7 +61,7 @@ const sentenceOf = (error, units) => {
   const region = regionOf(error);
   const where = region === undefined ? "" : `Region ${region + 1}: `;
   const hint = error.hint?.text ? `; ${spelt(error.hint, units)}` : "";
-  const article = error.parameter.startsWith("body.") ? "The " : "";
+  const article = error.parameter.startsWith("body.") || error.parameter in FIELDS ? "The " : "";
   const words = spelt({ text: pageText(error, article), facts: { ...error.facts, ...valueOf(error) } }, units);
   const places = outerPlaces(error).map((/** @type {string} */ place) => `${place}: `).join("");
   return `${places}${where}${where || places ? words[0].toLowerCase() + words.slice(1) : capital(words)}${hint}${
