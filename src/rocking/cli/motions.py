@@ -14,6 +14,7 @@ from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RockingError
+from rocking.messages import Message, Option
 from rocking.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -164,4 +165,7 @@ class SetAnswer:
 
 def _reason(why: str | RockingError) -> dict[str, str]:
     """Return why a file was left out, and what to do about it where that is known."""
-    return {"why": why} if isinstance(why, str) else {"why": why.cause, "hint": str(why.hint)}
+    if isinstance(why, str):
+        return {"why": why}
+    option = why.hint.facts.get("option") if isinstance(why.hint, Message) else None
+    return {"why": why.cause, "hint": str(why.hint), "to_state": option.path if isinstance(option, Option) else ""}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking import plausibility
-from rocking.errors import InvalidValueError, located
+from rocking.errors import InvalidValueError, RockingError, located
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.record_set import Reason, RecordSet, paths_of, plane_motions, read_records, rows_of_list
@@ -95,15 +95,20 @@ def _read(names: Sequence[str], inputs: InputFiles, how: dict[str, Any]) -> Reco
     paths = {name: inputs.folder / name for name in names}
     found = read_records([*paths.values()], **how)
     if is_pattern(names[0]) and found.left_out:  # these files were named
-        raise InvalidValueError(": ".join(map(str, found.left_out[0])))
+        raise _unreadable(*found.left_out[0])
     if len(names) > 1:
         unreadable = dict(found.left_out)
         used = {part.metadata["file"] for record in found for part in record.parts if part is not None}
         for name, path in paths.items():
             if str(path) in unreadable or (path.name not in used and not is_station_file(path)):
                 reasons = (reason for files, reason in found.left_out if path.name in files.split(", "))
-                raise InvalidValueError(f"{name}: {unreadable.get(str(path)) or next(reasons, 'holds no component')}")
+                raise _unreadable(name, unreadable.get(str(path)) or next(reasons, "holds no component"))
     return found
+
+
+def _unreadable(file: str, reason: Reason) -> RockingError:
+    """Return the error of a file that was named and cannot be used."""
+    return (InvalidValueError(reason) if isinstance(reason, str) else reason).at(file)
 
 
 def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, alone: bool = True) -> list[Any]:

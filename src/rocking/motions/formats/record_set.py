@@ -210,9 +210,15 @@ def read_records(  # noqa: PLR0913 - every one of them is a property of some set
         records += found.records
         left_out += found.left_out
     if not records:
-        why = "; ".join(f"{name}: {reason}" for name, reason in left_out[:1]) or "it holds no file"
         named = ", ".join(map(str, places[:MOST_TOLD])) or "no file is named"
-        raise RecordError(f"{named}: none of {len(left_out)} files could be read; {why}")
+        if not left_out:
+            raise RecordError(f"{named}: none of 0 files could be read; it holds no file")
+        file, reason = left_out[0]
+        cause, hint = (reason, "") if isinstance(reason, str) else (reason.cause, reason.hint)
+        raise RecordError(
+            "{named}: none of {count} files could be read; {file}: {cause}",
+            named=named, count=len(left_out), file=file, cause=cause, hint=hint,
+        )  # fmt: skip
     return RecordSet(tuple(records), tuple(left_out))
 
 

@@ -28,6 +28,12 @@ const WAYS = {
   "identify.trend": "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d",
 };
 
+/** Why a file was left out, with what there is to do about it. @param {{ why: string, hint?: string, to_state?: string }} reason */
+export const whyLeftOut = ({ why, hint, to_state: path }) => {
+  const way = WAYS[path ?? ""];
+  return way ? `${why}: ${way}` : hint ? `${why}; ${hint}` : why;
+};
+
 /** A message as the page spells its facts. @param {any} message
  * @param {Server.BodyInput["units"]} [units] @returns {string} */
 export const spelt = ({ text, facts }, units = "m") => {

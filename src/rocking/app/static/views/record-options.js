@@ -26,6 +26,7 @@ export const reasonsOf = (question, records) => {
   const last = (path) => path.split("/").at(-1);
   /** @param {string} name */
   const reasonOf = (name) => leftOut.find(({ file }) => last(file) === name)?.why
+    ?? (last(String(refusal?.facts?.file ?? "")) === name ? refusal?.facts?.cause : undefined)
     ?? ((refusal?.places ?? []).some((/** @type {any} */ place) => place.kind === "file" && last(place.name) === name) ? spelt(refusal) : "");
   return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, why]) => why).slice(0, MOST_REASONS));
 };

@@ -4,7 +4,7 @@ import { freshId } from "/app/dom.js";
 import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";
 import { number, parseNumber } from "/app/format.js";
-import { spelt } from "/app/refusal.js";
+import { spelt, whyLeftOut } from "/app/refusal.js";
 import { createQuestions } from "/questions/asking.js";
 import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
@@ -271,5 +271,5 @@ const Chosen = ({ answer, question }) => {
     ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
       rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
-      rows=${left.map((/** @type {any} */ { file, why }) => [file, why])} />`}`;
+      rows=${left.map((/** @type {any} */ each) => [each.file, whyLeftOut(each)])} />`}`;
 };
