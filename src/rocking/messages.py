@@ -203,6 +203,6 @@ def _data(fact: Any) -> Any:
     if isinstance(fact, tuple):
         return [_data(part) for part in fact]
     if isinstance(fact, Fact):
-        values = {name: None if isinstance(v, float) and math.isinf(v) else v for name, v in vars(fact).items()}
+        values = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in vars(fact).items()}
         return {"kind": type(fact).__name__.lower(), **values}
-    return fact if isinstance(fact, (int, float)) and math.isfinite(fact) else str(fact)
+    return fact if isinstance(fact, int) or (isinstance(fact, float) and math.isfinite(fact)) else str(fact)

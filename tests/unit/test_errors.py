@@ -88,6 +88,13 @@ def test_amounts_and_indices_are_data_too():
     assert overlap.facts["area"] == Amount(0.5, "m2", ".6g")
 
 
+def test_data_of_any_number_is_json():
+    """No fact breaks an answer: what is not finite has no number in JSON, and a whole number may be of any size."""
+    facts = {"x": Amount(math.nan, "m"), "count": 10**400, "ratio": math.inf}
+    data = RecordError("{x}, {count}, {ratio}", **facts).data()["facts"]
+    assert (data["x"]["value"], data["count"], data["ratio"]) == (None, 10**400, "inf")
+
+
 # texts of other libraries, or of processes, which have no parts
 OTHERS = {
     "rocking/tables/arrays.py", "rocking/spec/reading.py", "rocking/motions/formats/obspy_reader.py",
