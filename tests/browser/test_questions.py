@@ -92,7 +92,7 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     ask.click()
     expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(friction).to_be_focused()
-    expect(friction).to_have_accessible_description("Friction must be in [0.01, 10], got -2.")
+    expect(friction).to_have_accessible_description("Friction must be in [0.01, 10]; it is \u22122.")
     expect(section.locator("[aria-invalid=true]")).to_have_count(1)
     friction.fill("0.5")
     expect(friction).not_to_have_attribute("aria-invalid", "true")
@@ -101,7 +101,7 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     expect(friction).to_have_value("0.5")
     expect(section.locator("[aria-invalid=true]")).to_have_count(0)
     section.get_by_role("button", name=re.compile("^Show ")).first.click()
-    expect(section.get_by_role("alert")).to_contain_text("got -2")  # what was asked before is told of itself alone
+    expect(section.get_by_role("alert")).to_contain_text("it is \u22122")  # what was asked before is told of itself alone
     expect(section.locator("[aria-invalid=true]")).to_have_count(0)
 
 

@@ -1,11 +1,12 @@
 /** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
 
-import { html, useEffect, useSignal } from "/parts/preact.js";
+import { html, useSignal } from "/parts/preact.js";
 import { Fetched } from "/charts/pictured.js";
 import { Button, Choice, Note } from "/parts/fields.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
+const NOTHING = "There is nothing to compare in it: it was asked with one model, or with more than six.";
 
 /** The picture of a study that compares its models, as the command line draws it, and its files.
  * @param {{ app: App, asked: { look: () => unknown } }} props */
@@ -17,7 +18,6 @@ export const Studies = ({ app, asked }) => {
     all.value = studies.filter(({ state, kind, project }) => state === "done" && KINDS.has(kind) && (!project || project === here));
     if (!all.value.some(({ id }) => id === chosen.value)) chosen.value = all.value[0]?.id ?? "";
   };
-  useEffect(() => void (refused.value = ""), [chosen.value]);
   const study = all.value.find(({ id }) => id === chosen.value);
   /** @param {string} kind */
   const path = (kind) => `studies/${study.id}/export.${kind}`;
@@ -26,10 +26,10 @@ export const Studies = ({ app, asked }) => {
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
           <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
         <${Choice} label="Study" translate=${false} value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
-        ${refused.value ? html`<${Note} data-testid="not-compared" words=${refused.value} />` : html`
+        ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" words=${NOTHING} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
           <${Fetched} key=${chosen.value} title=${`Models compared: ${study.name}`} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${`${study.name}: its models side by side, and what the choice changes`}
-            onError=${() => (refused.value = "There is nothing to compare in it: it was asked with one model, or with more than six.")} />
+            onError=${() => (refused.value = chosen.value)} />
           ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Take away the comparison">
             ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${`${words} as CSV`}
               onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${words}, CSV<//>`)}</div>`}`}`}
