@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test speed docs oldest packages coverage portable portable-quick lint types golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants pelicun lock clean
+.PHONY: help demo test speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants pelicun lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -22,6 +22,7 @@ help:
 	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make types    the types of the page's scripts, where node and npm are"
+	@echo "make messages the catalogues of messages, compiled"
 	@echo "make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
@@ -97,6 +98,10 @@ lint: $(VENV)/dev $(ENGINE)
 # Nothing else needs node, which may be missing.
 types: $(VENV)/dev
 	@$(BIN)/python types/check.py
+
+# A test says whether what is kept is current.
+messages: $(VENV)/dev
+	$(BIN)/python packaging/messages.py
 
 # A test that hangs for 25 minutes ends the run and prints where it hangs.
 HANGS := -o faulthandler_timeout=1500 -o faulthandler_exit_on_timeout=true

@@ -1,6 +1,6 @@
 """Words of reports: one file of sentences a language, which say the same with the same numbers, as each writes them."""
 
-import csv
+import gettext
 import re
 import string
 import tomllib
@@ -72,9 +72,13 @@ def catalogue(code: str) -> dict[str, str]:
 
 @lru_cache(maxsize=8)
 def page_words(code: str) -> dict[str, str]:
-    """Return what the sentences of the application's page are in a language, by their English ones; none in English."""
-    with (Path(__file__).parent / "page.csv").open(encoding="utf-8", newline="") as file:
-        return {row["en"]: row[code] for row in csv.DictReader(file) if code in row and code != "en"}
+    """Return the messages of the page in a language by their English texts; none in English."""
+    path = Path(__file__).with_name(f"{code}.mo")
+    if not path.exists():
+        return {}
+    with path.open("rb") as file:
+        messages = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]  # as Django reads it
+    return {text: other for text, other in messages.items() if text and isinstance(text, str)}
 
 
 def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
