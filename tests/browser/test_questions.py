@@ -101,7 +101,7 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     expect(friction).to_have_value("0.5")
     expect(section.locator("[aria-invalid=true]")).to_have_count(0)
     section.get_by_role("button", name=re.compile("^Show ")).first.click()
-    expect(section.get_by_role("alert")).to_contain_text("it is \u22122")  # what was asked before is told of itself alone
+    expect(section.get_by_role("alert")).to_contain_text("it is \u22122")  # of the present request alone
     expect(section.locator("[aria-invalid=true]")).to_have_count(0)
 
 
