@@ -35,6 +35,11 @@ class AnswerRows:
         """AnswerRows, as values by the names of their quantities."""
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*self.columns.values(), strict=True)]
 
+    @property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Columns as files contain them: numbers, or text; lists as text with dashes between."""
+        return {name: _array(name, values) for name, values in self.columns.items()}
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:
@@ -76,6 +81,16 @@ class Answer:
         own = dict(self.quantities)
         tree = _plain(self, own)
         return [path for path, name in _owners(tree, (), {**QUANTITIES, **own}) if not name]
+
+
+def _array(name: str, values: Sequence[Any]) -> np.ndarray:
+    entry = QUANTITIES[name]
+    if codes := {word: code for code, word in entry.codes.items()}:
+        return np.array([codes[word if word in codes else entry.spelled[word]] for word in values], dtype=np.int8)
+    if entry.is_text:
+        return np.array([each if isinstance(each, str) else "-".join(map(str, each)) for each in values], dtype=str)
+    array = np.array(values)
+    return array.astype(np.int8) if array.dtype == bool else array
 
 
 def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one a kind

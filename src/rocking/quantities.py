@@ -1,6 +1,6 @@
 """Every result once: its name, unit and meaning, and what its codes stand for; tables, files, answers read it here."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,6 +48,18 @@ class Quantity:
 def attributes(name: str) -> dict[str, Any]:
     """Return what the files say of a result: unit, meaning and codes, as xarray and the CF conventions name them."""
     return QUANTITIES[name].attributes
+
+
+def with_units(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return attributes of a file with the units of quantities beside them.
+
+    >>> with_units({"mass": 2.0, "engine": "fast", "semi_diagonal_left": 1.0})
+    {'mass': 2.0, 'engine': 'fast', 'semi_diagonal_left': 1.0, 'mass_units': 'kg', 'semi_diagonal_left_units': 'm'}
+    """
+    numbers = (name for name, value in values.items() if not isinstance(value, str))
+    entries = {name: QUANTITIES.get(name.removesuffix("_left").removesuffix("_right")) for name in numbers}
+    units = {f"{name}_units": entry.unit for name, entry in entries.items() if entry and entry.unit not in {"", "1"}}
+    return {**values, **units}
 
 
 def _words(members: Iterable[Any]) -> dict[int, str]:
@@ -132,7 +144,6 @@ _HISTORY_IN_SPACE = (
     Quantity(
         "held", "s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"
     ),
-    Quantity("lost", "J", "energy lost at impacts", label="energy lost in impacts"),
     Quantity("events", "1", "number of impacts, uplifts and changes of contact"),
     Quantity("steps", "1", "number of steps of the engine"),
 )
@@ -166,7 +177,7 @@ _SAMPLES = (
     Quantity("kinetic_energy", "J", "kinetic energy relative to the ground"),
     Quantity("potential_energy", "J", "potential energy above rest"),
     Quantity("work_of_ground", "J", "work done by the ground since the start"),
-    Quantity("energy_lost", "J", "energy lost at impacts since the start"),
+    Quantity("energy_lost", "J", "energy lost at impacts since the start", label="energy lost in impacts"),
     Quantity("lost_in_friction", "J", "energy lost in friction since the start", label="energy lost in friction"),
     *(
         Quantity(f"quaternion_{axis}", "1", f"attitude, component {axis} of the unit quaternion")
@@ -194,6 +205,7 @@ _BODY = (
     Quantity("warnings", "", "doubts about the input or the result, a sentence each; none if all is well"),
     Quantity("repairs", "", "changes of the mesh, a sentence each"),
     Quantity("mass", "kg", "mass"),
+    Quantity("half_width", "m", "horizontal distance of the centre of mass from a foot"),
     Quantity("volume", "m3", "volume"),
     Quantity("size", "m", "sides of the bounding box"),
     Quantity("parts", "1", "number of parts"),

@@ -463,7 +463,7 @@ def test_the_compiled_engine_is_the_reference():
     for name in ("outcome", "status", "pose", "uplifts"):
         np.testing.assert_array_equal(made["fast"][name], made["reference"][name])
     assert made["fast"]["peak_tilt"].min() > 1e-3
-    for name in ("peak_tilt", "peak_spin", "first_uplift", "lost"):
+    for name in ("peak_tilt", "peak_spin", "first_uplift", "energy_lost"):
         np.testing.assert_allclose(made["fast"][name], made["reference"][name], rtol=1e-8, atol=1e-10)
     other = hull_histories(body, ground, scales=1.0001, engine="fast", **choices)
     assert np.abs(other["peak_tilt"] / made["reference"]["peak_tilt"] - 1.0).min() > 1e-6

@@ -56,7 +56,7 @@ def errors(law, corners, rim):
     batch = batch_in_space(bodies, MOTION, law, start=SpatialStart(**START), duration=LENGTH)
     assert (batch.status == 0).all()
     assert (batch.still_rocking == 1.0).all()
-    return 1.0 - batch["peak_tilt"].ravel() / rim[0], batch["lost"].ravel() / rim[1]
+    return 1.0 - batch["peak_tilt"].ravel() / rim[0], batch["energy_lost"].ravel() / rim[1]
 
 
 def orders(values):

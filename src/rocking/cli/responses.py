@@ -22,7 +22,7 @@ _PEAKS = (
     "error_estimate",
 )  # fmt: skip
 _DETAILS = (
-    "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "lost", "lost_in_friction",
+    "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "energy_lost", "lost_in_friction",
     "energy_closure", "engine",
 )  # fmt: skip
 _OF_STANDING = {"peak_rotation", "peak_ratio", "peak_tilt"}
@@ -34,7 +34,7 @@ _TABLES = {
         "Impacts",
         (
             "time", "feet", "velocity_before", "velocity_after", "coefficient", "onto", "energy_before",
-            "energy_after", "impulse", "contact", "vertices", "lost", "slips",
+            "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips",
         ),
     ),
 }  # fmt: skip

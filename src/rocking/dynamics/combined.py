@@ -67,7 +67,7 @@ def dataset_of(
         },
         attrs={
             "software": SOFTWARE,
-            **attributes,
+            **quantities.with_units(attributes),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.integration.items()},
         },
     )

@@ -368,7 +368,7 @@ class Response(ResponseBase):
             "coefficient": self.coefficients,
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
             "initial_rotation": float(self.rotation[0]), "restitution": self.parameters.label,
-            "linear": self.settings.linear, "uplift_times": self.uplifts, "impacts": AnswerRows.of(self.impacts),
+            "linear": self.settings.linear, "uplift_times": self.uplifts,
             "energy_closure": self.energy.closure, "error_estimate": self.error_estimate, "friction": friction,
             "friction_assumed": isinstance(friction, Assumed), "friction_demand": contact.friction_demand,
             "friction_of_motion": contact.friction_of_motion, "friction_of_impacts": contact.friction_of_impacts,
@@ -420,9 +420,8 @@ class Response(ResponseBase):
         return response_picture(self, **options)
 
     @property
-    def _beside(self) -> dict[str, dict[str, Any]]:
-        impacts = {name: self.impacts[name] for name in ("time", "velocity_before", "velocity_after", "coefficient")}
-        return {"impact": impacts | {"onto": np.where(self.impacts["onto"] == "right", 1, -1).astype(np.int8)}}
+    def _tables(self) -> dict[str, AnswerRows]:
+        return {"impacts": AnswerRows.of(self.impacts)}
 
     @property
     def _facts(self) -> dict[str, Any]:
@@ -435,9 +434,9 @@ class Response(ResponseBase):
         return {
             "side": self.side,
             "impacts": int(self.trajectory.impacts),
-            **({"overturning_time_s": self.overturning_time} if self.side else {}),
+            **({"overturning_time": self.overturning_time} if self.side else {}),
             "body": type(self.body).__name__,
-            "mass_kg": self.body.mass,
+            "mass": self.body.mass,
             "restitution": parameters.label,
             **origin_of(parameters.label),
             **sides,

@@ -2,13 +2,14 @@
 
 import math
 from abc import abstractmethod
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking import checks
-from rocking.answers import Answer
+from rocking.answers import Answer, AnswerRows
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -17,6 +18,7 @@ from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 from rocking.motions.summary import provenance_of
 from rocking.outcome import Outcome, Status
+from rocking.quantities import with_units
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -31,6 +33,12 @@ def motion_provenance(motion: Any) -> str:
 
 
 _ROUNDING = 1e-9
+
+
+def interval_rows(intervals: Sequence[tuple[Any, ...]], *names: str) -> AnswerRows:
+    """Return a table of intervals of one contact; names: of the columns after start and end."""
+    columns = zip(*intervals, strict=True) if intervals else [()] * (2 + len(names))
+    return AnswerRows(dict(zip(("start", "end", *names), columns, strict=True)))
 
 
 class ResponseBase(Exported):
@@ -116,8 +124,8 @@ class ResponseBase(Exported):
 
     @property
     @abstractmethod
-    def _beside(self) -> dict[str, dict[str, Any]]:
-        """Columns beside the samples by what one of their rows is: `Column`, or values of `rocking.quantities`."""
+    def _tables(self) -> dict[str, AnswerRows]:
+        """Tables beside the samples: impacts, and intervals of one contact."""
 
     @property
     @abstractmethod
@@ -139,6 +147,7 @@ class ResponseBase(Exported):
             "last_state": {"unfinished": self.unfinished, **self._last_state} if self.still_rocking else None,
             "overturning_time": None if math.isnan(time) else time,
             **self._values,
+            **self._tables,
         })  # fmt: skip
 
     @property
@@ -186,18 +195,16 @@ class ResponseBase(Exported):
 
     def exported(self) -> "Table":
         """Return samples, with tables of impacts and the like beside them."""
-        from rocking.tables import Column, Table
-
-        def columns(values: dict[str, Any]) -> dict[str, Column]:
-            return {name: each if isinstance(each, Column) else Column.of(name, each) for name, each in values.items()}
+        from rocking.tables import Table
 
         ended = {
             "software": SOFTWARE, "engine": self.engine, "outcome": self.outcome.name, "status": self.status.name,
             "still_rocking": self.still_rocking, "summary": self.summary,
         }  # fmt: skip
         settings = {f"setting_{name}": value for name, value in self.settings.integration.items()}
-        beside = {row: Table(row, columns(values)) for row, values in self._beside.items()}
-        return Table("time", columns(self._samples), ended | self._facts | settings, beside, no_unit="-")
+        beside = {name.removesuffix("s"): rows.arrays for name, rows in self._tables.items()}
+        tables = {row: Table.of(row, arrays) for row, arrays in beside.items()}
+        return Table.of("time", self._samples, with_units(ended | self._facts | settings), tables, no_unit="-")
 
     def animate(self, path: str | Path, **options: Any) -> Path:
         """Write the response as it moves.

@@ -12,6 +12,7 @@ from rocking.conventions import FloatArray, percent
 from rocking.exported import Exported
 from rocking.motions.summary import MotionSummary, condition
 from rocking.prediction.likelihood import likelihood, scale_words
+from rocking.quantities import with_units
 from rocking.statistics.shares import VarianceShare
 from rocking.version import SOFTWARE
 
@@ -257,10 +258,10 @@ class Prediction(Exported):
             "software": SOFTWARE, "body": repr(self.body), "verdict": self.verdict,
             "assumed": "; ".join(self.assumed), "not_sampled": "; ".join(self.not_sampled),
             "repairs": "; ".join(self.repairs), "likelihood_scale": scale_words(), "seed": self.seed,
-            "sliding_beyond_m": self.sliding_beyond,
+            "sliding_beyond": self.sliding_beyond,
             **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
         }  # fmt: skip
-        return Table("motion", columns, provenance, {"input": Table("input", beside)})
+        return Table("motion", columns, with_units(provenance), {"input": Table("input", beside)})
 
 
 def _between(low: float, high: float) -> str:

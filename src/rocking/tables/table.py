@@ -45,6 +45,8 @@ class Column:
     def of(cls, name: str, values: np.ndarray) -> "Column":
         """Return values of what has an entry in `rocking.quantities`."""
         entry = QUANTITIES[name]
+        if np.asarray(values).dtype.kind == "U":
+            return cls(values, "", entry.meaning)
         return cls(values, entry.unit, entry.meaning, codes=entry.codes, standard_name=entry.standard_name)
 
     @property
@@ -98,6 +100,11 @@ class Table:
     # further tables of the same result, by what one of their rows is
     beside: Mapping[str, "Table"] = field(default_factory=dict)
     no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
+
+    @classmethod
+    def of(cls, row: str, arrays: Arrays, *more: Any, no_unit: str = "") -> "Table":
+        """Return a table of arrays that have entries in `rocking.quantities`; more: provenance, tables beside it."""
+        return cls(row, {name: Column.of(name, values) for name, values in arrays.items()}, *more, no_unit=no_unit)
 
     @classmethod
     def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":

@@ -98,7 +98,7 @@ def test_page_and_files(printed, body, tmp_path):
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(files["nc"], engine="h5netcdf", decode_timedelta=False) as data:
         assert float(data["tilt"].max()) < 0.25
-        assert data.attrs["mass_kg"] == pytest.approx(1200.0)
+        assert data.attrs["mass"] == pytest.approx(1200.0)
 
 
 def test_meshes_rock_too(answered, tmp_path):

@@ -61,7 +61,7 @@ def test_files_say_what_was_computed():
     """Bounce and duration are attributes; the starts are coordinates, with what they have beside rotation."""
     start = rk.dynamics.Start(rotation=0.05, height=0.02)
     found = rk.simulate_many(STATUE, MOTIONS[0], friction=0.5, bounce=0.3, start=start, duration=1.0)
-    assert (found.attrs["bounce"], found.attrs["duration_s"]) == (0.3, 1.0)
+    assert (found.attrs["bounce"], found.attrs["duration"]) == (0.3, 1.0)
     assert {name: found[f"initial_{name}"].item() for name in ("rotation", "angular_velocity", "height")} == {
         "rotation": 0.05, "angular_velocity": 0.0, "height": 0.02
     }  # fmt: skip

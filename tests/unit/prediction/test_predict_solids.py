@@ -128,7 +128,7 @@ def test_a_position_of_the_impulse_in_both_engines():
         )
     }  # fmt: skip
     assert found["one"]["peak_tilt"].item() == found["housner"]["peak_tilt"].item()
-    assert found["less"]["lost"].item() != found["one"]["lost"].item()
+    assert found["less"]["energy_lost"].item() != found["one"]["energy_lost"].item()
     assert found["less"]["peak_tilt"].item() == pytest.approx(found["reference"]["peak_tilt"].item(), rel=1e-9)
 
 

@@ -216,7 +216,7 @@ def many_with_contact(given: Combinations, settings: ContactSettings) -> "xr.Dat
         results, settings,
         {
             "engine": ran, "bounce": settings.bounce, "bounce_law": settings.bounce_law,
-            "duration_s": np.nan if given.duration is None else given.duration,
+            "duration": np.nan if given.duration is None else given.duration,
         },
     )  # fmt: skip
 

@@ -149,7 +149,8 @@ REGIME = np.dtype(
 IMPACT = np.dtype(
     [
         ("time", "f8"), ("feet", "U5"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("normal_left", "f8"),
-        ("normal_right", "f8"), ("tangential_left", "f8"), ("tangential_right", "f8"), ("lost", "f8"), ("slips", "?"),
+        ("normal_right", "f8"), ("tangential_left", "f8"), ("tangential_right", "f8"),
+        ("energy_lost", "f8"), ("slips", "?"),
     ]
 )  # fmt: skip
 """Fields of `ContactResponse.impacts`: [s], feet that touch, theta' [rad/s] twice, impulses [N s], [J], whether."""

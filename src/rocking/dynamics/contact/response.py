@@ -25,7 +25,6 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
-from rocking.tables import Column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -250,13 +249,8 @@ class ContactResponse(ResponseBase):
             "friction_assumed": isinstance(law.friction, conventions.Assumed), "bounce": law.bounce,
             "bounce_law": law.bounce_law, "coefficient": imposed, "peak_rotation": self.peak_rotation,
             "sliding_distance": self.sliding_distance, "residual_displacement": float(self.displacement[-1]),
-            "friction_usage": self.friction_usage, "lost": float(energy.lost_in_impacts[-1]),
+            "friction_usage": self.friction_usage, "energy_lost": float(energy.lost_in_impacts[-1]),
             "lost_in_friction": float(energy.lost_in_friction[-1]), "energy_closure": energy.closure,
-            "intervals": AnswerRows({
-                **AnswerRows.of(self.regimes).columns,
-                "regime": [name.lower() for name in self.regimes["regime"].tolist()],
-            }),
-            "impacts": AnswerRows.of(self.impacts),
         }  # fmt: skip
 
     @property
@@ -284,14 +278,10 @@ class ContactResponse(ResponseBase):
         return regimes_picture(self, **options)
 
     @property
-    def _beside(self) -> dict[str, dict[str, Any]]:
-        impacts, regimes = self.impacts, self.regimes
-        words = {"regime": "regime", "feet": "feet that carry"}
-        return {
-            "impact": {name: impacts[name] for name in _IMPACTS} | {"slips": impacts["slips"].astype(np.int8)},
-            "interval": {name: regimes[name] for name in ("start", "end", "distance")}
-            | {name: Column(regimes[name], "", meaning) for name, meaning in words.items()},
-        }
+    def _tables(self) -> dict[str, AnswerRows]:
+        intervals = AnswerRows.of(self.regimes).columns
+        regimes = [name.lower() for name in self.regimes["regime"].tolist()]
+        return {"intervals": AnswerRows({**intervals, "regime": regimes}), "impacts": AnswerRows.of(self.impacts)}
 
     @property
     def _facts(self) -> dict[str, Any]:
@@ -299,24 +289,19 @@ class ContactResponse(ResponseBase):
         r = law.restitution
         return {
             "body": type(self.body).__name__,
-            "mass_kg": base.mass,
-            "inertia_kg_m2": base.mass * base.inertia,
-            "centre_height_m": base.height,
-            "half_width_left_m": base.left,
-            "half_width_right_m": base.right,
+            "mass": base.mass,
+            "moment_of_inertia": base.mass * base.inertia,
+            "centre_height": base.height,
+            "half_width_left": base.left,
+            "half_width_right": base.right,
             "friction": law.friction,
             "bounce": law.bounce,
-            "imposed_restitution": "none: complementarity" if r is None else f"left {r[0]:.9g}, right {r[1]:.9g}",
+            "bounce_law": law.bounce_law,
+            "restitution": "complementarity" if r is None else f"left {r[0]:.9g}, right {r[1]:.9g}",
             "motion": "none: ground at rest" if motion is None else motion.name,
             "motion_provenance": motion_provenance(motion),
             "scale": self.scale,
         }
-
-
-_IMPACTS = (
-    "time", "velocity_before", "velocity_after", "normal_left", "normal_right", "tangential_left", "tangential_right",
-    "lost", "feet",
-)  # fmt: skip
 
 
 FINE, AFTER = 0.1, 15.0

@@ -40,7 +40,7 @@ _COMPILED = CompiledEngine(
     "`make engine`)",
     "the reference engine runs instead, row by row",
     ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance",
-     "residual_displacement", "end_time", "lost"),
+     "residual_displacement", "end_time", "energy_lost"),
     ("outcome", "status", "pose", "impacts", "uplifts", "events", "steps", "held", "replaced", "still_rocking"),
 )  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
@@ -115,12 +115,12 @@ def traced(
         HullEvent(time, HullEventKind.IMPACT, HullContact(touching, touching), before, after)
         for (time, before, after), touching in zip(impacts.tolist(), _groups(struck), strict=True)
     ]
-    same = ("peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance", "lost",
-            "pose", "uplifts", "steps", "held", "replaced")  # fmt: skip
+    same = ("peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance", "pose",
+            "uplifts", "steps", "held", "replaced")  # fmt: skip
     return HullHistory(
         nodes[:, 0].tolist(), [_state(row[1:]) for row in nodes], contacts, events, list(Status)[found["status"]],
         list(Outcome)[found["outcome"]], bool(found["still_rocking"]), fell=fell, least_cosine=least, stood=body.base,
-        **{name: found[name] for name in same},
+        lost=found["energy_lost"], **{name: found[name] for name in same},
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from rocking.dynamics.hull.histories import ENGINES, chosen, start_of, traced
 from rocking.dynamics.hull.history import HullEventKind, HullHistory
 from rocking.dynamics.hull.restitution import law_on_hull
 from rocking.dynamics.hull.settings import HullSettings
-from rocking.dynamics.response_base import ResponseBase, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, interval_rows, motion_provenance
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import Component, ground_of
@@ -304,17 +304,14 @@ class HullResponse(ResponseBase):
 
     @property
     def _values(self) -> dict[str, Any]:
-        direction, intervals = self.overturning_direction, self.intervals
-        starts, ends, touching, sliding = zip(*intervals, strict=True) if intervals else ((),) * 4
+        direction = self.overturning_direction
         return {
             "motions": {
                 axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
             },
             "restitution": self.restitution, "friction": self.settings.friction, "peak_tilt": self.peak_tilt,
             "direction": None if math.isnan(direction) else direction, "sliding_distance": self.sliding_distance,
-            "pose": self.pose, "lost": self.trajectory.lost,
-            "intervals": AnswerRows({"start": starts, "end": ends, "vertices": touching, "sliding_vertices": sliding}),
-            "impacts": AnswerRows.of(self.impacts),
+            "pose": self.pose, "energy_lost": self.trajectory.lost,
         }  # fmt: skip
 
     @property
@@ -345,27 +342,19 @@ class HullResponse(ResponseBase):
         return spatial_picture(self, **options)
 
     @property
-    def _beside(self) -> dict[str, dict[str, Any]]:
-        starts, ends, points, slides = zip(*self.intervals, strict=True) if self.intervals else ((),) * 4
-        return {
-            "impact": {name: self.impacts[name] for name in HULL_IMPACT.names or ()},
-            "interval": {
-                "start": np.array(starts, dtype=np.float64),
-                "end": np.array(ends, dtype=np.float64),
-                "vertices": np.array(["-".join(map(str, each)) for each in points], dtype="U64"),
-                "sliding_vertices": np.array(["-".join(map(str, each)) for each in slides], dtype="U64"),
-            },
-        }
+    def _tables(self) -> dict[str, AnswerRows]:
+        intervals = interval_rows(self.intervals, "vertices", "sliding_vertices")
+        return {"intervals": intervals, "impacts": AnswerRows.of(self.impacts)}
 
     @property
     def _facts(self) -> dict[str, Any]:
         body, direction = self.body, self.overturning_direction
         return {
-            **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
+            **({} if math.isnan(direction) else {"direction": direction}),
             "pose": self.pose,
-            "mass_kg": body.mass,
-            "centre_m": body.centre.tolist(),
-            "inertia_kg_m2": np.ravel(body.inertia).tolist(),
+            "mass": body.mass,
+            "centre": body.centre.tolist(),
+            "inertia": np.ravel(body.inertia).tolist(),
             "vertices": len(body.points),
             "restitution": self.restitution,
             "scale": self.scale,

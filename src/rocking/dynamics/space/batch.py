@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from rocking import checks, plausibility
+from rocking.answers import Answer
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.mechanics_base import Combinations, listed
 from rocking.dynamics.response_base import motion_provenance
@@ -26,7 +27,7 @@ from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajector
 from rocking.errors import InvalidValueError, RockingError, extra
 from rocking.motions.components import components_of
 from rocking.outcome import ContactMode, Outcome, Status, of_results, overturned
-from rocking.quantities import attributes
+from rocking.quantities import attributes, with_units
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class SpatialBatch:
         }
         coordinates = {name: (name, row) for name, row in self.labels.items()}
         refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
-        stated = {"software": SOFTWARE, "engine": self.engine, "refused": refused, **self.provenance}
+        stated = {"software": SOFTWARE, "engine": self.engine, "refused": refused, **with_units(self.provenance)}
         dataset: xr.Dataset = xarray.Dataset(data, coordinates, stated)
         return dataset
 
@@ -254,7 +255,7 @@ def provenance_of(
     """Return of what a batch was computed, beside its labels and bodies; usual: how long where nobody says."""
     leaning = [start.numbers for start in starts if start.valid]
     return {
-        "duration_s": usual if duration is None else float(duration),
+        "duration": usual if duration is None else float(duration),
         **{f"setting_{name}": value for name, value in stated.items()},
         "motions": json.dumps([[motion_provenance(part) for part in _components(motion)] for motion in motions]),
         "starts": json.dumps(leaning),
@@ -267,6 +268,6 @@ def _of_bodies(bodies: Bodies) -> dict[str, Any]:
     >>> len(json.loads(_of_bodies([SpatialBody.box(1.0, 1.0, 4.0)])["bodies"]))
     1
     """
-    spelled = json.dumps([None if body is None else body.facts for body in bodies])
+    spelled = json.dumps([None if body is None else Answer(body.facts).plain() for body in bodies])
     digest = {"bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest()}
     return ({"bodies": spelled} if len(bodies) <= _FEW else {}) | digest

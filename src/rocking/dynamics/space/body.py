@@ -196,10 +196,10 @@ class SpatialBody:
     def facts(self) -> dict[str, Any]:
         """Mass, centre, inertia and base as plain values."""
         return {
-            "mass_kg": self.mass,
-            "centre_m": self.centre.tolist(),
-            "inertia_kg_m2": np.ravel(self.inertia).tolist(),
-            "base_m": np.ravel(self.base).tolist(),
+            "mass": self.mass,
+            "centre": self.centre.tolist(),
+            "inertia": np.ravel(self.inertia).tolist(),
+            "base_radius" if self.round else "base_vertices": np.ravel(self.base).tolist(),
         }
 
     @property

@@ -44,7 +44,7 @@ _COMPILED = CompiledEngine(
     "`make engine`)",
     "the reference engine runs instead, row by row",
     ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held",
-     "lost"),
+     "energy_lost"),
     ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking"),
 )  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen

@@ -12,7 +12,7 @@ from rocking import checks, conventions, plausibility
 from rocking.answers import AnswerRows
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.energy_balance import ResponseEnergy
-from rocking.dynamics.response_base import ResponseBase, check_samples, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, check_samples, interval_rows, motion_provenance
 from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.body import SpatialBody
@@ -27,7 +27,6 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.summary import motion_answer
 from rocking.outcome import ContactMode, Outcome
 from rocking.portable import applied, dot, gauss_legendre, norm
-from rocking.tables import Column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -310,8 +309,7 @@ class SpatialResponse(ResponseBase):
 
     @property
     def _values(self) -> dict[str, Any]:
-        direction, intervals = self.overturning_direction, self.intervals
-        starts, ends, modes, points = zip(*intervals, strict=True) if intervals else ((),) * 4
+        direction = self.overturning_direction
         return {
             "motions": {
                 axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
@@ -320,10 +318,6 @@ class SpatialResponse(ResponseBase):
             "direction": None if math.isnan(direction) else direction,
             "overturned_over": self.overturned_over or None, "ends_early": self.ends_early,
             "energy_closure": self.energy.closure,
-            "intervals": AnswerRows({
-                "start": starts, "end": ends, "contact": [mode.name.lower() for mode in modes], "vertices": points,
-            }),
-            "impacts": AnswerRows.of(self.impacts),
         }  # fmt: skip
 
     @property
@@ -356,26 +350,17 @@ class SpatialResponse(ResponseBase):
         return spatial_picture(self, **options)
 
     @property
-    def _beside(self) -> dict[str, dict[str, Any]]:
-        impacts = self.impacts
-        words = {"contact": "contact that stays", "vertices": "vertices that stay on the ground"}
-        starts, ends, modes, points = zip(*self.intervals, strict=True) if self.intervals else ((),) * 4
+    def _tables(self) -> dict[str, AnswerRows]:
+        spelled = [(start, end, mode.name.lower(), points) for start, end, mode, points in self.intervals]
         return {
-            "impact": {name: impacts[name] for name in SPATIAL_IMPACT.names or () if name not in words}
-            | {name: Column(impacts[name], "", meaning) for name, meaning in words.items()},
-            "interval": {
-                "start": np.array(starts, dtype=np.float64),
-                "end": np.array(ends, dtype=np.float64),
-                "contact": Column(np.array([mode.name.lower() for mode in modes], dtype="U8"), "", "contact"),
-                "vertices": np.array(["-".join(map(str, each)) for each in points], dtype="U64"),
-            },
-        }
+            "intervals": interval_rows(spelled, "contact", "vertices"), "impacts": AnswerRows.of(self.impacts),
+        }  # fmt: skip
 
     @property
     def _facts(self) -> dict[str, Any]:
         direction = self.overturning_direction
         return {
-            **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
+            **({} if math.isnan(direction) else {"direction": direction}),
             **self.body.facts,
             "ends_early": self.ends_early,
             "restitution": self.law.label,

@@ -97,7 +97,7 @@ def test_the_reference_engine_serves_row_by_row():
     assert "reference" in slow.engine
     for name in ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events"):
         np.testing.assert_array_equal(fast[name], slow[name], err_msg=name)
-    for name in ("peak_tilt", "peak_time", "overturning_time", "first_uplift", "lost", "direction"):
+    for name in ("peak_tilt", "peak_time", "overturning_time", "first_uplift", "energy_lost", "direction"):
         if name == "direction":  # where the last step ends differs, and the body goes on turning
             np.testing.assert_allclose(
                 np.cos(fast[name] - slow[name])[slow.overturned == 1.0], 1.0, rtol=0.0, atol=0.05
@@ -287,14 +287,14 @@ def test_a_dataset_has_axes_units_and_provenance(batch, tmp_path):
         assert data["peak_tilt"].dims == ("body", "motion", "scale", "restitution", "start")
         np.testing.assert_array_equal(data["peak_tilt"].values, batch["peak_tilt"])
         assert np.isnan(data["peak_tilt"].values[1]).all()
-        assert data["lost"].attrs["units"] == "J"
+        assert data["energy_lost"].attrs["units"] == "J"
         assert list(data["restitution"].values) == ["housner-3d", "0.9"]
         assert set(data.data_vars) == {*batch.values, "overturned"}
         assert "fast" in data.attrs["engine"]
         told = data.attrs
     assert told["software"] == f"rocking {rk.__version__}"
     assert told["setting_gravity"] == conventions.g
-    assert json.loads(told["bodies"])[0]["mass_kg"] == BOX.mass
+    assert json.loads(told["bodies"])[0]["mass"] == BOX.mass
     assert json.loads(told["bodies"])[1] is None
     assert "1" in json.loads(told["refused"])
     assert json.loads(told["starts"])[1][:2] == [0.05, 0.3]
