@@ -12,7 +12,6 @@ from rocking.evidence.comparison import rmse
 from rocking.evidence.likelihood import interval_log_likelihood
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.evidence.searches import minimise_many
-from rocking.portable import each
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, Bed, bed_table
 from rocking.restitution.calibrated import scatter
 from rocking.restitution.impact import ImpactGeometry
@@ -257,7 +256,7 @@ def _most_likely(searches: Sequence[_BedSearch], data: DataSet, steps: int) -> l
         both = np.concatenate([at(free, number), np.broadcast_to(_WITHOUT, (len(free), len(_WITHOUT)))], axis=1)
         numbers = np.take_along_axis(both, columns[number], axis=1)
         mean = coefficients(numbers[:, :-2], data, points[number])
-        sd = scatter(mean, each(math.exp, numbers[:, -2:-1]), numbers[:, -1:])
+        sd = scatter(mean, np.exp(numbers[:, -2:-1]), numbers[:, -1:])
         return interval_log_likelihood(data.low, data.high, mean, sd)
 
     def misfit(free: FloatArray, number: IntArray) -> FloatArray:

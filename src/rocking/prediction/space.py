@@ -21,7 +21,6 @@ from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 from rocking.evidence import restitution_distribution
 from rocking.outcome import Status
-from rocking.portable import times
 from rocking.prediction.mechanics import (
     AZIMUTH_WHY,
     CENTRE,
@@ -77,8 +76,8 @@ class SampledInSpace(SampledBodies):
         self._gravity, self.solid, found = gravity, solid, solid.equilibria()
         self.pose, self._mass, self._flat = found.settling((0.0, 0.0, -1.0)), found.mass, found.flatness
         turned = self.pose.rotation
-        self.corners, self._surface = (times(each, turned.T) for each in (found.hull.vertices, found.surface))
-        self.inertia = times(times(turned, solid.local_moments.inertia), turned.T)
+        self.corners, self._surface = (points @ turned.T for points in (found.hull.vertices, found.surface))
+        self.inertia = turned @ solid.local_moments.inertia @ turned.T
         self._shapes: dict[tuple[float, float], _Shape] = {}
         radius, height = float(np.linalg.norm(self.pose.support, axis=1).mean()), self.pose.height
         turn_round = 2.0 * math.pi

@@ -22,7 +22,6 @@ from rocking.bodies.equilibria.poses import (
 )
 from rocking.conventions import FloatArray, IntArray, g
 from rocking.errors import InvalidValueError
-from rocking.portable import norm
 
 Path = Literal["straight", "lowest"]
 _CLOSE = 1e-9
@@ -234,7 +233,7 @@ class Equilibria:
         known: object = pose
         if isinstance(known, StablePose) and known.number < len(self.stable):
             own = self.stable[known.number]
-            if norm(own.down - known.down) < _SAME and math.isclose(own.height, known.height, rel_tol=1e-6):
+            if np.linalg.norm(own.down - known.down) < _SAME and math.isclose(own.height, known.height, rel_tol=1e-6):
                 return
         raise InvalidValueError(f"pose must be one of the stable poses of these equilibria, got {pose!r:.60}")
 
@@ -359,7 +358,7 @@ def _found(
     ends = [[hull.rolled(int(side)) for side in hull.sides[edge]] for edge in edges]
     always = {each for each in facets.tolist() if least > 0.0 and len(hull.corners(each)) > _MANY}
     if down is not None:
-        always |= {each for each in facets.tolist() if norm(np.cross(hull.normals[each], down)) < _SAME}
+        always |= {each for each in facets.tolist() if np.linalg.norm(np.cross(hull.normals[each], down)) < _SAME}
     leads, cut = _simplified(facets, hull.heights, edges, tops, ends, least, always=always)
     kept_facets = [facet for facet in facets.tolist() if leads[facet] == facet]
     kept_edges = [edge for edge in edges.tolist() if edge not in cut]

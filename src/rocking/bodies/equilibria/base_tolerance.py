@@ -10,7 +10,6 @@ from rocking import checks
 from rocking.bodies.equilibria._equilibria import Equilibria, equilibria
 from rocking.bodies.equilibria.poses import StablePose
 from rocking.conventions import FloatArray, g
-from rocking.portable import times
 
 TOLERANCES = (0.0, 0.0005, 0.001, 0.002, 0.005)
 """By default [m]: what a scan, a gap or dust leaves open."""
@@ -94,7 +93,7 @@ def base_tolerances(
 
 def _row(found: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance:
     most = checks.within("tolerance", tolerance, 0.0, pose.height, unit="m", open_high=True)
-    corners, surface = (times(each, pose.rotation.T) for each in (found.hull.vertices, found.surface))
+    corners, surface = (points @ pose.rotation.T for points in (found.hull.vertices, found.surface))
     touching = surface[surface[:, 2] + pose.height <= max(most, found.flatness)]
     turned = np.concatenate([corners, touching])
     turned[turned[:, 2] + pose.height <= max(most, found.flatness), 2] = -pose.height

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.portable import applied, times
 
 Kind = Literal["stable", "saddle", "summit"]
 
@@ -76,7 +75,7 @@ class StablePose(Equilibrium):
     @property
     def support(self) -> FloatArray:
         """Corners of the support polygon from the plumb line, as set down, counter-clockwise, shape (n, 2) [m]."""
-        flat: FloatArray = times(self.points - self.centre, self.rotation.T)[:, :2]
+        flat: FloatArray = ((self.points - self.centre) @ self.rotation.T)[:, :2]
         return flat
 
     @property
@@ -188,10 +187,11 @@ def azimuths(values: ArrayLike) -> FloatArray:
 
 def tilt_towards(pose: StablePose, down: FloatArray) -> tuple[float, float]:
     """Return tilt and azimuth of a direction down, seen from a pose [rad]."""
-    x, y, z = applied(pose.rotation, down).tolist()
+    x, y, z = (pose.rotation @ down).tolist()
     return math.atan2(math.hypot(x, y), -z), math.atan2(y, x)
 
 
 def tilted(pose: StablePose, azimuth: float) -> FloatArray:
     """Return the horizontal direction of an azimuth, in the body's frame."""
-    return applied(pose.rotation.T, np.array([math.cos(azimuth), math.sin(azimuth), 0.0]))
+    turned: FloatArray = pose.rotation.T @ np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    return turned

@@ -25,7 +25,6 @@ from rocking.bodies.solid.surfaces import vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install, located
-from rocking.portable import applied, norm, times
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # formats that are read, by the end of the file's name
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
@@ -65,7 +64,7 @@ def mesh_from_file(
         surface = checks.one_of("surface", surface, get_args(Surface))
         surface = "wrap" if surface == "faces" and not len(faces) else surface
         done = repaired(
-            times(vertices * scale, turn.T), faces,
+            (vertices * scale) @ turn.T, faces,
             weld_tolerance=weld_tolerance, repair=repair, surface=surface, wall=wall, inner_parts=inner_parts,
             place=lambda where: in_words(where @ turn / scale, units),
         )  # fmt: skip
@@ -82,7 +81,7 @@ def _turn(up: str | ArrayLike) -> FloatArray:
     if not known or not direction.any():
         directions = '"z", "y", or a direction (x, y, z) in the file'
         raise InvalidValueError(parameter="up", allowed=directions, value=up)
-    return set_down(-direction / norm(direction.astype(np.float64)))
+    return set_down(-direction / np.linalg.norm(direction.astype(np.float64)))
 
 
 def solid_from_mesh(
@@ -119,16 +118,16 @@ def solid_from_mesh(
         if base is None and not stands(points, place, checks.positive("base_tolerance", tolerance, "m")):
             turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], place)
             part = Part(mesh.shape, density, rotation=turn, translation=mesh.middle)
-            place = applied(turn, place)
+            place = turn @ place
             if inertia is not None:
                 tensor = checks.real_array("inertia", inertia, "kg m2")
-                inertia = times(times(turn, np.diag(tensor) if tensor.shape == (3,) else tensor), turn.T)
+                inertia = turn @ (np.diag(tensor) if tensor.shape == (3,) else tensor) @ turn.T
             said = (*said, _settled_words(turn, float((place + mesh.middle)[2] - part.box()[0, 2])))
         solid = Solid(
             part, base=base, ground=float(part.box()[0, 2]), base_tolerance=tolerance,
             mass=mass, centre=None if centre is None else place + mesh.middle, inertia=inertia,
         )  # fmt: skip
-    solid.name, solid.repairs, solid.turn = path.name, said, times(part.rotation, _turn(options.get("up", "z")))
+    solid.name, solid.repairs, solid.turn = path.name, said, part.rotation @ _turn(options.get("up", "z"))
     return solid
 
 
