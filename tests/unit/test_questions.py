@@ -11,7 +11,9 @@ from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
 from rocking.motions.synthetic import families
 from rocking.spec import bodies
-from rocking.spec.document import CampaignDocument, IdentificationDocument, ResponseDocument
+from rocking.spec.document import CampaignDocument
+from rocking.spec.documents.identification import IdentificationDocument
+from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference, steps, targets
 from rocking.studies import axes

@@ -17,16 +17,12 @@ from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Motion
 from rocking.spec.bodies import body_of
 from rocking.spec.construction import motion_of
-from rocking.spec.document import (
-    OneMotionTable,
-    ResponseTable,
-    ResponseTables,
-    RestitutionTable,
-    SettingsTable,
-    check_start,
-)
+from rocking.spec.documents.response import ResponseTable, ResponseTables, check_start
 from rocking.spec.fields import JobTable, Text
+from rocking.spec.motion_tables import OneMotionTable
 from rocking.spec.response import ResponseProblem, problem_of
+from rocking.spec.restitution_tables import RestitutionTable
+from rocking.spec.settings_tables import SettingsTable
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore

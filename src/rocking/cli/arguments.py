@@ -15,7 +15,7 @@ from rocking.cli.spelling import typed
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
 from rocking.motions.pulses import catalogue
-from rocking.spec.document import OF_FILES
+from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.reading import is_pattern, tables_in
 
 if TYPE_CHECKING:

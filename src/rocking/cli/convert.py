@@ -14,10 +14,11 @@ from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, deliver
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
+from rocking.spec.motion_tables import MotionKeys
 
 if TYPE_CHECKING:
     from rocking.motions.motion import GroundMotion
-    from rocking.spec.document import ComponentsTable
+    from rocking.spec.motion_tables import ComponentsTable
     from rocking.spec.reading import InputFiles
 
 
@@ -60,7 +61,7 @@ def convert(
         ),
     ],
     units: options.RecordUnits = None,
-    scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
+    scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
     sets: options.Set = None,
     out: Annotated[
         list[str] | None,
@@ -75,7 +76,8 @@ def convert(
     """Run `rocking convert`."""
     from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
     from rocking.motions.motion import GroundMotion
-    from rocking.spec.document import ComponentsTable, RecordDocument
+    from rocking.spec.documents.records import RecordDocument
+    from rocking.spec.motion_tables import ComponentsTable
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
     exports = Exports.of(out, _kinds())

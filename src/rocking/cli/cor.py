@@ -18,9 +18,9 @@ from rocking.cli.page import Page, deliver
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError, located
 from rocking.spec.bodies import body_moved
-from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
+from rocking.spec.settings_tables import SettingsTable
 
 if TYPE_CHECKING:
     from rocking.reports.body_facts import ImpactAnswer

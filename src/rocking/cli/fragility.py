@@ -10,7 +10,7 @@ from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.document import FragilityTable
+from rocking.spec.questions.fragility import FragilityTable
 
 if TYPE_CHECKING:
     from rocking.cli.arguments import Arguments

@@ -17,7 +17,7 @@ from rocking.messages import Message, WrittenFile
 
 if TYPE_CHECKING:
     from rocking.identification import Identification, ModelComparison
-    from rocking.spec.document import IdentificationDocument
+    from rocking.spec.documents.identification import IdentificationDocument
     from rocking.spec.identification import IdentifiedTrials
     from rocking.spec.reading import InputFiles
 
@@ -83,7 +83,7 @@ def identify(
 def _question(context: typer.Context, words: list[str]) -> "tuple[IdentificationDocument, InputFiles]":
     """Return what was asked; a body file and a measurement may stand in either order."""
     from rocking.cli.arguments import Arguments, document_file, is_body, with_sets
-    from rocking.spec.document import IdentificationDocument
+    from rocking.spec.documents.identification import IdentificationDocument
     from rocking.spec.identification import bodies_in
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 

@@ -11,7 +11,7 @@ from rocking.answers import Answer
 from rocking.cli import completion, options
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.document import InventoryTable
+from rocking.spec.questions.inventory import InventoryTable
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem

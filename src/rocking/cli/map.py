@@ -14,7 +14,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import mode_shares
 from rocking.quantities import Quantity
-from rocking.spec.document import MapTable
+from rocking.spec.questions.overturning_map import MapTable
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,7 +15,7 @@ from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.errors import InvalidValueError
 from rocking.outcome import UNCOUNTED
 from rocking.spec.construction import COMPLEMENTARITY
-from rocking.spec.document import MinimumTable
+from rocking.spec.questions.minimum_acceleration import MinimumTable
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,6 +15,7 @@ from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, deliver
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
+from rocking.spec.motion_tables import MotionKeys
 
 if TYPE_CHECKING:
     from rocking.motions.intensity import Measure
@@ -59,7 +60,7 @@ def motion(
         ),
     ],
     units: options.RecordUnits = None,
-    scale: Annotated[float | None, options.key(options.tables.MotionKeys, "scale")] = None,
+    scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[
         str, typer.Option(help=r"Periods of the spectrum, with commas between \[s].")
@@ -74,7 +75,7 @@ def motion(
     from rocking.plots.labels import fine_samples
     from rocking.reports.response_facts import measures_of
     from rocking.spec.construction import motion_of
-    from rocking.spec.document import OneMotionTable
+    from rocking.spec.motion_tables import OneMotionTable
     from rocking.spec.reading import CommandFiles, checked
 
     exports = Exports.of(out, EXPORTS)

@@ -79,7 +79,8 @@ def motions(
     from rocking.cli.motion import parsed_periods
     from rocking.dynamics.settings import processors
     from rocking.motions.flatfiles import PERIODS, flatfile
-    from rocking.spec.document import MotionTable, RecordSetDocument
+    from rocking.spec.documents.records import RecordSetDocument
+    from rocking.spec.motion_tables import MotionTable
     from rocking.spec.reading import CommandFiles, InputFiles, checked, is_pattern, tables_in
     from rocking.spec.record_sets import record_set
 

@@ -1,4 +1,4 @@
-"""Options of the commands; what they mean is said once, by the tables of `rocking.spec.document`."""
+"""Options of the commands; what they mean is said once, by the tables of `rocking.spec`."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -8,7 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from rocking.cli import completion
-from rocking.spec import document as tables
+from rocking.spec.documents.prediction import PredictTable
+from rocking.spec.motion_tables import ComponentsTable, MotionKeys
+from rocking.spec.settings_tables import StudySettingsTable
 
 SIZE, SHAKING, HOW, OUTPUT = "Size, in place of a body file", "What shakes it", "How it is computed", "Output"
 
@@ -75,7 +77,7 @@ Set = Annotated[
         rich_help_panel=HOW,
     ),
 ]
-Friction = Annotated[float | None, key(tables.StudySettingsTable, "friction", rich_help_panel=HOW)]
+Friction = Annotated[float | None, key(StudySettingsTable, "friction", rich_help_panel=HOW)]
 Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=HOW)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=OUTPUT)]
 
@@ -142,8 +144,8 @@ Family = Annotated[
 Seed = Annotated[
     int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=SHAKING)
 ]
-ScaledToPeak = Annotated[str | None, key(tables.PredictTable, "pga", rich_help_panel=SHAKING)]
-Scale = Annotated[float, key(tables.MotionKeys, "scale")]
+ScaledToPeak = Annotated[str | None, key(PredictTable, "pga", rich_help_panel=SHAKING)]
+Scale = Annotated[float, key(MotionKeys, "scale")]
 
 
 def count(usual: int, panel: str = SHAKING) -> Any:
@@ -165,5 +167,5 @@ def key_of(option: str) -> str:
     ('--set settings.gravity=VALUE', '--set motion.time_step=VALUE', '')
     """
     key = option.removeprefix("--").replace("-", "_")
-    keys = {"motion": tables.ComponentsTable.model_fields, "settings": tables.StudySettingsTable.model_fields}
+    keys = {"motion": ComponentsTable.model_fields, "settings": StudySettingsTable.model_fields}
     return next((f"--set {name}.{key}=VALUE" for name, known in keys.items() if key in known), "")

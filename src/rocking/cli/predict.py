@@ -23,7 +23,7 @@ from rocking.prediction.likelihood import scale_words
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment
     from rocking.prediction import Prediction
-    from rocking.spec.document import AssessTable, PredictionDocument
+    from rocking.spec.documents.prediction import AssessTable, PredictionDocument
     from rocking.spec.reading import InputFiles
 
 D = TypeVar("D", bound="PredictionDocument")
@@ -54,7 +54,7 @@ def predict(
 ) -> None:
     """Run `rocking predict`."""
     from rocking.cli.arguments import document_file
-    from rocking.spec.document import PredictionDocument
+    from rocking.spec.documents.prediction import PredictionDocument
     from rocking.spec.prediction import PredictionProblem
 
     exports = Exports.of(out, EXPORTS)
@@ -179,7 +179,7 @@ def assess(
 ) -> None:
     """Run `rocking assess`."""
     from rocking.cli.arguments import document_file, is_body
-    from rocking.spec.document import AssessmentDocument
+    from rocking.spec.documents.prediction import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
 
     exports = Exports.of(out, REPORTED)

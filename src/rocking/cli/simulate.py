@@ -21,7 +21,8 @@ from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motions_of
-from rocking.spec.document import MotionTable, ResponseDocument, ResponseTable, ResponseTables
+from rocking.spec.documents.response import ResponseDocument, ResponseTable, ResponseTables
+from rocking.spec.motion_tables import MotionTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.response import problem_of, response_problem
 

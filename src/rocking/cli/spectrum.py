@@ -12,7 +12,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.document import OWN_BLOCKS, SpectrumTable
+from rocking.spec.questions.rocking_spectrum import OWN_BLOCKS, SpectrumTable
 
 if TYPE_CHECKING:
     import xarray as xr

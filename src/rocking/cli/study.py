@@ -13,7 +13,8 @@ from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
-from rocking.spec.document import NEEDS, OF_FILES, CampaignDocument
+from rocking.spec.document import NEEDS, CampaignDocument
+from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.study import StudyProblem
 

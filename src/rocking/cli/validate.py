@@ -14,7 +14,7 @@ from rocking.cli.page import Page, bar, deliver
 from rocking.errors import located
 
 if TYPE_CHECKING:
-    from rocking.spec.document import ValidationDocument
+    from rocking.spec.documents.validation import ValidationDocument
     from rocking.spec.reading import InputFiles
     from rocking.spec.validation import FolderValidation
 
@@ -57,7 +57,7 @@ def validate(
 
 def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, InputFiles]":
     from rocking.cli.arguments import Arguments
-    from rocking.spec.document import ValidationDocument
+    from rocking.spec.documents.validation import ValidationDocument
     from rocking.spec.reading import CommandFiles, checked, tables_in
     from rocking.spec.validation import is_question
 

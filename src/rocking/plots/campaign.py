@@ -13,7 +13,7 @@ from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.transitions import transitions_of_many_picture
-from rocking.spec.document import ExportTable
+from rocking.spec.questions.fragility import ExportTable
 from rocking.studies.fragility.curves import shown_curves
 
 if TYPE_CHECKING:

@@ -24,14 +24,8 @@ from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
     from rocking.motions.pulse import Motion
-    from rocking.spec.document import (
-        ComponentsTable,
-        MotionKeys,
-        MotionTable,
-        OneMotionTable,
-        RandomTable,
-        RestitutionTable,
-    )
+    from rocking.spec.motion_tables import ComponentsTable, MotionKeys, MotionTable, OneMotionTable
+    from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""

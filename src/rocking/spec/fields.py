@@ -14,6 +14,11 @@ Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
+def key(description: str, usual: Any = None, **limits: Any) -> Any:
+    """Return a field with what it means, which options and the documentation of keys repeat."""
+    return Field(default=usual, description=description, **limits)
+
+
 class JobTable(StrictTable):
     """A table of a job file."""
 

@@ -38,7 +38,7 @@ from rocking.tables.table import written_whole
 from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
-    from rocking.spec.document import IdentificationDocument
+    from rocking.spec.documents.identification import IdentificationDocument
 
 Row = dict[str, Any]
 

@@ -14,7 +14,7 @@ from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment
-    from rocking.spec.document import AssessTable, PredictedBody, PredictionDocument
+    from rocking.spec.documents.prediction import AssessTable, PredictedBody, PredictionDocument
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class PredictionProblem:
     ) -> "BodyAssessment":  # fmt: skip
         """Return whether the body stands, with what else was asked for."""
         from rocking.assessment import assess
-        from rocking.spec.document import RestitutionTable
+        from rocking.spec.restitution_tables import RestitutionTable
 
         options = {name: value for name, value in self.options.items() if name not in {"bounce", "bounce_law"}}
         if odd := sorted(set(self.options) - set(options)):
@@ -71,7 +71,7 @@ class PredictionProblem:
 
 def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles) -> dict[str, Any]:
     """Return what a file says of a body that is not known exactly, as `predict` takes it."""
-    from rocking.spec.document import RestitutionTable
+    from rocking.spec.restitution_tables import RestitutionTable
 
     ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
     options = {**document.predict.model_dump(exclude_none=True), **ground}

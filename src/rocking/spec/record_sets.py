@@ -18,7 +18,7 @@ from rocking.motions.target_spectra import target_spectrum
 from rocking.spec.reading import InputFiles, is_pattern
 
 if TYPE_CHECKING:
-    from rocking.spec.document import MotionKeys, MotionTable
+    from rocking.spec.motion_tables import MotionKeys, MotionTable
 
 PERIODS = (0.1, 2.0)  # that count where records are compared with a target and nobody says otherwise [s]
 STILL = "zero throughout: the ground would not move"

@@ -12,31 +12,43 @@ from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
 from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
-from rocking.spec import document
+from rocking.spec.document import CampaignTable
+from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
+from rocking.spec.documents.prediction import AssessTable, PredictTable
+from rocking.spec.documents.response import ResponseTable
 from rocking.spec.fields import JobTable, Values
+from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
+from rocking.spec.questions.fragility import ExportTable, FragilityTable
+from rocking.spec.questions.histories import HistoriesTable
+from rocking.spec.questions.inventory import InventoryTable, ThresholdsTable
+from rocking.spec.questions.minimum_acceleration import MinimumTable
+from rocking.spec.questions.overturning_map import MapTable
+from rocking.spec.questions.rocking_spectrum import SpectrumTable
+from rocking.spec.restitution_tables import RandomTable, RestitutionTable
+from rocking.spec.settings_tables import StudySettingsTable
 from rocking.studies.inventory import Thresholds
 
 _TABLES: dict[str, tuple[type[JobTable], str]] = {
-    "response": (document.ResponseTable, "`rocking simulate`"),
-    "motion": (document.ComponentsTable, "`rocking simulate`, `rocking motion`"),
-    "[motions]": (document.MotionTable, "every study"),
-    'motions.files."NAME"': (document.FileKeys, "every study"),
-    "restitution": (document.RestitutionTable, "every question"),
-    "restitution.distribution": (document.RandomTable, "every question but [inventory]"),
-    "settings": (document.StudySettingsTable, "every question"),
-    "map": (document.MapTable, "`rocking map`"),
-    "minimum": (document.MinimumTable, "`rocking minimum`"),
-    "spectrum": (document.SpectrumTable, "`rocking spectrum`"),
-    "fragility": (document.FragilityTable, "`rocking fragility`"),
-    "inventory": (document.InventoryTable, "`rocking inventory`"),
-    "inventory.thresholds": (document.ThresholdsTable, "`rocking inventory`"),
-    "predict": (document.PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
-    "assess": (document.AssessTable, "`rocking assess`"),
-    "measurement": (document.MeasurementTable, "`rocking identify`"),
-    "identify": (document.IdentifyTable, "`rocking identify`"),
-    "histories": (document.HistoriesTable, "campaigns of kind histories"),
-    "campaign": (document.CampaignTable, "`rocking campaign`"),
-    "export": (document.ExportTable, "`rocking campaign export`"),
+    "response": (ResponseTable, "`rocking simulate`"),
+    "motion": (ComponentsTable, "`rocking simulate`, `rocking motion`"),
+    "[motions]": (MotionTable, "every study"),
+    'motions.files."NAME"': (FileKeys, "every study"),
+    "restitution": (RestitutionTable, "every question"),
+    "restitution.distribution": (RandomTable, "every question but [inventory]"),
+    "settings": (StudySettingsTable, "every question"),
+    "map": (MapTable, "`rocking map`"),
+    "minimum": (MinimumTable, "`rocking minimum`"),
+    "spectrum": (SpectrumTable, "`rocking spectrum`"),
+    "fragility": (FragilityTable, "`rocking fragility`"),
+    "inventory": (InventoryTable, "`rocking inventory`"),
+    "inventory.thresholds": (ThresholdsTable, "`rocking inventory`"),
+    "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
+    "assess": (AssessTable, "`rocking assess`"),
+    "measurement": (MeasurementTable, "`rocking identify`"),
+    "identify": (IdentifyTable, "`rocking identify`"),
+    "histories": (HistoriesTable, "campaigns of kind histories"),
+    "campaign": (CampaignTable, "`rocking campaign`"),
+    "export": (ExportTable, "`rocking campaign export`"),
 }  # fmt: skip
 
 _BODIES: dict[str, type[BaseModel]] = {
@@ -204,9 +216,9 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "|---|---|---|---|"
     for key, field in table.model_fields.items():
         usual = "needed" if field.is_required() else _usual(field.default)
-        if table is document.StudySettingsTable and not usual:
+        if table is StudySettingsTable and not usual:
             usual = _usual_setting(key)
-        elif table is document.ThresholdsTable:
+        elif table is ThresholdsTable:
             usual = _usual(getattr(Thresholds(), key))
         yield f"| `{field.alias or key}` | {_kind(field.annotation)} | {usual} | {field.description or ''} |"
     yield ""

@@ -20,7 +20,7 @@ from rocking.spec.construction import components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
-    from rocking.spec.document import ResponseDocument, ResponseTables
+    from rocking.spec.documents.response import ResponseDocument, ResponseTables
 
 
 @dataclass(frozen=True, slots=True)

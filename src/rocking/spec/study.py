@@ -17,7 +17,9 @@ from rocking.studies.axis import Axis, axis_of, friction_beside
 from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument, FragilityTable, MapTable
+    from rocking.spec.document import CampaignDocument
+    from rocking.spec.questions.fragility import FragilityTable
+    from rocking.spec.questions.overturning_map import MapTable
     from rocking.studies.fragility.question import FragilityQuestion
     from rocking.studies.inventory import Inventory, Thresholds
     from rocking.studies.inventory.hazard import Hazard
@@ -44,7 +46,7 @@ class StudyProblem:
             stated |= friction_beside(axes, stated.get("friction"))
         turned = any(table.y is not None for table in document.motions) or any(axis.name == "azimuth" for axis in axes)
         if turned and document.spectrum is not None:
-            from rocking.spec.document import OWN_BLOCKS
+            from rocking.spec.questions.rocking_spectrum import OWN_BLOCKS
 
             raise InvalidValueError(f"motions: its blocks move along x and z, not along y; {OWN_BLOCKS}")
         bodies = []
@@ -75,7 +77,7 @@ class StudyProblem:
     @property
     def fragility_table(self) -> "FragilityTable":
         """What is asked of fragility; the usual where nothing is."""
-        from rocking.spec.document import FragilityTable
+        from rocking.spec.questions.fragility import FragilityTable
 
         return self.document.fragility or FragilityTable()
 
@@ -127,7 +129,7 @@ def _map(problem: StudyProblem, options: dict[str, Any]) -> Any:
 
 
 def _minimum(problem: StudyProblem, options: dict[str, Any]) -> Any:
-    from rocking.spec.document import MinimumTable
+    from rocking.spec.questions.minimum_acceleration import MinimumTable
     from rocking.studies import minimum_overturning_acceleration
 
     search = vars(problem.document.minimum or MinimumTable())

@@ -23,7 +23,7 @@ from rocking.spec.prediction import options_of
 from rocking.spec.reading import InputFiles, checked, tables_in
 
 if TYPE_CHECKING:
-    from rocking.spec.document import ValidationDocument
+    from rocking.spec.documents.validation import ValidationDocument
     from rocking.tables import Table
 
 _HOW = "a folder holds one body file, record files, and one table of outcomes"
@@ -187,7 +187,7 @@ class _Records:
         return motion
 
     def _record(self, word: str) -> GroundMotion:
-        from rocking.spec.document import OneMotionTable
+        from rocking.spec.motion_tables import OneMotionTable
 
         own = self.place(word)
         if not (self._inputs.folder / own["record"]).is_file():

@@ -23,7 +23,7 @@ from rocking.app.inputs import Inputs
 from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
 from rocking.cli.application import application
 from rocking.errors import InvalidValueError
-from rocking.spec.document import ResponseDocument
+from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.reading import InputFiles, validated
 from rocking.spec.response import response_problem
 from rocking.tables import escaped

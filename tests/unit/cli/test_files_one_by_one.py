@@ -10,7 +10,7 @@ import pytest
 from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import Component, Record, formats, read_records
 from rocking.spec.construction import motions_of
-from rocking.spec.document import MotionTable
+from rocking.spec.motion_tables import MotionTable
 from rocking.spec.reading import InputFiles
 
 pytestmark = pytest.mark.verifies(room="motions and records")

@@ -131,7 +131,11 @@ def _constant(*kinds: type) -> dict[str, Any]:
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic.families import families
-    from rocking.spec.document import NEEDS, InventoryTable, MinimumTable, MotionTable, OneMotionTable, PredictTable
+    from rocking.spec.document import NEEDS
+    from rocking.spec.documents.prediction import PredictTable
+    from rocking.spec.motion_tables import MotionTable, OneMotionTable
+    from rocking.spec.questions.inventory import InventoryTable
+    from rocking.spec.questions.minimum_acceleration import MinimumTable
     from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 

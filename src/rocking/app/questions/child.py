@@ -22,9 +22,10 @@ _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/font
 
 # so many modules take a second, which is most of what a question takes
 _AHEAD = (
-    "typer", "rocking.spec.document", "rocking.spec.construction", "rocking.prediction", "rocking.bodies.formats",
-    "rocking.restitution.from_file", "rocking.plots.style", "scipy.signal", "matplotlib.backends.backend_svg",
-    "matplotlib.backends.backend_pdf", "rocking.reports", "rocking.quantities", "trimesh",
+    "typer", "rocking.spec.documents.prediction", "rocking.spec.construction", "rocking.prediction",
+    "rocking.bodies.formats", "rocking.restitution.from_file", "rocking.plots.style", "scipy.signal",
+    "matplotlib.backends.backend_svg", "matplotlib.backends.backend_pdf", "rocking.reports", "rocking.quantities",
+    "trimesh",
 )  # fmt: skip
 
 

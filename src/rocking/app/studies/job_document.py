@@ -15,7 +15,8 @@ from rocking.app.records import is_hash
 from rocking.bodies.formats.words import from_pydantic
 from rocking.errors import InvalidValueError, located
 from rocking.restitution.from_file import file_of
-from rocking.spec.document import CampaignDocument, MotionTable
+from rocking.spec.document import CampaignDocument
+from rocking.spec.motion_tables import MotionTable
 
 KINDS = (
     "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "histories",

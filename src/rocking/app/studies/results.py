@@ -15,7 +15,7 @@ from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
-from rocking.spec.document import ExportTable
+from rocking.spec.questions.fragility import ExportTable
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
 from rocking.studies.islands import safe_islands

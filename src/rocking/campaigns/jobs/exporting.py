@@ -29,7 +29,7 @@ from rocking.campaigns.jobs.study import TYPES, pieces_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.outcome import contact_sentence, lost_contact
-from rocking.spec.document import ExportTable
+from rocking.spec.questions.fragility import ExportTable
 from rocking.statistics.goodness import FEWEST
 from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.studies.fragility.measure_comparison import MeasureComparison

@@ -24,7 +24,7 @@ from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study_folder import is_id, new_id
 from rocking.campaigns.jobs import Job
 from rocking.errors import InvalidValueError, RockingError
-from rocking.spec.document import MotionTable
+from rocking.spec.motion_tables import MotionTable
 
 EXAMPLES = examples.path("overturning-map").parent
 LAUNCHED = [

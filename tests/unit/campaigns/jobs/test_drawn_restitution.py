@@ -12,7 +12,7 @@ from rocking.conventions import percent
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
-from rocking.spec.document import ResponseDocument
+from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.reading import InputFiles, validated
 from rocking.spec.response import response_problem
 from rocking.studies import SampledRestitution, overturning_map

@@ -10,7 +10,7 @@ import rocking as rk
 from rocking import examples
 from rocking.cli import main
 from rocking.errors import InvalidValueError, RockingError, located
-from rocking.spec.document import ResponseDocument
+from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.reading import InputFiles, read_text, tables_in, validated
 from rocking.spec.response import ResponseProblem, response_problem
 

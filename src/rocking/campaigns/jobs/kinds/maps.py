@@ -16,7 +16,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError, located
 from rocking.quantities import QUANTITIES
-from rocking.spec.document import MapTable
+from rocking.spec.questions.overturning_map import MapTable
 from rocking.spec.study import StudyProblem, axes_of
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refined
 from rocking.studies.boundaries import Polyline, checked, outlines

@@ -15,7 +15,7 @@ from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Pulse
 from rocking.spec.construction import MOST_IN_MEMORY
-from rocking.spec.document import MinimumTable
+from rocking.spec.questions.minimum_acceleration import MinimumTable
 from rocking.spec.study import StudyProblem
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, searched
 from rocking.studies.motion_sets import MotionList

@@ -13,7 +13,7 @@ from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.parameters import sides_of
 from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import provenance_of
-from rocking.spec.document import HistoriesTable
+from rocking.spec.questions.histories import HistoriesTable
 from rocking.spec.study import StudyProblem, inventory_of
 from rocking.studies.histories import JoinedHistories, Product
 from rocking.studies.inventory.assessment import assessment_plan

@@ -1,0 +1,1 @@
+"""Question files other than those of studies: one class per file."""
