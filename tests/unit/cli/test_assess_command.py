@@ -90,17 +90,3 @@ def test_a_solid(printed, answered, tmp_path):
     found = answered(*quick)
     assert found["solid"]["nearest_edge"] == pytest.approx(0.25)
     assert set(found["models"]) == {"ked", "r = 0.85"}
-
-
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        ((*BODY,), "what moves the ground?"),
-        ((*BODY, PULSE, "--set", "assess.margin=0"), "margin"),
-        ((*BODY, PULSE, "--restitution", "kde"), "no restitution model named 'kde'"),
-        ((*BODY, PULSE, "--set", "settings.bounce=0.1"), "do not bounce"),
-    ],
-)
-def test_refusals(refuses, words, why):
-    """What makes no sense is refused before anything is computed."""
-    refuses(words, why)

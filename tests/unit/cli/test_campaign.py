@@ -39,7 +39,6 @@ if __name__ == "__main__":
 
 
 COMMAND = "campaign"
-DASK = ("--executor", "dask", "--address", "tcp://a:1")
 
 
 @pytest.fixture
@@ -111,35 +110,6 @@ def test_processes(run, job, tmp_path):
     for name in "ab":
         assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("words", "wanted"),
-    [
-        (("check", "none.toml"), "there is no such job file"),
-        (("run", "{job}", "--out", "{used}"), "not empty"),
-        (("run", "{job}", "--out", "{new}", "--executor", "cloud"), "--executor must be serial, processes or dask"),
-        (("run", "{job}", "--out", "{new}", "--executor", "dask"), "--address goes with --executor dask"),
-        (("run", "{job}", "--out", "{new}", "--address", "tcp://a:1"), "--address goes with --executor dask"),
-        (
-            ("run", "{job}", "--out", "{new}", *["--executor", "dask", "--address", "tcp://a:1", "--workers", "2"]),
-            "cluster",
-        ),
-        (("run", "{job}", "--out", "{new}", "--workers", "0"), "workers"),
-        (("run", "{job}"), "out"),
-        (("status", "{used}"), "no campaign of a job file here"),
-        (("resume", "{used}"), "no campaign of a job file here"),
-        (("export", "{used}", "--out", "r.nc"), "no campaign of a job file here"),
-        (("stop",), "stop"),
-    ],
-)
-def test_refusals(refuses, job, tmp_path, words, wanted):
-    """Bad input: exit code 2, one sentence, no traceback, nothing written."""
-    used = tmp_path / "used"
-    used.mkdir()
-    (used / "thesis.tex").touch()
-    refuses([word.format(job=job(), used=used, new=tmp_path / "new") for word in words], wanted)
-    assert not (tmp_path / "new").exists()
 
 
 @pytest.mark.parametrize("more", ["[restitution]\nmodel = 'kedd'\n", "[map.z]\n", "[settings]\norder = 5\n", "[["])

@@ -4,7 +4,6 @@ import csv
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -12,7 +11,6 @@ import rocking as rk
 from rocking.evidence import league
 from rocking.reports.paper_document import reproduce
 
-ROOT = Path(__file__).parents[3]
 MINE = """import rocking as rk
 class Mine(rk.restitution.RestitutionModel):
     name = "mine"
@@ -60,50 +58,6 @@ def test_cor_options(run, own, tmp_path):
     angle = ("--set", "body.slenderness_angle=0.2449786631", "--set", "body.semi_diagonal=2")
     out = run("cor", *angle, "--restitution", "housner", "--json")[1]
     assert json.loads(out)["body"]["sides"]["left"]["slenderness_ratio"] == pytest.approx(4.0)
-
-
-SIZE = "cor --width 1 --height 4"
-REFUSED = {
-    "cor --width -1 --height 4": "--width must be a number > 0 m, got -1",
-    "cor --width 0 --height 4": "--width must be a number > 0 m, got 0",
-    "cor --width nan --height 4": "--width must be a finite number [m]",
-    "cor --width wide --height 4": "--width must be a number, got 'wide'",
-    "cor --nope": "No such option",
-    "cor --set body.slenderness_angle=20 --set body.semi_diagonal=1": "(0, pi/2) rad, got 20; degrees?",
-    "cor --width 1": "--width and --height",
-    "cor": "got none of them",
-    "cor x.toml --width 1": "not both",
-    f"{SIZE} --restitution kde": "no restitution model named 'kde'",
-    f"{SIZE} --units gal": "one of m, cm, mm, ft, in",
-    "cor missing.toml": "missing.toml: there is no such file",
-    f"{SIZE} --restitution 1.5*ked": "eta must be in (0, 1]",
-    f"{SIZE} --onto up": 'onto must be "left"',
-    f"{SIZE} --set settings.gravity=0": "settings.gravity must be a number > 0",
-    f"{SIZE} --out a.bmp": ".png, .svg or .pdf",
-    f"{SIZE} --restitution no.py:X": "no file no.py",
-    "models kde": "no restitution model named 'kde'",
-    "motion body.toml": "perhaps a body: see rocking cor body.toml",
-    "spectrum body.toml": "a map over semi_diagonal shows all sizes",
-    "cor m.csv": "perhaps a record: see rocking motion m.csv",
-    "fragility m.csv body.toml": "the body comes first, then the motion: body.toml m.csv",
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.items(), ids=REFUSED)
-def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, tmp_path, monkeypatch):
-    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "body.toml").write_text('units = "m"\nwidth = 0.5\nheight = 2.0\n')
-    (tmp_path / "m.csv").write_text("".join(f"{0.01 * k},{k % 3}\n" for k in range(50)))
-    refuses(words.split(), sentence)
-
-
-def test_own_file_that_fails_is_one_sentence(refuses, tmp_path):
-    """A user's model file that raises, or holds no model, is reported in one sentence."""
-    for content, words in (("1/0", "ZeroDivisionError"), ("x = 1", "has no restitution model")):
-        path = tmp_path / "mine.py"
-        path.write_text(content, encoding="utf-8")
-        refuses(("cor", "--width", 1, "--height", 4, "--restitution", f"{path}:Mine"), words)
 
 
 def test_model_of_the_user_is_told_like_the_others(run, own):

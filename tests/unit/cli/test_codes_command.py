@@ -76,29 +76,6 @@ def test_levels_in_another_measure(answered):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ((*FAMILY, "--slenderness", 5, "--width", 1), "--slenderness goes with --height"),
-        ((*FAMILY, "--slenderness", 0, "--height", 1), "--slenderness must be above 0"),
-        ((*FAMILY, "--width", "1,2", "--height", "1,2,3"), "must be as many, or one, got 2 and 3"),
-        ((*FAMILY, "--width", 1), "a body is a file, or --width and --height"),
-        (("--width", 1, "--height", 4), "what moves the ground?"),
-        ((*FAMILY, "--width", 1, "--height", 4, "--measure", "pgv/pga", "--levels", 1), "pgv/pga"),
-        ((*FAMILY, "--width", 1, "--height", 4, "--levels", "2g"), "--levels must be a number without a unit"),
-    ],
-)
-def test_what_is_refused(refuses, words, sentence):
-    refuses(words, sentence)
-
-
-def test_a_solid_is_refused(refuses, tmp_path):
-    """It is told how a solid stands in a plane."""
-    file = tmp_path / "crate.toml"
-    file.write_text('units = "m"\n[[solid.part]]\nbox = { width = 0.3, depth = 0.3, height = 1.2 }\n', encoding="utf-8")
-    refuses((file, *FAMILY), "code methods know plane bodies")
-
-
 def test_vertical_motion_is_in_the_answer(printed, answered, tmp_path):
     """Of a motion with a falling ground each method states its treatment, and the static limit includes it."""
     time = np.arange(1301) * 1e-3

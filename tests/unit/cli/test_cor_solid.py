@@ -168,49 +168,6 @@ def test_bases_of_many_corners_keep_the_most_slender_edges(run, answered, file):
     assert "24 edges that are less slender are left out" in run(path, "--restitution", "housner")[1]
 
 
-REFUSED = {
-    "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --units, one of m, cm, mm, ft, in"),
-    "unit": (["a.stl", "--units", "km"], "--units must be one of m, cm"),
-    "wrong unit": (["a.stl", "--units", "m", "--density", "1"], "is that the file's unit?"),
-    "axis": (["a.stl", "--units", "mm", "--set", "body.up=x"], 'body.up must be "z", "y", or a direction'),
-    "hole": (["hole.obj", "--units", "m", "--set", "body.repair=none"], "--set body.repair=safe closes"),
-    "large hole": (["wide.obj", "--units", "m"], "that are safe: closed 1 hole(s)"),
-    "empty": (["empty.ply", "--units", "m"], "empty.ply: "),
-    "no file": (["none.stl", "--units", "m"], "none.stl: there is no such file"),
-    "density nan": (["a.stl", "--units", "mm", "--density", "nan"], "density must be finite"),
-    "tolerance": (["a.stl", "--units", "mm", "--set", "body.base_tolerance=-1"], "body.base_tolerance must be > 0 m"),
-    "size": (["a.stl", "--units", "mm", "--width", "1"], "give a body file or dimensions, not both"),
-    "foot": (["a.stl", "--units", "mm", "--onto", "left"], "it takes no --onto"),
-    "stages": (
-        ["a.stl", "--units", "mm", "--identities", "--out", "stages=s.png"],
-        "it takes no --identities, --out stages=FILE",
-    ),
-    "model": (["a.stl", "--units", "mm", "--restitution", "best"], "no restitution model in space is called 'best'"),
-    "gravity": (["a.stl", "--units", "mm", "--set", "settings.gravity=0"], "settings.gravity must be a number > 0"),
-    "picture": (["a.stl", "--units", "mm", "--out", "a.bmp"], ".png, .svg or .pdf"),
-    "folder": (["a.stl", "--units", "mm", "--out", "none/a.csv"], "no folder"),
-    "plane": (
-        ["--width", "1", "--height", "2", "--set", "body.up=z"],
-        "unknown key 'up'; allowed: mass, centre, moment_of_inertia, density",
-    ),
-    "options": (["body.toml", "--set", "body.up=z"], "states up itself"),
-    "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 m, got -1"),
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, mesh, file, tmp_path, monkeypatch):
-    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    mesh("a.stl", scale=1000.0)
-    mesh("hole.obj", keep=slice(1, None))
-    mesh("wide.obj", keep=slice(0, -1))
-    file("", "empty.ply")
-    file(PRISM)
-    file(PRISM.replace("width = 1.0", "width = -1.0"), "bad.toml")
-    monkeypatch.chdir(tmp_path)
-    refuses(words, sentence)
-
-
 def test_a_solid_has_no_recommendation_from_measurements(printed, file):
     """What is known is said: no measurement of a body in space, and two models to run."""
     out = printed(file(PRISM), "--recommend")

@@ -68,12 +68,6 @@ def test_a_block_is_extruded(answered, file):
     assert [pose["centre_height"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
 
 
-def test_points_of_mass_are_refused(refuses, file):
-    """Equilibria are those of a body in space."""
-    points = "[mass_points]\npoints = [[0.1, 0.4], [0.5, 1.7]]\nmasses = [30, 55]\nfeet = [0, 0.6]\n"
-    refuses((file(f'units = "m"\n{points}'),), "equilibria are those of a body in space")
-
-
 def test_a_file_that_asks_for_a_response(answered, run, file, tmp_path):
     """Its table [body] is what stands, as the body alone does; --set changes it."""
     body = file(PRISM)

@@ -50,11 +50,6 @@ def test_one_is_only_listed(printed, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_names_that_are_close(refuses):
-    refuses(["pierr"], "did you mean 'pier'?")
-    refuses(["overturning_map"], "did you mean 'overturning-map'?")
-
-
 @pytest.mark.parametrize("there", ["far-field.png", "far-field.csv"])
 def test_nothing_of_the_user_is_written_over(run, refuses, tmp_path, monkeypatch, there):
     """A file of the name of one that it would write is named and left; --force writes over it."""

@@ -294,34 +294,6 @@ def test_processes_change_nothing(answered, rocked, tmp_path, monkeypatch):
     assert one == two
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        ((), "what was measured?"),
-        (("nothing.wav",), "nothing.wav"),
-        (("one.wav", "two.wav"), "one body and one measurement"),
-        (("TIMES", *SIZE, "--set", "identify.first=both"), "identify.first"),
-        (("TIMES", *SIZE, "--set", "identify.tilt=[1]"), "identify.tilt is one number, or a value and its deviation"),
-        (
-            ("TIMES", *SIZE, "--set", "identify.clock=abc"),
-            "identify.clock is one number, or a value and its deviation, got 'abc'\n",
-        ),
-        (("TIMES", *SIZE, "--set", "identify.clock=[0,nan]"), "a value and its deviation, got [0, nan]\n"),
-        (("TIMES", *SIZE, "--motion", "sine:amplitude=3,period=0.6"), "(RotationSeries), got times of impacts\n"),
-        (("TIMES", "--width", 0.03, "--height", 0.12), "sizes of the body, then try --set identify.trend=true"),
-        (("TIMES", *SIZE, "--set", "identify.tlt=0"), "did you mean tilt"),
-        (("TIMES", *SIZE, "--set", "measurement.kind=smell"), "kind must be"),
-        (("TIMES", "--width", 1), "a body is a file"),
-        (("TIMES", *SIZE, "--out", "found.docx"), "by its ending a file is"),
-        (("EMPTY",), "no trials; their names end in"),
-    ],
-)
-def test_refusals(refuses, rocked, tmp_path, words, why):
-    (tmp_path / "empty").mkdir()
-    there = {"TIMES": times_file(tmp_path / "times.csv", rocked[0]), "EMPTY": tmp_path / "empty"}
-    refuses([there.get(word, word) for word in words], why)
-
-
 def test_a_video_is_one_command(printed, refuses, tmp_path):
     """Slow motion of a block, and a region that is none."""
     pytest.importorskip("cv2", reason="OpenCV is not installed")

@@ -82,38 +82,6 @@ def test_report_is_written(printed, objects, tmp_path):
     assert json.loads((tmp_path / "out" / "inventory.json").read_text(encoding="utf-8"))["restitution"] == "0.9"
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ((), "how strong is the shaking"),
-        (("--pga", "0.3"), "with its unit"),
-        (("--pga", "0.3g", "--pgv", "1m/s"), "not both"),
-        (("--pga", "0.3g", "--synthetic", "x"), "family must be one of"),
-        (("--pga", "0.3g", "--count", "0"), "count must be"),
-        (("--pga", "0.3g", "--count", "2", "--seed", "-1"), "seed must be"),
-        (("--pga", "0.3g", "--units", "g"), "--units is for record files"),
-        (("--pga", "0.3g", "--restitution", "no-such"), "no-such"),
-        (("--motion", "no-such.txt"), "no such file"),
-        (("--motion", "x", "--count", "3"), "--count is for synthetic motions"),
-        (("--motion", "sine:amplitude=3,period=0.8"), "--motion takes record files"),
-    ],
-)
-def test_refusals(refuses, objects, words, sentence):
-    """Every contradiction is refused in one sentence."""
-    refuses((objects, *words), sentence)
-
-
-def test_file_that_is_not_there(refuses, tmp_path):
-    """A list that does not exist is named."""
-    refuses((tmp_path / "none.csv", "--pga", "0.3g"), "No such file or directory")
-
-
-def test_a_column_that_looks_like_a_measure_is_not_dropped(refuses, objects):
-    """A narrow foot under a name that is not known refuses the list in one sentence: no confident green without it."""
-    objects.write_text("name,width_cm,depth_cm,height_cm,foot_diameter_cm\nurn,40,40,90,8\n", encoding="utf-8")
-    refuses((objects, "--pga", "0.1g", *FEW), "column 'foot_diameter_cm' is not known but looks like a measure")
-
-
 def test_level_without_a_leading_zero(answered, objects):
     """A level may be typed as .3g."""
     assert answered(objects, "--pga", ".3g", *FEW)["hazard"]["level"] == "PGA 0.3 g"

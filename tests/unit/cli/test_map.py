@@ -151,57 +151,6 @@ def test_axis_words(word, values):
     assert row("--x", text, axes()[name].unit)[0] == pytest.approx(values, rel=1e-14, abs=0.0)
 
 
-REFUSALS = [
-    (("--x", "size=1:2:3"), "no axis named 'size'; there are amplitude_ratio"),
-    (("--x", "frequency_ratio"), "got no values"),
-    (("--x", "frequency_ratio=1:2"), "FIRST:LAST:COUNT"),
-    (("--x", "frequency_ratio=1:2:1"), "COUNT from 2"),
-    (("--x", "frequency_ratio=1:2:3.5"), "COUNT from 2"),
-    (("--x", "frequency_ratio=1:2:3:cubic"), "FIRST:LAST:COUNT"),
-    (("--x", "frequency_ratio=1g:2g:3"), "without a unit"),
-    (("--x", "frequency_ratio=2:1:3"), "must increase"),
-    (("--x", "frequency_ratio=nan,1"), "must be a number"),
-    (("--x", "frequency_ratio=1e999,2"), "finite"),
-    (("--y", "pga=0.1:1g:5"), "a unit at every number or at none"),
-    (("--y", "pga=1cm:2cm:5"), "m/s2"),
-    (("--y", "scale=0:1:5:log"), "above 0"),
-    (("--y", "slenderness_angle=5:20:4"), "wrong unit"),
-    (("--y", "pga=1:2:100000", "--x", "frequency_ratio=1:2:1000"), "rocking campaign"),
-    (("--x", "pga=1,2", "--y", "scale=1,2"), "both set the amplitude"),
-    (("--restitution", "no-such"), "no-such"),
-    (("--restitution", "1.5"), "restitution"),
-    (("--restitution", "ked", "--restitution", "ked"), "twice"),
-    (("--restitution", "ked", "--y", "restitution=0.5,0.9"), "leave the option out"),
-    (("--refine", "0"), "--refine must be in"),
-    (("--refine", "2", "--restitution", "ked", "--restitution", "0.9"), "--refine is for one"),
-    (("--out", "a.gif"), "by its ending a file is picture (.png"),
-    (("--out", "a.png", "--x", "frequency_ratio=2"), "at least two values"),
-    (("--out", "no-such-folder/a.csv"), "no folder"),
-    (("--set", "settings.engine=warp"), "settings.engine must be"),
-    (("--threads", "0"), "--threads must be"),
-    (("--set", "settings.gravity=-1"), "settings.gravity must be"),
-    (("--density", "-5"), "density"),
-    (("--units", "g"), "a pulse takes no --units"),
-    (("--no-such-option",), "No such option"),
-    (("--motion", PULSE), "this is of one motion"),
-]
-LACKING = [
-    (SIZE, "what moves the ground?"),
-    ((PULSE,), "what moves the ground?"),
-    (("--width", "0.5", PULSE), "--width and --height"),
-    ((*SIZE, "no-such-file.txt"), "no such file"),
-    (("no-such-body.toml", PULSE), "no-such-body.toml"),
-    ((*SIZE, "sine:amplitude=3"), "period"),
-]
-CASES = [((*SIZE, PULSE, *words), sentence) for words, sentence in REFUSALS] + LACKING
-
-
-@pytest.mark.parametrize(("words", "sentence"), CASES, ids=[" ".join(words[4:]) for words, _ in CASES])
-def test_refusals(refuses, words, sentence):
-    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
-    refuses(words, sentence)
-
-
 def test_bar_on_a_terminal_only(monkeypatch):
     """A terminal sees how many of how many are done; a file sees nothing."""
 

@@ -88,30 +88,3 @@ def test_range_with_units(run):
         )
         assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")
         assert (told["minimum_acceleration"], told["crossings"]) == (None, [])
-
-
-REFUSALS = [
-    (SIZE, "what moves the ground?"),
-    ((*SIZE, "no-such.txt"), "no such file"),
-    ((*SIZE, PULSE, "--lowest", "1x"), "--lowest must be a number"),
-    ((*SIZE, PULSE, "--lowest", "nan"), "--lowest must be a number"),
-    ((*SIZE, PULSE, "--lowest", "0"), "lowest must be"),
-    ((*SIZE, PULSE, "--lowest", "2g", "--highest", "1g"), "--lowest must be below --highest, got 2g and 1g"),
-    ((*SIZE, PULSE, "--highest", "1e999"), "finite"),
-    ((*SIZE, PULSE, "--points", "1"), "points must be"),
-    ((*SIZE, PULSE, "--points", "many"), "--points"),
-    ((*SIZE, PULSE, "--levels", "13"), "levels must be"),
-    ((*SIZE, PULSE, "--restitution", "no-such"), "no-such"),
-    ((*SIZE, PULSE, "--restitution", "-0.5"), "restitution"),
-    ((*SIZE, PULSE, "--out", "a.txt"), "by its ending a file is picture (.png"),
-    ((*SIZE, PULSE, "--out", "no-such-folder/a.csv"), "no folder"),
-    ((*SIZE, PULSE, "--set", "settings.engine=warp"), "settings.engine must be"),
-    ((*SIZE, "sine:amplitude=0,period=1"), "peak above zero"),
-    (("--width", "-1", "--height", "2", PULSE), "width"),
-]
-
-
-@pytest.mark.parametrize(("words", "message"), REFUSALS, ids=[" ".join(words) for words, _ in REFUSALS])
-def test_refusals(refuses, words, message):
-    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
-    refuses(words, message)

@@ -158,53 +158,6 @@ def test_a_file_wins_over_a_pulse(answered, tmp_path, monkeypatch):
     assert answered(word, "--units", "m/s2")["intensity"]["pga"] == 1.0
 
 
-REFUSED = {
-    "no file": (["no.at2"], "no.at2: no such file; a pulse is written as sine:amplitude=3,period=0.8"),
-    "no folder": (["no/where:1"], "no such file"),
-    "folder": (
-        ["."],
-        "is a folder, and one record is wanted; assess, codes, fragility, inventory, motions, predict and",
-    ),
-    "long": (["x" * 5000], "no such file"),
-    "unknown pulse": (["sin:amplitude=3"], "no pulse named 'sin'"),
-    "half a pulse": (["sine"], "takes"),
-    "pulse value": (["sine:amplitude=three,period=1"], "amplitude must be a number"),
-    "pulse and units": (["sine:amplitude=3,period=1", "--units", "g"], "a pulse takes no --units"),
-    "pulse and step": (
-        ["sine:amplitude=3,period=1", "--set", "motion.time_step=0.1"],
-        "a pulse takes no motion.time_step",
-    ),
-    "nothing moves": (["sine:amplitude=0,period=1"], "zero throughout?"),
-    "scale 0": (["sine:amplitude=3,period=1", "--scale", "0"], "scale must not be 0"),
-    "scale nan": (["sine:amplitude=3,period=1", "--scale", "nan"], "scale must be finite"),
-    "percent": (["sine:amplitude=3,period=1", "--damping", "5"], "a ratio, not a percentage"),
-    "periods": (["sine:amplitude=3,period=1", "--periods", "a,b"], "periods must be numbers such as 0.1,0.5,1"),
-    "no periods": (["sine:amplitude=3,period=1", "--periods", ","], "periods must be 1 to 1000 numbers"),
-    "period 0": (["sine:amplitude=3,period=1", "--periods", "0"], "periods must be > 0 s, got 0"),
-    "period nan": (["sine:amplitude=3,period=1", "--periods", "nan"], "periods must be finite"),
-    "picture": (["sine:amplitude=3,period=1", "--out", "a.bmp"], ".png, .svg or .pdf"),
-    "no record": ([], "Missing argument"),
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence):
-    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    refuses(words, sentence)
-
-
-def test_unit_and_format_are_asked_for_by_option(refuses, run, triangle):
-    """What the file leaves open is asked for in the words of the command line, and never guessed."""
-    for words, sentence in (
-        ([], "say --units one of m/s2"),
-        (["--units", "furlong"], "got 'furlong'"),
-        (["--units", "g", "--set", "motion.time_step=0.25"], "the file states a time step of 0.5 s, you say 0.25"),
-        (["--units", "g", "--set", "motion.format=nope"], "one of peer"),
-    ):
-        refuses((triangle, *words), sentence)
-    assert "got 'north'" in run(f"{triangle}#north", "--units", "g")[2]
-
-
 def test_errors_keep_their_kind(tmp_path):
     """Files raise RecordError, values InvalidValueError, pulses UnknownModelError: callers can tell them apart."""
     path = tmp_path / "triangle.txt"

@@ -122,19 +122,6 @@ def test_simulate_has_a_row_for_each_record(run, folder):
     assert "no uplift" in out
 
 
-def test_what_is_no_set_is_refused(refuses, folder):
-    """One record is wanted, a pattern with a damaged file, a target without records, and an unknown option."""
-    refuses(["map", *BLOCK, folder], "this is of one motion")
-    refuses(["motion", folder], "one record is wanted")
-    refuses(["fragility", *BLOCK, str(folder / "*.at2")], "damaged.at2")
-    refuses(["motions", folder / "nothing"], "no such file or folder")
-    refuses(["motions", folder, "--set", "motion.count=2"], "goes with target")
-    refuses(["motions", folder, "--set", "motion.component=000"], "a set takes no component")
-    refuses(["motions", folder, "--set", "motion.target=eurocode9:ag=1"], "target must be")
-    refuses(["fragility", *BLOCK, "--records", folder], "No such option: --records")
-    refuses(["motions", folder, "--set", "motion.target=eurocode8:ag=0.25,ground=C"], "with its unit such as 0.25g")
-
-
 def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
     """A factor scales, in words that people use; what a list cannot say of a row is refused, not passed over."""
     name = "RSN0_A000.AT2"

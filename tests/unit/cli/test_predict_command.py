@@ -81,24 +81,6 @@ def test_two_components_have_an_azimuth(printed, tmp_path):
     assert "azimuth" in json.loads(out)["inputs"]
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        ((*SIZE,), "what moves the ground?"),
-        ((*SIZE, PULSE, "--friction", "0.5", "--set", "predict.friction=0.4"), "say the same"),
-        ((*SIZE, PULSE, "--set", "predict.fricton=0.4"), "friction"),
-        ((*SIZE, PULSE, "--set", "predict.count=100"), "power of two"),
-        ((*SIZE, PULSE, "--set", "settings.linear=true"), "settings.linear"),
-        ((*SIZE, PULSE, "--friction", "-1"), "friction"),
-        ((*SIZE, PULSE, "--restitution", "hausner"), "housner"),
-    ],
-)
-def test_refusals(run, words, why):
-    code, _, err = run(*words)
-    assert code == 2
-    assert why in err
-
-
 @pytest.mark.verifies("behaviour", room="doors")
 def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     """Three commands from an open scan in mm to a picture, a probability and a document, as docs/how_to.md has them."""

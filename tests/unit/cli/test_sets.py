@@ -41,58 +41,6 @@ def folder(tmp_path, monkeypatch):
 
 
 ALONG = "simulate prism.toml x=record.txt --motion y=other.txt --units m/s2 --set motion.time_step=0.02"
-REFUSED = {
-    # what a file says is no table
-    "simulate odd.toml --set body.width=1": "odd.toml: --set body.width: its body is no table; change the file",
-    "cor odd.toml --set body.width=1": "--set body.width: its body is no table; change the file",
-    "simulate odd.toml --set settings.gravity=3": "--set settings.gravity: it has several [[settings]]",
-    f"fragility {SIZE} --motion {PULSE} --set fragility.measure=3": "fragility.measure must be text, got 3",
-    # the same key, typed twice
-    f"simulate {SIZE} {PULSE} --set body.width=1": "--width and --set body.width say the same: leave one out",
-    f"simulate {SIZE} {PULSE} --units cm --set body.units=mm": "--units and --set body.units say the same",
-    f"simulate {SIZE} record.txt --units g --set motion.units=gal": "--units and --set motion.units say the same",
-    f"simulate {SIZE} {PULSE} --scale 2 --set motion.scale=3": "--scale and --set motion.scale say the same",
-    f"motion {PULSE} --scale 2 --set motion.scale=3": "--scale and --set motion.scale say the same",
-    f"simulate {SIZE} {PULSE} --friction 0.4 --set response.friction=0.5": "--friction and --set response.friction say",
-    f"simulate {SIZE} {PULSE} --restitution ked --set restitution.value=0.9": "--restitution and --set restitution",
-    f"simulate {SIZE} {PULSE} --set motion.pulse=ricker": f"{PULSE} and --set motion.pulse say the same",
-    "motion record.txt#north --set motion.component=east": "record.txt#north and --set motion.component say the same",
-    "simulate prism.toml record.txt --set body.file=other.toml": "prism.toml and --set body.file say the same",
-    f"map {SIZE} {PULSE} --refine 2 --set map.refine=3": "--refine and --set map.refine say the same",
-    f"minimum {SIZE} {PULSE} --points 9 --set minimum.points=20": "--points and --set minimum.points say the same",
-    f"spectrum {PULSE} --slenderness 4 --set spectrum.slenderness_angles=[0.2]": "--slenderness and --set spectrum.sl",
-    f"fragility {SIZE} {FAMILY} --measure pga --set fragility.measure=pgv": "--measure and --set fragility.measure say",
-    f"fragility {SIZE} {FAMILY} --set motion.count=9": "--count and --set motion.count say the same",
-    "inventory list.csv --pga 0.3g --set inventory.pga=0.2g": "--pga and --set inventory.pga say the same",
-    # what does not go with the motion
-    f"simulate prism.toml {PULSE} --set motion.format=peer": "a pulse takes no motion.format",
-    f"simulate prism.toml --motion y={PULSE} --set motion.component=EW": "a pulse takes no motion.component",
-    f"simulate prism.toml --motion y={PULSE} --set motion.steps=3": "unknown key 'steps'",
-    f"simulate {SIZE} {PULSE} --set motion.steps=3": "unknown key 'steps'",
-    f"{ALONG} --set motion.component=EW": "motion.component is of one file",
-    f"simulate {SIZE} record.txt --motion z=record.txt --set motion.vertical=up": "--set motion.vertical say the same",
-    f"fragility {SIZE} {FAMILY} --set motion.component=EW": "motion.component is for record files",
-    f"fragility {SIZE} {FAMILY} --set motion.scale=2": "synthetic takes no scale; allowed beside it",
-    # shapes
-    f"cor {SIZE} --set body.slenderness_angle=0.2": "got --width --height --set body.slenderness_angle",
-    f"cor {SIZE} --set body.repair=all": "unknown key 'repair'",
-    "cor prism.toml --set body.width=2": "give a body file or dimensions, not both",
-    # what only a campaign computes
-    f"map {SIZE} {PULSE} --refine 1 --set map.boundary=mode": "map.boundary is for files of rocking campaign",
-    f"map {SIZE} {PULSE} --refine 1 --set map.tolerance=1e-3": "map.tolerance is for files of rocking campaign",
-    # shares of the slenderness angle, however they are said
-    f"simulate {SIZE} --set response.free=30": "--free is a share of the slenderness angle",
-    "simulate free.toml": "response.free is a share of the slenderness angle",
-    # beside a file
-    f"map stripes.toml {PULSE}": "so it takes no second word; --set changes a key",
-    f"simulate free.toml {PULSE}": "so it takes no second word; --set changes a key",
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.items(), ids=REFUSED)
-def test_refusals(refuses, words, sentence):
-    """What is said twice, or would be ignored, is refused in one sentence that says what to do."""
-    refuses(words.split(), sentence)
 
 
 SAME = {

@@ -9,7 +9,6 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking import examples
 from rocking.answers import Display
 from rocking.cli import main
 from rocking.cli.page import Page
@@ -24,7 +23,6 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3.2,period=0.8"
 ALPHA = math.atan(0.25)
-STATUE = examples.path("statue")
 MINE = """import rocking as rk
 
 

@@ -11,10 +11,8 @@ import rocking as rk
 
 COMMAND = "simulate"
 
-G = 9.80665
 SQUAT = ("--width", "1", "--height", "1")
 SLENDER = ("--width", "0.5", "--height", "2")
-PUSH = "rectangular:amplitude=4,period=1"
 SINE = "sine:amplitude=3.2,period=0.8"
 
 
@@ -76,21 +74,3 @@ def test_the_warning_names_the_option(run):
     page = run(*SLENDER, SINE, "--set", "response.assumed_friction=0.2")[1]
     assert "--friction follows it" in page
     assert "friction=..." not in page
-
-
-REFUSED = {
-    "linear": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.linear=true"], "so it takes no linear"),
-    "engine": ([*SQUAT, SINE, "--friction", "1", "--set", "settings.engine=fast"], "so it takes no engine"),
-    "friction": ([*SQUAT, SINE, "--friction", "-1"], "--friction must be a number > 0"),
-    "friction nan": ([*SQUAT, SINE, "--friction", "nan"], "--friction must be a finite number"),
-    "bounce": ([*SQUAT, SINE, "--friction", "1", "--bounce", "1"], "bounce must be in [0, 1)"),
-    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "bounce does not apply to a body without friction"),
-    "mesh": ([*SQUAT, SINE, "--set", "body.up=z"], "unknown key 'up'"),
-    "space": ([*SQUAT, SINE, "--motion", f"y={SINE}"], "a plane body has one horizontal motion"),
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence):
-    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    refuses(words, sentence)

@@ -69,19 +69,3 @@ def test_the_page_states_the_start(printed, body):
     assert "released 0.08 m above the ground" in out
     assert "initial velocity (0, 0, -0.3) m/s" in out
     assert "above the ground" not in printed(body, "--friction", "0.6", "--free", "0.3")
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (("--start-height", "0.1"), "without friction a body neither slides nor flies"),
-        (("--friction", "0.5", "--start-velocity", "1,2"), "start_velocity must be 3 numbers, x, y, up"),
-        (("--friction", "0.5", "--start-velocity", "a"), "--start-velocity must be numbers with commas between"),
-        (("--friction", "0.5", "--start-height=-1"), "--start-height must be a number >= 0"),
-        (("--friction", "0.5", "--start-height", "1e9"), "height must be in [0, 10000] m"),
-        (("--friction", "0.5", "--start-height", "0.1", "--scale", "2"), "a drop has no motion"),
-    ],
-)
-def test_a_start_that_cannot_be_is_refused(refuses, words, sentence, body):
-    """Each refusal has one sentence that states the cause."""
-    refuses((body, *words), sentence)

@@ -173,50 +173,6 @@ def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp
     assert "initial_tilt" not in answered(body, SINE)
 
 
-REFUSED = {
-    "no motion": ([], "what moves the ground?"),
-    "two motions": (["--motion", f"x={SINE}", "--motion", f"x={SINE}"], "one motion along x, please"),
-    "free in degrees": (["--free", "10"], "--free is a share of the slenderness angle, here 14 degrees"),
-    "free and a motion": ([SINE, "--free", "0.5"], "give a motion or --free, not both"),
-    "free and bounce": (
-        ["--free", "0.5", "--friction", "0.4", "--bounce", "0.2"],
-        "bounce does not apply to a body in space with friction",
-    ),
-    "width": ([SINE, "--width", "1"], "give a body file or dimensions, not both"),
-    "bounce": (
-        [SINE, "--friction", "0.4", "--bounce", "0.2"],
-        "bounce does not apply to a body in space with friction",
-    ),
-    "linear": ([SINE, "--set", "settings.linear=true"], "so it takes no linear"),
-    "engine": ([SINE, "--set", "settings.engine=fast"], "so it takes no engine"),
-    "model": ([SINE, "--restitution", "best"], "'best"),
-    "plane model": ([SINE, "--restitution", "plastic-winkler"], "plastic-winkler"),
-    "creates energy": ([SINE, "--restitution", "1.1"], "restitution must be in [0, 1], got 1.1"),
-    "nan": ([SINE, "--restitution", "nan"], "restitution must be"),
-    "no record": (["none.at2"], "none.at2: no such file"),
-    "units of a pulse": ([SINE, "--units", "g"], "a pulse takes no --units"),
-    "component of a pulse": ([SINE, "--set", "motion.component=N"], "a pulse takes no motion.component"),
-    "component by name": ([SINE, "--component-z", "UP"], "No such option: --component-z"),
-    "component unknown": (["record.txt#up", "--units", "m/s2"], "'up'"),
-    "components": (["--motion", "y=record.txt", "--units", "m/s2"], "record.txt#column 2"),
-    "unit": ([SINE, "--units", "cm"], 'states units = "m"'),
-}
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
-def test_bad_input_gives_one_sentence_and_exit_code_2(refuses, words, sentence, body, record, monkeypatch):
-    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
-    monkeypatch.chdir(record.parent)
-    refuses((body, *words), sentence)
-
-
-def test_vertical_twice_is_refused(refuses, body, record):
-    """The vertical motion is given once: as a part of x or as z."""
-    names = [part.name for part in rk.motions.formats.read_record(record, units="m/s2").components]
-    words = ("--units", "m/s2", "--set", f"motion.vertical={names[2]}", "--motion", f"z={SINE}")
-    refuses((body, f"{record}#{names[0]}", *words), "the vertical motion is given twice")
-
-
 def test_capitals_of_a_model_do_not_matter(run, answered, body):
     """`KED-3D` is `ked-3d`; what is no model is named as it was written."""
     words = (body, "--motion", "sine:amplitude=2.9,period=0.6", "--restitution")

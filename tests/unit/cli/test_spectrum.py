@@ -65,30 +65,3 @@ def test_period_words():
     """A range goes by equal ratios unless it says otherwise."""
     for text, values in (("1:16:5", [1, 2, 4, 8, 16]), ("1:5:5:linear", [1, 2, 3, 4, 5]), ("1,3,4", [1, 3, 4])):
         assert Values.model_validate(_periods(text)).numbers() == pytest.approx(values, rel=1e-13, abs=0.0)
-
-
-REFUSALS = [
-    ((), "what moves the ground?"),
-    (("no-such.txt",), "no such file"),
-    ((SINE, "--slenderness", "95deg"), "in (0, 90) deg"),
-    ((SINE, "--slenderness", "0,4"), "h/b, above 0"),
-    ((SINE, "--slenderness", "4,10deg"), "at every number or at none"),
-    ((SINE, "--slenderness", "4m"), "must be a number"),
-    ((SINE, "--slenderness", "slim"), "must be a number"),
-    ((SINE, "--periods", "0:5:10"), "above 0"),
-    ((SINE, "--periods", "5:1:10"), "increase"),
-    ((SINE, "--periods", "1:5:10:log:log"), "FIRST:LAST:COUNT"),
-    ((SINE, "--periods", "1:5:many"), "COUNT from 2"),
-    ((SINE, "--periods", "1:5:99999", "--slenderness", "4:8:200"), "rocking campaign"),
-    ((SINE, "--restitution", "no-such"), "no-such"),
-    ((SINE, "--scale", "nan"), "scale"),
-    ((SINE, "--out", "a.bmp"), "by its ending a file is picture (.png"),
-    ((SINE, "--out", "no-such-folder/a.nc"), "no folder"),
-    ((SINE, "--set", "settings.gravity=0"), "settings.gravity must be"),
-]
-
-
-@pytest.mark.parametrize(("words", "sentence"), REFUSALS, ids=[" ".join(words) or "-" for words, _ in REFUSALS])
-def test_refusals(refuses, words, sentence):
-    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
-    refuses(words, sentence)

@@ -46,20 +46,6 @@ def test_what_is_set_beside_a_file(run, printed, tmp_path):
     assert (code, "--set body.width: it has several [[body]]" in err) == (2, True)
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (
-            "map --width 1 --height 4 sine:amplitude=3,period=0.8 --threads 20000",
-            "must be a whole number in [1, 4096]",
-        ),
-        ("cor --width 1 --height 4 --set settings.linear=true", "settings.linear: an impact takes gravity only"),
-    ],
-)
-def test_refusals(refuses, words, says):
-    refuses(words.split(), says)
-
-
 def test_a_scale_that_is_set_is_that_of_the_option(run, tmp_path, monkeypatch):
     """`--set motion.scale` and `--scale` of a motion are one."""
     monkeypatch.chdir(tmp_path)
@@ -68,14 +54,3 @@ def test_a_scale_that_is_set_is_that_of_the_option(run, tmp_path, monkeypatch):
     first, second = (run("motion", "record.txt", "--units", "m/s2", *way) for way in ways)
     assert first == second
     assert first[0] == 0
-
-
-def test_contact_and_space_take_one_restitution(run, tmp_path):
-    """A second one is not left out without a word."""
-    file = tmp_path / "r.toml"
-    file.write_text(
-        '[response]\nfriction = 0.4\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n'
-        '[motion]\npulse = "sine:amplitude=3,period=0.6"\n[restitution]\nmodels = ["ked", "housner"]\n'
-    )
-    code, _, err = run("simulate", file)
-    assert (code, "sliding and hopping is computed with one, got ked, housner" in err) == (2, True)

@@ -3,7 +3,6 @@
 import pytest
 
 from rocking.bodies.solid import box
-from rocking.cli import main
 from rocking.plots.labels import shown_in
 
 pytest.importorskip("matplotlib")
@@ -86,22 +85,6 @@ def test_one_option_for_units(printed, tmp_path):
     sizes = ("--width", "500", "--height", "2000", "--density", "500")
     assert printed("simulate", *sizes, str(record), "--units", "mm,g", "--json") == same
     assert printed("simulate", *sizes, str(record), "--units", "G, MM", "--json") == same
-
-
-@pytest.mark.parametrize(
-    ("units", "said"),
-    [
-        ("mm,cm", "one unit of a kind, got mm and cm"),
-        ("milimeter", "--units must be one of m, cm, mm"),
-        ("", "--units"),
-    ],
-)
-def test_units_that_are_none(units, said, capsys):
-    """Two units of one kind, and what is no unit, are refused."""
-    with pytest.raises(SystemExit) as end:
-        main(("cor", "--width", "5", "--height", "20", "--units", units))
-    assert end.value.code == 2
-    assert said in capsys.readouterr().err
 
 
 @pytest.fixture

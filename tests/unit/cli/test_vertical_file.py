@@ -54,22 +54,3 @@ def test_a_file_of_several_components(refuses, answered, files, tmp_path):
     refuses(("motion", table, f"z={table}#column 3", *units), f"say which one: '{table}#column 2'")
     components = "the file has the components column 2, column 3; "
     refuses(("motion", f"{table}#column 2", f"z={table}", *units), f"{components}say which one: '{table}#column 2' or")
-
-
-def test_refusals(refuses, files, tmp_path):
-    """A pulse or free rocking takes no such file; a missing, equal or ill-timed one is refused in one sentence."""
-    along, up = files
-    slow = tmp_path / "slow.at2"
-    write_record(Record("peer", (Component("UP", UP, "m/s2", 0.04),)), slow, "peer")
-    pulse = "sine:amplitude=3.2,period=0.8"
-    for words, sentence in (
-        (("motion", pulse, f"z={up}"), "stands in a record file, as the one along x"),
-        (("simulate", *SIZE, pulse, f"--motion=z={up}"), "stands in a record file, as the one along x"),
-        (("simulate", *SIZE, "--free", "0.5", f"--motion=z={up}"), "give a motion or --free, not both"),
-        (("simulate", *SIZE, f"--motion=z={up}"), "give the motion along x too"),
-        (("motion", along, "z=none.at2"), "none.at2: no such file"),
-        (("motion", along, f"z={pulse}"), "stands in a record file"),
-        (("motion", along, f"z={along}"), "cannot be the vertical one"),
-        (("motion", along, f"z={slow}"), "0.02 s, got 0.04 s; resample one first"),
-    ):
-        refuses(words, sentence)

@@ -4,7 +4,6 @@ import pytest
 
 from rocking.bodies import Block
 from rocking.checks import nearest, number_hint
-from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError
 from rocking.motions import measure, pulses
 from rocking.motions.formats.reader import format_named
@@ -66,25 +65,6 @@ def test_nothing_is_guessed_from_far():
     assert "did you mean" not in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("simulate", "--width", "0,5", "--height", "2", PULSE), "numbers have a decimal point: 0.5"),
-        (("simulate", *SIZE, PULSE, "--set", "settings.engine=quick"), "settings.engine must be one of 'auto', 'fast'"),
-        (("minimum", *SIZE, PULSE, "--lowest", "0,1g"), "numbers have a decimal point: 0.1"),
-        (("motion", PULSE, "--periods", "0,5"), "numbers have a decimal point: 0.5"),
-        (("simulat", *SIZE, PULSE), "Did you mean 'simulate'"),
-        (("cor", "--width", "50cm", "--height", "2"), "it takes no unit behind the number, 50"),
-        (("models", "hausner"), "did you mean 'housner'"),
-        (("simulate", "quake.at2", "statue.toml"), "the body comes first, then the motion: statue.toml quake.at2"),
-        (("map", "quake.at2", "statue.stl"), "the body comes first, then the motion: statue.stl quake.at2"),
-    ],
-)
-def test_sentences_of_the_command_line(refuses, words, said):
-    """Decimal commas, mistyped commands and words in the wrong order get a sentence that helps."""
-    refuses(words, said)
-
-
 @pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 def test_share_of_the_slenderness_angle(run):
     """`--free 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
@@ -108,41 +88,6 @@ def test_models_in_space_are_listed_and_shown(printed):
     assert "known defects" in out
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (("simulate", *SIZE, PULSE, "--contact"), "No such option: --contact"),
-        (
-            ("map", *SIZE, PULSE, "--gravity", "9"),
-            "No such option: --gravity; it is a key: --set settings.gravity=VALUE",
-        ),
-        (("map", *SIZE, PULSE, "--time-step", "9"), "it is a key: --set motion.time_step=VALUE"),
-        (("map", *SIZE, PULSE, "--out"), "Option '--out' requires an argument"),
-        (("simulate", *SIZE, PULSE, "--set", "settings.gravty=9"), "unknown key 'gravty'; did you mean gravity?"),
-        (("simulate", *SIZE, PULSE, "--set", "setting.gravity=9"), "no table named 'setting' here; there are body"),
-    ],
-)
-def test_an_unknown_option_or_key_is_refused_with_what_to_type(capsys, words, sentence):
-    """An option that is a key, an unknown table and an unknown key are refused in one sentence with what to type."""
-    with pytest.raises(SystemExit) as stop:
-        main([str(word) for word in words])
-    assert (stop.value.code, sentence in capsys.readouterr().err) == (2, True)
-
-
-def test_own_model_that_fails_is_one_sentence(refuses, tmp_path):
-    """Its file and line, not a list of ours; other errors of the program are not swallowed."""
-    (tmp_path / "mine.py").write_text(
-        "from rocking.restitution import RestitutionModel\nclass Mine(RestitutionModel):\n    name = title = 'mine'\n"
-        "    def raw_coefficient(self, body, onto):\n        return 1 / 0\n",
-        encoding="utf-8",
-    )
-    refuses(("cor", *SIZE, "--restitution", f"{tmp_path / 'mine.py'}:Mine"), "mine.py, line 5: ZeroDivisionError")
+def test_other_errors_are_not_those_of_an_own_model():
+    """Errors of the program itself are not swallowed."""
     assert in_own_model(ZeroDivisionError("ours")) == ""
-
-
-def test_restitution_of_a_study_by_its_table(refuses):
-    """What `--restitution` cannot say is said by `--set`; both at once contradict each other."""
-    refuses(
-        ("map", *SIZE, PULSE, "--restitution", "ked", "--set", "restitution.value=0.9"),
-        "--restitution and --set restitution.value say the same: leave one out",
-    )
