@@ -53,25 +53,18 @@ def job(tmp_path):
     return write
 
 
-def test_check(run, job, tmp_path):
-    """A job without a mistake: how many histories, chunks, time, memory, disk; nothing is written."""
+def test_check(run, printed, job, tmp_path):
+    """A job without a mistake: how many histories, chunks, time, memory, disk, also as JSON; nothing is written."""
     path = job()
     code, out, err = run("check", path, "--out", tmp_path / "c")
     assert (code, err) == (0, "")
     assert "600 = 20 amplitude_ratio x 30 frequency_ratio, in 6 chunks of 100" in out
     for word in ("time", "memory", "disk", "free"):
         assert word in out
+    told = json.loads(printed("check", path, "--json", "--workers", 2))
+    assert (told["histories"], told["chunks"], told["chunk"]) == (600, 6, 100)
+    assert {"rate", "seconds", "memory", "disk", "free"} <= set(told)
     assert not (tmp_path / "c").exists()
-
-
-def test_check_as_json(printed, job):
-    """The keys are these, and stay these."""
-    out = printed("check", job(), "--json", "--workers", 2)
-    assert list(json.loads(out)) == [
-        "job", "campaign", "kind", "dimensions", "inputs", "histories", "chunks", "chunk", "rate", "seconds", "between",
-        "memory", "disk", "free",
-    ]  # fmt: skip
-    assert json.loads(out)["histories"] == 600
 
 
 STATUS = [
@@ -103,15 +96,6 @@ def test_run_status_resume_export(run, job, tmp_path):
     assert (code, "wrote" in out) == (0, True)
 
 
-def test_processes(run, job, tmp_path):
-    """Two processes: the same results as one."""
-    assert run("run", job(), "--out", tmp_path / "a", "--executor", "processes", "--workers", 2)[0] == 0
-    assert run("run", job(), "--out", tmp_path / "b")[0] == 0
-    for name in "ab":
-        assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
-    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
-
-
 @pytest.mark.parametrize("more", ["[restitution]\nmodel = 'kedd'\n", "[map.z]\n", "[settings]\norder = 5\n", "[["])
 def test_mistakes_in_the_job(run, job, tmp_path, more):
     """A mistake in the job: check and run say the same sentence and leave with 2."""
@@ -141,8 +125,10 @@ def begun(tmp_path, path):
 
 
 def test_half_done(run, printed, job, tmp_path):
-    """A campaign that stopped says how to go on, exports nothing, and goes on."""
+    """A campaign that stopped names what is missing, says how to go on, exports nothing, and goes on."""
     folder = begun(tmp_path, job())
+    code, out, _ = run("verify", folder)
+    assert (code, "missing: histories 100 to 599" in out) == (6, True)
     out = printed("status", folder)
     assert "100 of 600 histories (1 of 6 chunks)" in out
     assert "rocking campaign resume" in out
@@ -245,14 +231,6 @@ def test_changed_job_is_told_alike(run, job, tmp_path):
     assert (code, out, "job.toml has changed since the campaign began; restore it" in err) == (6, "", True)
 
 
-def test_verify_of_what_is_not_finished(run, job, tmp_path):
-    """What is missing is named; a folder that is none is bad input."""
-    folder = begun(tmp_path, job())
-    code, out, _ = run("verify", folder)
-    assert (code, "missing: histories 100 to 599" in out) == (6, True)
-    assert run("verify", tmp_path / "none")[0] == 2
-
-
 def test_verify_reads_every_round(run, job, tmp_path):
     """A refined map, whose rounds are campaigns of their own: one bit of the last one is noticed."""
     folder = tmp_path / "c"
@@ -310,18 +288,6 @@ def test_run_on_a_cluster(run, job, tmp_path):
 def test_times_in_words(seconds, words):
     """Times in the unit that people would take."""
     assert _span(seconds) == words
-
-
-def test_ctrl_c_before_anything(run, job, tmp_path, monkeypatch):
-    """Ctrl-C while files are read: exit code 3 as well, and no traceback."""
-
-    def pressed(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("rocking.campaigns.jobs.Job.read", pressed)
-    code, out, err = run("run", job(), "--out", tmp_path / "c")
-    assert (code, out) == (3, "")
-    assert err == "rocking: stopped; nothing was begun\n"
 
 
 def started(tmp_path, *words):

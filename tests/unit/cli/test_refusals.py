@@ -138,6 +138,7 @@ REFUSED = {
         "run job.toml": "out",
         "status used": "no campaign of a job file here",
         "resume used": "no campaign of a job file here",
+        "verify none": "none",
         "export used --out r.nc": "no campaign of a job file here",
         "stop": "stop",
     },

@@ -32,11 +32,7 @@ def test_a_study_from_launch_to_file(client, map_job):
     """Launched, listed, done, looked at, a cell gone into by its inputs, taken away, deleted."""
     study = _launched(client, map_job(), "<b>Küste</b>")
     assert [each["id"] for each in client.get("/api/studies").json()["studies"]] == [study]
-    facts = _wait(client, study, "done")
-    assert set(facts) == {
-        "id", "name", "kind", "state", "histories", "histories_done", "rate", "seconds_left",
-        "seconds_left_between", "message", "created", "project",
-    }  # fmt: skip
+    _wait(client, study, "done")
     result = client.get(f"/api/studies/{study}/result").json()
     assert result["kind"] == "overturning-map"
     cell = client.get(f"/api/studies/{study}/cell", params={"x": 2, "y": 4, "restitution": 1}).json()
