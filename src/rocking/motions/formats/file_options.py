@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.motions.formats.reader import format_named
 
 KEYS = ("units", "time_step", "format", "skip")
@@ -38,7 +38,8 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
         if len(matches) > 1 or matches[0] in options:
             both = ", ".join(map(str, matches)) if len(matches) > 1 else f"{matches[0]} has two entries"
             raise InvalidValueError(f"files: {str(name)!r:.80} must name one file of this set, got {both:.300}")
-        options[matches[0]] = _checked(f"files: {name}", stated)
+        with located("files"), located(name, "file"):
+            options[matches[0]] = _checked(stated)
     return options
 
 
@@ -49,17 +50,17 @@ def together(path: Path, listed: Mapping[str, Any], stated: Mapping[str, Any], s
     return tuple(sorted({**listed, **stated}.items()))
 
 
-def _checked(name: str, stated: Mapping[str, Any]) -> dict[str, Any]:
+def _checked(stated: Mapping[str, Any]) -> dict[str, Any]:
     """Return the options of one file, of known keys and values."""
     options = {key: value for key, value in stated.items() if value is not None}
     for key, value in options.items():
-        match checks.one_of(f"{name}: key", key, KEYS):
+        match checks.one_of("key", key, KEYS):
             case "units":
-                options[key] = checks.one_of(f"{name}: units", value, ACCELERATION_UNITS)
+                options[key] = checks.one_of("units", value, ACCELERATION_UNITS)
             case "time_step":
-                options[key] = checks.positive(f"{name}: time_step", value, "s")
+                options[key] = checks.positive("time_step", value, "s")
             case "skip":
-                options[key] = checks.whole(f"{name}: skip", value)
+                options[key] = checks.whole("skip", value)
             case _:
                 options[key] = format_named(value).name
     return options

@@ -399,5 +399,7 @@ def _chosen(record: Record, what: str, name: str | None, other: Component | None
     found = [part for part in record.components if part.name.casefold() == str(name).strip().casefold()]
     if len(found) != 1 or found[0] is other:
         why = "it is the vertical one already" if found and found[0] is other else f"the file has {', '.join(names)}"
-        raise InvalidValueError(f"{what} must name one component, got {name!r:.60}", hint=why)
+        raise InvalidValueError(
+            "{parameter} must name one component, got {value}", parameter=what, value=name, hint=why
+        )
     return found[0]

@@ -1,5 +1,6 @@
 /** What a record file does not say, asked in a small form. */
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
+import { keyOf } from "/app/refusal.js";
 import { Button, Choice, NumberField, toWrong, wrongIn } from "/parts/fields.js";
 
 /** @type {Words} */
@@ -23,12 +24,6 @@ const MISSING = {
   format: "Choose the format.",
 };
 
-/** Words by which a refusal names what was answered wrongly. @type {{ [need: string]: RegExp | undefined }} */
-const SIGNS = {
-  time_step: /time step|time between two samples/i, units: /\bunits?\b/i,
-  component: /component/i, format: /format/i,
-};
-
 /** @param {Need} name @param {LeftOpen} answer @param {Server.Info} info */
 const choicesOf = (name, { choices = {}, components = [] }, info) => {
   if (choices[name]) return choices[name];
@@ -36,10 +31,10 @@ const choicesOf = (name, { choices = {}, components = [] }, info) => {
   return (name === "format" ? info.formats : components).map((one) => one.name);
 };
 
-/** What of some needs a refusal of the server is about: {name, words}; null if about none of them.
- * @param {Need[]} needs @param {string} words */
-export const blamedOf = (needs, words) => {
-  const name = needs.find((one) => SIGNS[one]?.test(words));
+/** The need that a refusal of the server is about, with its sentence; null if it is about none.
+ * @param {Need[]} needs @param {any} refusal @param {string} words */
+export const blamedOf = (needs, refusal, words) => {
+  const name = needs.find((need) => need === (refusal.parameter && keyOf(refusal)));
   return name ? { name, words } : null;
 };
 

@@ -72,7 +72,7 @@ export const createRecord = (app, onChange) => {
       if (error.needs?.length) ask({ message, ...error });
       return;
     }
-    blamed.value = blamedOf(asked.value.answer.needs, message);
+    blamed.value = blamedOf(asked.value.answer.needs, error, message);
     said.value = blamed.value ? null : why(message, error.places);
   };
   // Counts are no accelerations without their StationXML: both go to the step that reads them together.
