@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib import import_module
+from os import PathLike, sep
 from pathlib import PurePath
 from types import ModuleType
 from typing import Any, Literal, Self, TypeVar
@@ -212,6 +213,30 @@ class RockingError(Exception):
             replace(place, name="") if (place.name, place.kind) == (name, "file") else place for place in self.places
         )
         self.places = tuple(place for place in kept if str(place))
+        return self
+
+    def without_folder(self, folder: str | PathLike[str], name: str = "") -> Self:
+        """Remove a folder from the paths in the error.
+
+        Parameters
+        ----------
+        folder : path
+            The folder.
+        name : str
+            What stands in its place where the folder itself is named.
+
+        Returns
+        -------
+        RockingError
+            The error itself.
+        """
+
+        def bare(text: Any) -> Any:
+            return text.replace(f"{folder}{sep}", "").replace(str(folder), name) if isinstance(text, str) else text
+
+        self.text, self.hint, self.value = bare(self.text), bare(self.hint), bare(self.value)
+        self.facts = {key: bare(fact) for key, fact in self.facts.items()}
+        self.places = tuple(replace(place, name=bare(place.name)) for place in self.places)
         return self
 
 

@@ -11,8 +11,11 @@ from typing import Any
 _FEW_COLLECTIONS = 100_000  # objects until garbage is looked for: a command imports many that all stay
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted."""
+def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None:
+    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted.
+
+    Errors do not name `unnamed_file`, which the caller has written himself.
+    """
     gc.set_threshold(_FEW_COLLECTIONS)
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them reads every installed distribution
     from typer import BadParameter
@@ -35,16 +38,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
             # without arguments the help is the answer
             code = application(arguments)(args=arguments or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
-        told = spelled(error)
-        as_data = {"error": {**error.data(), "message": told}} if "--json" in arguments else None
-        print(json.dumps(as_data) if as_data else f"rocking: {told}", file=sys.stderr)
-        sys.exit(2)
+        refusal = error.without_file(unnamed_file)
     except click_exception as error:
-        print(f"rocking: {_refusal(error)}; see rocking --help", file=sys.stderr)
-        sys.exit(2)
+        refusal = RockingError(_refusal(error), hint="see rocking --help")
     except OSError as error:
-        print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
-        sys.exit(2)
+        refusal = RockingError(f"{error.strerror or error}: {error.filename or ''}".rstrip(": "))
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
@@ -53,9 +51,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
         if not (sentence := in_own_model(error)):
             raise
-        print(f"rocking: {sentence}", file=sys.stderr)
-        sys.exit(2)
-    sys.exit(code or 0)
+        refusal = RockingError(sentence)
+    else:
+        sys.exit(code or 0)
+    sentence = spelled(refusal)
+    as_data = {"error": {**refusal.data(), "message": sentence}} if "--json" in arguments else None
+    print(json.dumps(as_data) if as_data else f"rocking: {sentence}", file=sys.stderr)
+    sys.exit(2)
 
 
 def _refusal(error: Any) -> str:

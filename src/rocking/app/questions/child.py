@@ -13,7 +13,6 @@ import threading
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
-from runpy import run_module
 from typing import Any
 
 _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
@@ -54,13 +53,13 @@ def main() -> None:
     _answer(**json.loads(question))
 
 
-def _answer(folder: str, answer: str, log: str, own: str, words: list[str]) -> None:
-    """Run a command in a folder; its answer, what it says, and what libraries write go to files of these names."""
+def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list[str]) -> None:
+    """Run a command on a file in a folder; its answer, what it says, and what libraries write go to files there."""
     os.chdir(folder)
     for number, name in ((1, answer), (2, log)):
-        file = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-        os.dup2(file, number)
-        os.close(file)
+        descriptor = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        os.dup2(descriptor, number)
+        os.close(descriptor)
     os.environ["TMPDIR"] = tempfile.tempdir = str(Path(own).resolve())
     from rocking.errors import RockingError
     from rocking.evidence.store import store
@@ -69,12 +68,14 @@ def _answer(folder: str, answer: str, log: str, own: str, words: list[str]) -> N
     try:
         register_own()  # the owner's own models, which lie outside
     except RockingError as error:
-        sys.stderr.write(f"rocking: {error}\n")
+        sys.stderr.write(json.dumps({"error": error.data()}))
         sys.exit(2)
     models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
-    sys.argv[1:] = words
-    run_module("rocking", run_name="__main__")
+    from rocking.cli import main as run
+
+    sys.argv[1:] = words  # which reports of an answer name
+    run(words, unnamed_file=file)
 
 
 def keep_inside(*folders: Path) -> None:

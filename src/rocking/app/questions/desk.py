@@ -290,7 +290,8 @@ class QuestionDesk:
         own = place / ".own"
         own.mkdir(mode=0o700, exist_ok=True)
         told = {
-            "folder": str(place), "answer": _ANSWER, "log": _LOG, "own": own.name, "words": _command(question)
+            "folder": str(place), "file": QUESTION, "answer": _ANSWER, "log": _LOG, "own": own.name,
+            "words": _command(question),
         }  # fmt: skip
         for name in (_ANSWER, _LOG):
             (place / name).write_bytes(b"")
@@ -378,12 +379,10 @@ def _refusal(place: Path, code: int | None) -> dict[str, Any]:
     for line in reversed(log.splitlines()):
         with suppress(ValueError, TypeError, KeyError):
             refusal: dict[str, Any] = json.loads(line)["error"]
-            refusal["places"] = [each for each in refusal["places"] if each["name"] != QUESTION]
-            refusal["message"] = refusal["message"].removeprefix(f"{QUESTION}: ")
             return refusal
-    said = [line.removeprefix("rocking: ") for line in log.splitlines() if line.startswith("rocking: ")]
-    lost = "it needed more memory or time than a page gives, or failed: its log is in the data folder"
-    return RockingError(said[-1][:1000] if code in {1, 2} and said else lost).data()
+    return RockingError(
+        "it needed more memory or time than a page gives, or failed: its log is in the data folder"
+    ).data()
 
 
 def _link(source: Path, target: Path) -> None:

@@ -5,6 +5,7 @@ Exit codes: 0 done, 2 refused, 3 stopped (what is finished is safe).
 """
 
 import contextlib
+import json
 import os
 import signal
 import sys
@@ -23,6 +24,7 @@ def main(arguments: list[str]) -> int:
     threading.Thread(target=end_with_the_server, daemon=True).start()
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
+    from rocking.app.studies.study_folder import without_paths
     from rocking.campaigns import CampaignInterrupted
     from rocking.errors import RockingError
     from rocking.restitution.from_file import register_own
@@ -33,7 +35,7 @@ def main(arguments: list[str]) -> int:
     except (CampaignInterrupted, KeyboardInterrupt):
         return STOPPED
     except RockingError as error:
-        print(f"refused: {error}", file=sys.stderr, flush=True)
+        print(json.dumps({"error": without_paths(error, Path(arguments[0])).data()}), file=sys.stderr, flush=True)
         return REFUSED
     return DONE
 

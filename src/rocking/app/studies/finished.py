@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from rocking.app.errors import NotFound, Refused
-from rocking.app.studies.study_folder import JOB, StudyFolder
+from rocking.app.studies.study_folder import JOB, StudyFolder, without_paths
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import RockingError
 
@@ -38,7 +38,8 @@ class OpenStudy:
         try:
             return cls(folder.id, folder, JobFolder.open(folder.campaign, folder.path))
         except RockingError as error:
-            raise type(error)(folder.without_paths(str(error))) from error
+            without_paths(error, folder.path)
+            raise
 
     @property
     def job(self) -> "Job":
@@ -134,4 +135,4 @@ def written(
                 study.opened, target, what, restitution=labels[restitution] if of_curves else None, crossing=crossing
             )
         except RockingError as error:
-            raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
+            raise without_paths(error, study.folder.path).without_folder(target.parent).copied(Refused) from error

@@ -1,6 +1,7 @@
 """A study as the server knows it: its state, how fast it is, and its process while it has one."""
 
 import contextlib
+import json
 import logging
 import os
 import signal
@@ -98,9 +99,9 @@ class StudyProcess:
                 lines = log.read(1 << 20).decode(errors="replace").splitlines()
         except OSError:
             lines = []
-        refusals = [line.removeprefix("refused: ") for line in lines if line.startswith("refused: ")]
-        if refusals:
-            return self.folder.without_paths(refusals[-1])[:_LONGEST_SENTENCE]
+        for line in reversed(lines):
+            with contextlib.suppress(ValueError, TypeError, KeyError):
+                return str(json.loads(line)["error"]["message"])[:_LONGEST_SENTENCE]
         how = "was ended by the system" if (self.code or 0) < 0 else "ended unexpectedly"
         return f"the computation {how}; what was finished is safe, and its log is {Path(self.folder.id) / LOG}"
 

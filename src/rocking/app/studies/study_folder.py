@@ -1,7 +1,6 @@
 """A study on disk: its id, what it is, its job, the records that it needs, and its campaign."""
 
 import json
-import os
 import re
 import secrets
 import shutil
@@ -93,7 +92,7 @@ class StudyFolder:
         except BaseException as error:
             shutil.rmtree(self.path, ignore_errors=True)
             if isinstance(error, RockingError):
-                raise type(error)(self.without_paths(str(error))) from error
+                without_paths(error, self.path)
             raise
 
     def asked(self) -> dict[str, Any]:
@@ -152,8 +151,9 @@ class StudyFolder:
             self.write(meta)
         return meta
 
-    def without_paths(self, sentence: str) -> str:
-        """Return a sentence without the paths of this machine in it, which are nobody's business."""
-        for folder in (self.campaign, self.path):
-            sentence = sentence.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
-        return sentence.removeprefix(f"{JOB}: ")
+
+def without_paths(error: RockingError, study: Path) -> RockingError:
+    """Take the folders of a study, and the name of its job, out of an error: its user has not chosen them."""
+    for folder in (study / CAMPAIGN, study):
+        error.without_folder(folder, "the study")
+    return error.without_file(JOB)
