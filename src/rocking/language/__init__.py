@@ -71,14 +71,22 @@ def catalogue(code: str) -> dict[str, str]:
 
 
 @lru_cache(maxsize=8)
-def page_words(code: str) -> dict[str, str]:
-    """Return the messages of the page in a language by their English texts; none in English."""
+def page_words(code: str) -> dict[str, str | list[str]]:
+    """Return the messages of the page by their English texts, forms by a count as a list; none in English."""
     path = Path(__file__).with_name(f"{code}.mo")
     if not path.exists():
         return {}
     with path.open("rb") as file:
-        messages = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]  # as Django reads it
-    return {text: other for text, other in messages.items() if text and isinstance(text, str)}
+        catalog = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]  # as Django reads it
+    messages: dict[str, str | list[str]] = {}
+    for key, text in catalog.items():
+        if isinstance(key, tuple):  # the English text, and the number of the form
+            forms = messages.setdefault(key[0], [])
+            assert isinstance(forms, list)
+            forms.append(text)
+        elif key:
+            messages[key] = text
+    return messages
 
 
 def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:

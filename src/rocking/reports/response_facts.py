@@ -28,7 +28,13 @@ class ModelAgreement:
     """What the models say together."""
 
     decides: bool  # whether they end differently
-    sentence: str  # the same in words
+    verdict: str  # the same in words
+    doubts: tuple[str, ...]  # about the computation
+
+    @property
+    def sentence(self) -> str:
+        """Verdict and doubts."""
+        return " ".join([self.verdict, *self.doubts])
 
     @classmethod
     def of(cls, responses: Mapping[str, Response]) -> "ModelAgreement":
@@ -37,13 +43,14 @@ class ModelAgreement:
             groups.setdefault(OUTCOME_WORDS[one.outcome], []).append(name)
         rocking = ", ".join(name for name, one in responses.items() if one.still_rocking)
         pulled = ", ".join(name for name, one in responses.items() if one.lost_contact)
-        doubts = f" Still rocking when the computation ends: with {rocking}." if rocking else ""
-        doubts += f" The ground would have to pull, and the verdict assumes contact: with {pulled}." if pulled else ""
+        doubts = [f"Still rocking when the computation ends: with {rocking}."] if rocking else []
+        if pulled:
+            doubts.append(f"The ground would have to pull, and the verdict assumes contact: with {pulled}.")
         if len(groups) > 1:
             parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
-            return cls(True, f"The model decides: the body {parts}.{doubts}")
+            return cls(True, f"The model decides: the body {parts}.", tuple(doubts))
         (word,) = groups
-        return cls(False, f"With every one of these models the body {word}.{doubts}")
+        return cls(False, f"With every one of these models the body {word}.", tuple(doubts))
 
 
 def restitution_words(label: str) -> str:

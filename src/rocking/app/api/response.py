@@ -132,7 +132,13 @@ ResponseFacts: Any = shape(
 NoResponse: Any = shape(
     "NoResponse", "Why one of the restitutions has no response.", label=(str, "the restitution"), error=str
 )
-VerdictFacts: Any = shape("VerdictFacts", "Whether the choice of the model decides.", decides=bool, sentence=str)
+VerdictFacts: Any = shape(
+    "VerdictFacts",
+    "Whether the choice of the model decides.",
+    decides=bool,
+    sentence=str,
+    doubts=(list[str], "about the computation"),
+)
 ResponseAnswered: Any = shape(
     "ResponseAnswered",
     "How the body rocks, under every restitution that was chosen.",
@@ -178,7 +184,7 @@ def responses_answer(
             else response_answer(label, one, problem, points, window)
             for label, one in answers.items()
         ],
-        "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
+        "verdict": {"decides": verdict.decides, "sentence": verdict.verdict, "doubts": list(verdict.doubts)},
         "body": problem.body.answer(problem.settings.gravity) | outline_answer(problem.body) | {"name": name},
         "motion": motion_answer(problem.motion, problem.scale),
     })  # fmt: skip

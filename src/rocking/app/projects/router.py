@@ -39,6 +39,7 @@ class NewProject(_Request):
     name: Name
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)] = Field(default_factory=dict)
     copy_of: Annotated[str | None, Field(max_length=40, description="another project")] = None
+    words: Annotated[str, Field(max_length=400, description="how it came about, for its history")] = ""
 
 
 class ProjectChange(_Request):
@@ -100,7 +101,8 @@ async def create_project(request: Request, new: NewProject) -> JsonAnswer:
     def made(store: ProjectStore) -> Project:
         if new.copy_of is None:
             return store.create(new.name, new.document)
-        return store.create(new.name, store.document(new.copy_of), f"a copy of {store.get(new.copy_of).name}")
+        words = new.words or f"a copy of {store.get(new.copy_of).name}"
+        return store.create(new.name, store.document(new.copy_of), words)
 
     return await _whole(request, made, 201)
 

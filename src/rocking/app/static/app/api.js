@@ -1,5 +1,7 @@
 /** The one door to the server: JSON calls, calls where only the newest counts, and files to keep. */
 
+import { t } from "/app/words.js";
+
 /** A refusal of the server, in its own words. */
 export class ApiError extends Error {
   /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [told] */
@@ -107,7 +109,7 @@ const addressOf = (path, query) => {
 const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-  const error = { message: `the server answered ${answer.status}`, ...told.error };
+  const error = { message: t("the server answered {status}", { status: answer.status }), ...told.error };
   return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // its hint is for scripts
 };
 

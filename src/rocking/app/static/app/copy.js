@@ -1,6 +1,7 @@
 /** Tables to the clipboard: tab-separated, every digit, as Excel takes them. */
 
 import { say } from "/app/say.js";
+import { t } from "/app/words.js";
 
 /** Copy columns and rows as text; says so, or says why not.
  * @param {(string | Column)[]} columns @param {unknown[][]} rows */
@@ -8,7 +9,7 @@ export const copyTable = async (columns, rows) => {
   const text = asText(columns, rows);
   try {
     await navigator.clipboard.writeText(text);
-    say(`Copied ${rows.length} rows; paste them into Excel or any table.`);
+    say(t("Copied {count} rows; paste them into Excel or any table.", { count: rows.length }));
   } catch {
     say("This browser does not let the page copy; use the CSV button.", "warning");
   }

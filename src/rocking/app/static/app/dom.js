@@ -1,5 +1,7 @@
 /** Building HTML and SVG from script: no markup is ever parsed from text. */
 
+import { attributesInWords, childrenInWords } from "/app/words.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 
 /** Make an HTML element: el("p", {class: "note"}, "text", child).
@@ -17,13 +19,13 @@ export const svg = (tag, attributes, ...children) =>
  * @type {<Place extends Element | DocumentFragment>(node: Place, ...children: Child[]) => Place} */
 export const fill = (node, ...children) => {
   node.replaceChildren();
-  return within(node, children);
+  return within(node, node instanceof Element ? childrenInWords(node.localName, { translate: node.getAttribute("translate") }, children) : children);
 };
 
 /** Set attributes, properties and listeners on a node.
  * @type {<Of extends Element>(node: Of, attributes?: Attributes | null) => Of} */
 export const set = (node, attributes) => {
-  for (const [key, value] of Object.entries(attributes ?? {})) setOne(node, key, value);
+  for (const [key, value] of Object.entries(attributesInWords(node.localName, attributes) ?? {})) setOne(node, key, value);
   return node;
 };
 
@@ -49,7 +51,7 @@ const within = (node, children) => {
 /** @type {<Of extends Element>(node: Of, attributes: Attributes | null | undefined, children: readonly Child[]) => Of} */
 const furnish = (node, attributes, children) => {
   set(node, attributes);
-  return within(node, children);
+  return within(node, childrenInWords(node.localName, attributes, children));
 };
 
 /** @param {any} node @param {string} key @param {any} value */

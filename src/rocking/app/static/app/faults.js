@@ -1,5 +1,7 @@
 /** The fields that hold what is no valid value: the inputs do not have what such a field shows. */
 
+import { t } from "/app/words.js";
+
 /** @typedef {{ inputs?: boolean, view?: string }} Which @typedef {{ label: string, words: string, view: string, input: Element }} Fault */
 
 /** @type {Map<Element, { label: string, words: string }>} */
@@ -36,7 +38,7 @@ const any = (which) => list(which).length > 0;
 /** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere.
  * @param {Which & { but?: string }} [which] */
 const sentence = ({ but, ...which } = {}) =>
-  list(which).filter(({ words }) => words !== but).map(({ label, words }) => `${label}: ${words}`).join(" ");
+  list(which).filter(({ words }) => words !== but).map(({ label, words }) => `${t(label)}: ${t(words)}`).join(" ");
 
 const tell = () => {
   for (const watcher of [...watchers]) watcher(list());

@@ -1,6 +1,8 @@
 /** What a file holds. */
 
+import { t } from "/app/words.js";
+
 /** The bytes of a file as it is now; they are kept, whatever becomes of it on the disk. @param {File} file */
 export const contentOf = (file) => file.arrayBuffer().catch(() => {
-  throw new Error(`${file.name} cannot be read any more: choose it again.`);
+  throw new Error(t("{name} cannot be read any more: choose it again.", { name: file.name }));
 });

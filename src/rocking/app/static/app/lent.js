@@ -2,6 +2,7 @@
 
 import { html, render, signal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 /** Keep a line over the views up to date that says whose inputs are on the screen, and changes them over.
  * @param {Element} views @param {App["inputs"]} inputs */
@@ -17,8 +18,8 @@ export const mountLent = (views, inputs) => {
 const Lent = ({ inputs, aside: { value: aside } }) => html`
   <div class="lent" role="status" data-testid="lent" hidden=${!aside}>${aside && html`
     <${Note} kind=${aside.mine ? "info" : "good"} words=${aside.mine
-      ? `What you see is ${aside.words}. Your own body, motion and restitution are kept.`
-      : `Your own inputs are back; ${aside.words} is kept beside them.`} />
+      ? t("What you see is {shown}. Your own body, motion and restitution are kept.", { shown: aside.words })
+      : t("Your own inputs are back; {shown} is kept beside them.", { shown: aside.words })} />
     <div class="toolbar">
       <${Button} kind="primary" onClick=${inputs.swap}>${aside.mine ? "Back to my inputs" : "Show it again"}<//>
       <${Button} kind="quiet" onClick=${inputs.forget}>${aside.mine ? "Drop mine, keep these" : "Drop it"}<//></div>`}</div>`;

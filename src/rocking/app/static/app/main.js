@@ -1,6 +1,6 @@
 /** The start: sign in, read the link, build the app object, show the first view. */
 
-import { language } from "/app/words.js"; // first: what the others draw is said in its words
+import { language, t } from "/app/words.js"; // first: what the others draw is said in its words
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";
@@ -37,7 +37,7 @@ const start = async () => {
   app.project = createProjects(app, FIRST);
   await app.project.start(fromLink);
   if (fromLink && app.inputs.wereKept) app.inputs.lend(fromLink, "what a link holds");
-  if (shared && !fromLink) say(`${UNREADABLE}; the usual start is shown.`, "warning");
+  if (shared && !fromLink) say(t("{reason}; the usual start is shown.", { reason: UNREADABLE }), "warning");
   run(app, view);
 };
 
@@ -58,7 +58,7 @@ const createApp = (inputs, info) => {
   // A file of inputs that are not those on the screen would mislead whoever gets it.
   app.download = async (path, json, name) => {
     const wrong = json === undefined ? "" : faults.sentence({ inputs: true });
-    if (wrong) return say(`Nothing was saved: put this right first. ${wrong}`, "error");
+    if (wrong) return say(t("Nothing was saved: put this right first. {faults}", { faults: wrong }), "error");
     return save(path, json, name).catch((error) => {
       say(error.message, "error");
       return error;

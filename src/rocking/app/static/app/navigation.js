@@ -3,6 +3,7 @@
 import * as address from "/app/address.js";
 import { decode } from "/app/inputs.js";
 import { showDoor, exchange } from "/app/session.js";
+import { t } from "/app/words.js";
 
 /** Follow the address from now on: Back, Forward and links pasted into the tab.
  * @param {App} app @param {ReturnType<typeof import("/app/tabs.js").createTabs>} tabs */
@@ -28,7 +29,7 @@ export const UNREADABLE = "The link carries no readable inputs";
 const take = (app, shared) => {
   const inputs = decode(shared);
   if (inputs) app.inputs.lend(inputs, "what a link holds");
-  else app.say(`${UNREADABLE}; nothing was changed.`, "warning");
+  else app.say(t("{reason}; nothing was changed.", { reason: UNREADABLE }), "warning");
 };
 
 /** @param {string} token */

@@ -3,6 +3,7 @@
 import { inPlaceOf } from "/app/failure.js";
 import { Button, Note } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
+import { t } from "/app/words.js";
 
 /** A keeper of views: show(name, before) mounts and tells them. @param {App} app */
 export const createViews = (app) => {
@@ -56,4 +57,4 @@ const load = async (name, app, forget) => {
 /** @param {any} error */
 const failure = (error) => (error instanceof TypeError
   ? "This part did not come from the server; is `rocking serve` still running?"
-  : `This part could not be shown: ${error.message}`);
+  : t("This part could not be shown: {reason}", { reason: error.message }));

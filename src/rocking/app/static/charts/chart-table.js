@@ -3,6 +3,7 @@
 import { html, render } from "/parts/preact.js";
 import { el } from "/app/dom.js";
 import { Table } from "/parts/table.js";
+import { t } from "/app/words.js";
 
 const MOST = 60;
 
@@ -10,7 +11,7 @@ const MOST = 60;
  * @param {ChartOptions} options @param {() => Columns} dataOf */
 export const chartTable = ({ title, x, y, series }, dataOf) => {
   const place = el("div", {});
-  const of = el("span", { class: "visually-hidden" }, ` of ${title}`);
+  const of = el("span", { class: "visually-hidden" }, ` ${t("of {chart}", { chart: title })}`);
   const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table", of), place);
   const columns = [x, ...series.map((each) => ({ label: each.label, unit: y.unit }))];
   /** @param {number} every */
@@ -22,7 +23,7 @@ export const chartTable = ({ title, x, y, series }, dataOf) => {
   const refresh = () => {
     if (!element.open) return;
     const every = Math.max(1, Math.ceil(dataOf()[0].length / MOST));
-    const caption = every > 1 ? `${title}: every ${every}th sample; copying takes them all` : title;
+    const caption = every > 1 ? t("{chart}: every {number}th sample; copying takes them all", { chart: title, number: every }) : title;
     render(html`<${Table} columns=${columns} rows=${rowsOf(every)} copied=${() => rowsOf(1)} caption=${caption} />`, place);
   };
   element.addEventListener("toggle", refresh);

@@ -1,7 +1,7 @@
 /** What a line chart shows, drawn by a pen: on the screen by that of uPlot's canvas, in a file by one that writes SVG. */
 
 import { svg } from "/app/dom.js";
-import { words as inLanguage } from "/app/words.js";
+import { t } from "/app/words.js";
 import { measured } from "/charts/letters.js";
 import { SvgPen } from "/charts/pen.js";
 import { colour } from "/charts/style.js";
@@ -164,7 +164,7 @@ const drawBand = (pen, { x, y }, { series: [high, low], fill }, data) => {
 export const legendOf = (series, width) => {
   let [x, row] = [0, 0];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
-    const said = inLanguage(label);
+    const said = t(label);
     const wide = 36 + measured(said).width;
     if (x > 0 && x + wide > width) [x, row] = [0, row + 1];
     const [at, y] = [x, row * ROW + 8];

@@ -9,7 +9,7 @@ import { el, fill, freshId } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";
 import { number, pretty, quantity } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
-import { words as inWords } from "/app/words.js";
+import { t } from "/app/words.js";
 
 /** Draw curves over one abscissa; see the returned object for what it can do.
  * @param {HTMLElement} container @param {ChartOptions} options */
@@ -167,17 +167,17 @@ const legendKey = ({ colour: paint, dash, points, width }) =>
 
 /** @param {ChartOptions} options @param {(number | null)[]} values */
 const words = ({ x, y, series }, [at, ...values]) =>
-  [`${inWords(x.label)} ${quantity(at, x.unit)}`]
-    .concat(values.map((value, index) => `${inWords(series[index].label)} ${quantity(value, y.unit)}`))
+  [`${t(x.label)} ${quantity(at, x.unit)}`]
+    .concat(values.map((value, index) => `${t(series[index].label)} ${quantity(value, y.unit)}`))
     .join(" \u00b7 ");
 
 /** @param {ChartOptions} options @param {Columns} data */
 const summary = ({ title, x, y, series }, [xs, ...columns]) => {
-  if (!xs.length) return `${title}: no data yet`;
+  if (!xs.length) return t("{chart}: no data yet", { chart: title });
   const ranges = columns.map((column, index) => {
     const [low, high] = [lowest(column), highest(column)];
-    return `${series[index].label} from ${number(low)} to ${number(high)} ${y.unit ?? ""}`;
+    return t("{label} from {low} to {high} {unit}", { label: series[index].label, low: number(low), high: number(high), unit: y.unit ?? "" });
   });
-  const span = `${number(xs[0])} to ${number(xs.at(-1))} ${x.unit ?? ""}`;
-  return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
+  const span = t("{low} to {high} {unit}", { low: number(xs[0]), high: number(xs.at(-1)), unit: x.unit ?? "" });
+  return t("{chart}, over {axis} from {range}: {curves}", { chart: title, axis: x.label, range: span, curves: ranges.join("; ") });
 };

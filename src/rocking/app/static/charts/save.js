@@ -3,18 +3,22 @@
 import { saveBlob } from "/app/api.js";
 import { el, set, svg } from "/app/dom.js";
 import { say } from "/app/say.js";
-import { sayAll, words } from "/app/words.js";
+import { t } from "/app/words.js";
 import { wrapped } from "/charts/letters.js";
 import { colour, inLight } from "/charts/style.js";
 
 const LARGER = 2; // dots of a PNG for one of the page
 const [MARGIN, LEAST, ROW] = [14, 360, 17];
 const FONT = "system-ui, sans-serif";
+/** @type {{ [what: string]: string }} */
+const SAVE = { chart: "Save the chart {title}", picture: "Save the picture {title}" };
+/** @type {{ [what: string]: string }} */
+const OF = { chart: "{kind} of the chart {title}", picture: "{kind} of the picture {title}" };
 
 /** @typedef {{ node: SVGSVGElement, title?: string, about?: string, alt?: string | null, note?: string }} Still */
 
 /** Save a file under the title of its figure. @param {Blob} file @param {string} title @param {string} kind */
-export const saveFile = (file, title, kind) => saveBlob(file, `${slug(title)}.${kind}`);
+export const saveFile = (file, title, kind) => saveBlob(file, `${slug(t(title))}.${kind}`);
 
 /** Save a picture as SVG. @param {Element} picture @param {string} title */
 export const saveSvg = (picture, title) => saveFile(blobOf(picture), title, "svg");
@@ -53,13 +57,13 @@ export const chartFiles = (title, draw, what = "chart", csv = null) => {
 /** A menu of the kinds in which a figure is saved. @param {string} title @param {string} what @param {[string, () => unknown][]} kinds */
 export const menuOf = (title, what, kinds) => {
   const items = kinds.map(([kind, save]) => el("button", {
-    type: "button", class: "button quiet", "aria-label": `${kind} of the ${what} ${title}`,
+    type: "button", class: "button quiet", "aria-label": t(OF[what], { kind, title }),
     onclick: () => {
       leave();
       Promise.resolve().then(save).catch((error) => say(error.message, "error"));
     },
   }, kind));
-  const head = el("summary", { class: "button quiet", "aria-label": `Save the ${what} ${title}` }, "Save");
+  const head = el("summary", { class: "button quiet", "aria-label": t(SAVE[what], { title }) }, "Save");
   const menu = el("details", { class: "chart-files" }, head, el("div", {}, items));
   const leave = () => { // and the keyboard stays at the menu
     menu.open = false;
@@ -80,13 +84,13 @@ const sheetOf = (name, { node, title = name, about: more = "", alt, note = "" },
   const wide = Math.ceil(Math.max(LEAST, width)) + 2 * MARGIN;
   /** @param {string} kind */
   const around = (kind) => menu.closest(`[data-${kind}]`)?.getAttribute(`data-${kind}`) ?? "";
-  const parts = [around("own").replace(/[\p{Cc}\ufffe\uffff]/gu, " "), ...around("about").split("\n").map(words), words(more)];
+  const parts = [around("own").replace(/[\p{Cc}\ufffe\uffff]/gu, " "), ...around("about").split("\n").map((line) => t(line)), t(more)];
   const about = parts.filter(Boolean).join(" \u00b7 ");
   const soft = { "font-size": 12, fill: colour("--ink-soft"), translate: "no" };
   const head = [
-    ...linesOf(words(title), wide, { "font-size": 14, "font-weight": 600, fill: colour("--ink") }), ...linesOf(about, wide, soft),
+    ...linesOf(t(title), wide, { "font-size": 14, "font-weight": 600, fill: colour("--ink") }), ...linesOf(about, wide, soft),
   ];
-  const foot = linesOf(words(note), wide, soft);
+  const foot = linesOf(t(note), wide, soft);
   let y = MARGIN - 2;
   for (const line of head) line.setAttribute("y", String((y += ROW)));
   set(node, { x: MARGIN, y: (y += MARGIN), overflow: "visible" });
@@ -104,10 +108,9 @@ const linesOf = (text, wide, look) =>
 
 /** @param {Element} picture */
 const blobOf = (picture) => {
-  sayAll(picture);
   const text = new XMLSerializer().serializeToString(picture);
   return new Blob(['<?xml version="1.0" encoding="utf-8"?>\n', text], { type: "image/svg+xml" });
 };
 
 /** @param {string} title */
-const slug = (title) => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "chart";
+const slug = (title) => title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "chart";

@@ -1,7 +1,7 @@
 /** The page's colours for canvases, and the look of the axes. */
 
 import { number, pretty } from "/app/format.js";
-import { words } from "/app/words.js";
+import { t } from "/app/words.js";
 
 const resolved = new Map();
 
@@ -50,7 +50,7 @@ export const axes = (x, y) => [
 
 /** @param {ChartAxis} axis */
 const look = ({ label, unit, log }) => ({
-  label: unit && unit !== "-" ? `${words(label)} [${pretty(unit)}]` : words(label),
+  label: unit && unit !== "-" ? `${t(label)} [${pretty(unit)}]` : t(label),
   labelSize: 18,
   labelFont: "12px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",

@@ -6,6 +6,7 @@ import { number, quantity } from "/app/format.js";
 import { pointsOf, regionPaths } from "/drawing/outline.js";
 import { arc, centreMark, footMark, groundLine, words } from "/drawing/symbols.js";
 import { boxOf, roundStep, viewport } from "/drawing/viewport.js";
+import { listed, t } from "/app/words.js";
 
 /** Draw a body from its facts; `plain` leaves out the words.
  * @param {Drawn} body @param {{ width?: number, height?: number, plain?: boolean }} [how] */
@@ -93,7 +94,7 @@ const inWords = (body) => {
   const { left, right } = body.sides;
   const [x, y] = body.centre;
   const [leftAngle, rightAngle] = [left, right].map((side) => degrees(side.slenderness_angle));
-  const feet = body.foot_positions.map((each) => number(each)).join(" and ");
-  return `Body to scale: centre of mass at x ${number(x)} m, y ${number(y)} m, feet at ${feet} m, `
-    + `slenderness angle ${leftAngle} to the left and ${rightAngle} to the right.`;
+  const feet = listed(body.foot_positions.map((each) => number(each)));
+  return t("Body to scale: centre of mass at x {x} m, y {y} m, feet at {feet} m, slenderness angle {left} to the left and {right} to the right.",
+    { x: number(x), y: number(y), feet, left: leftAngle, right: rightAngle });
 };

@@ -3,6 +3,7 @@
 import { svg } from "/app/dom.js";
 import { percent } from "/app/format.js";
 import { STAGE_WORDS } from "/drawing/stages-picture.js";
+import { t } from "/app/words.js";
 
 const ROW = 52;
 
@@ -13,7 +14,7 @@ export const ledgerPicture = (shares, { width }) => {
   const full = width - 2;
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "data-testid": "ledger",
-    "aria-label": `Kinetic energy: ${stages.map(([name, share]) => `${name} ${percent(share)}`).join(", ")}`,
+    "aria-label": t("Kinetic energy: {shares}", { shares: stages.map(([name, share]) => `${t(name)} ${percent(share)}`).join(", ") }),
   },
     hatching(),
     stages.map(

@@ -6,6 +6,7 @@ import { number } from "/app/format.js";
 import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis, leftAxis } from "/drawing/axis.js";
 import { marker } from "/drawing/markers.js";
+import { t } from "/app/words.js";
 
 /** Draw {measured: [{slenderness_ratio, coefficient, coefficient_low, coefficient_high, group}], curves, rows, slenderness}.
  * @param {{ measured: Server.MeasuredPoint[], curves: Server.ModelCurve[], rows: { model: string, value: number }[], slenderness: number }} facts @param {{ width: number, height?: number }} size */
@@ -18,8 +19,8 @@ export const measuredPicture = ({ measured, curves, rows, slenderness }, { width
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
     "data-testid": "measured-picture",
-    "aria-label": `${measured.length} published measurements of the coefficient of restitution `
-      + `over slenderness, and this body at h/b ${number(slenderness)} under ${rows.length} models.`,
+    "aria-label": t("{count} published measurements of the coefficient of restitution over slenderness, and this body at h/b {slenderness} under {models} models.",
+      { count: measured.length, slenderness: number(slenderness), models: rows.length }),
   },
     bottomAxis(x, { ...frame, label: "slenderness ratio h/b" }),
     leftAxis(y, { ...frame, label: "coefficient of restitution r" }),
@@ -54,5 +55,5 @@ const point = (each, x, y) => {
       "path", { class: "marker-bar", d: `M${px} ${y.at(each.coefficient_low)}V${y.at(Math.min(each.coefficient_high, y.high))}` },
     );
   return svg("g", {}, bar, marker(shape, px, py),
-    svg("title", {}, `${words}: h/b ${number(each.slenderness_ratio)}, r ${number(each.coefficient)}`));
+    svg("title", {}, `${t(words)}: h/b ${number(each.slenderness_ratio)}, r ${number(each.coefficient)}`));
 };

@@ -4,6 +4,7 @@ import { svg } from "/app/dom.js";
 import { number } from "/app/format.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis } from "/drawing/axis.js";
+import { t } from "/app/words.js";
 
 /** @typedef {{ model: string, value: number, low?: number, high?: number }} Row
  * @typedef {{ top: number, bottom: number, left: number, width: number, rowsEnd: number }} Frame
@@ -26,7 +27,7 @@ export const rowPicture = (
   const frame = { top: 8, bottom, left, width, rowsEnd: 12 + rows.length * each };
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "data-testid": testid,
-    "aria-label": `${title}: ${rows.map((row) => `${modelWords(row.model)} ${inWords(row)}`).join("; ")}`,
+    "aria-label": `${t(title)}: ${rows.map((row) => `${modelWords(row.model)} ${inWords(row)}`).join("; ")}`,
   },
     bottomAxis(axis, { top: frame.top, bottom, label }),
     extras?.(axis, frame),
@@ -63,4 +64,4 @@ const oneRow = ({ model, value, low, high }, axis, { narrow, width, left, y, dig
 
 /** @param {Row} row */
 const inWords = ({ value, low, high }) =>
-  low === undefined ? number(value) : `${number(value)}, 95 % interval ${number(low)} to ${number(high)}`;
+  low === undefined ? number(value) : t("{value}, 95 % interval {low} to {high}", { value: number(value), low: number(low), high: number(high) });

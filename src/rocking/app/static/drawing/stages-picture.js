@@ -6,6 +6,7 @@ import { groundOf } from "/drawing/body-picture.js";
 import { pointsOf, regionPaths } from "/drawing/outline.js";
 import { arrow, footMark, groundLine } from "/drawing/symbols.js";
 import { boxOf, viewport } from "/drawing/viewport.js";
+import { t } from "/app/words.js";
 
 /** @typedef {{ name: string, share: number, velocities: Point[] }} StageField */
 
@@ -47,7 +48,7 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
-      "aria-label": `${title}: ${words}; ${percent(share)} of the kinetic energy is there.`,
+      "aria-label": t("{stage}: {description}; {share} of the kinetic energy is there.", { stage: title, description: words, share: percent(share) }),
     },
       groundLine(4, width - 4, floor),
       regionPaths(body.outline, view, { class: "region faint" }),

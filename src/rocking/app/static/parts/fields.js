@@ -5,6 +5,7 @@ import { createContext, html, useContext, useLayoutEffect, useRef, useState } fr
 import { freshId } from "/app/dom.js";
 import { faults } from "/app/faults.js";
 import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
+import { language, t } from "/app/words.js";
 
 /** @param {string} stem */
 const useId = (stem) => useRef(freshId(stem)).current;
@@ -106,9 +107,9 @@ export const Field = ({
     <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
-/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen.
- * @param {FieldProps<any> & { chosen?: unknown, options: [any, string][] }} props */
-export const Choice = ({ label, name, value, on, chosen, options, help, error: told = "", hidden, ...more }) => {
+/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen; own: users name the options.
+ * @param {FieldProps<any> & { chosen?: unknown, own?: boolean, options: [any, string][] }} props */
+export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: told = "", hidden, ...more }) => {
   const id = useId("choice");
   const [refused, changed] = useRefused(name);
   const error = told || refused;
@@ -122,7 +123,7 @@ export const Choice = ({ label, name, value, on, chosen, options, help, error: t
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
     <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
-      ${options.map(([key, words]) => html`<option key=${key} value=${String(key)}>${words}</option>`)}</select><//>`;
+      ${options.map(([key, words]) => html`<option key=${key} value=${String(key)} translate=${own ? "no" : null}>${words}</option>`)}</select><//>`;
 };
 
 /** A choice of one from a few [value, words], all in sight.
@@ -175,8 +176,11 @@ export const KeyField = ({ name, facts, ...more }) => {
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 
-/** Words as a sentence; a file that it begins with is called as it is. @param {string} words */
-export const sentence = (words) => `${/^\S*\.\w/.test(words) ? words[0] : words.slice(0, 1).toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
+/** A text with a full stop at its end, in the language of the page. @param {string} text */
+export const stopped = (text) => `${t(text)}${/[.!?\u3002\uff1f]$/.test(t(text)) ? "" : language === "zh" ? "\u3002" : "."}`;
+
+/** A text as a sentence; a file that it begins with is called as it is. @param {string} text */
+export const sentence = (text) => (/^\S*\.\w/.test(text) ? stopped(text) : stopped(text).slice(0, 1).toUpperCase() + stopped(text).slice(1));
 
 /** The first field of a form that someone sees and that is wrong. @param {Element} form */
 export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);
@@ -216,19 +220,19 @@ const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
   if (given === null) return { fault: "This is not a number." };
   if (moves && given === 0) return { fault: "Not 0: nothing would move." };
   const wrong = /** @type {[boolean, string, number | undefined][]} */ ([
-    [above !== undefined && given <= above, "More than", above],
-    [min !== undefined && min !== null && given < min, "At least", min],
-    [max !== undefined && max !== null && given > max, "At most", max],
+    [above !== undefined && given <= above, "More than {limit}.", above],
+    [min !== undefined && min !== null && given < min, "At least {limit}.", min],
+    [max !== undefined && max !== null && given > max, "At most {limit}.", max],
   ]).find(([fails]) => fails);
-  if (whole && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: "At most 9007199254740991." };
-  if (wrong) return { fault: `${wrong[1]} ${quantity(wrong[2], unit)}.` };
+  if (whole && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
+  if (wrong) return { fault: t(wrong[1], { limit: quantity(wrong[2], unit) }) };
   return whole && !Number.isInteger(given) ? { fault: "A whole number is needed." } : { given };
 };
 
 // "1,000" is one to us and a thousand to others: say how it was read.
 /** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
-  && `Read as ${number(parseNumber(text), 6)}: the comma is the decimal sign. For thousands leave it out.`;
+  && t("Read as {number}: the comma is the decimal sign. For thousands leave it out.", { number: number(parseNumber(text), 6) });
 
 /** @param {string} text @param {number} turns @param {{ min?: number, max?: number, step?: number }} limits */
 const stepped = (text, turns, { min, max, step }) => {

@@ -5,6 +5,7 @@ import { copyTable } from "/app/copy.js";
 import { freshId } from "/app/dom.js";
 import { number, pretty } from "/app/format.js";
 import { Button } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 const LONG = 20;
 const SENTENCE = 40; // letters, from which a cell has room for several words
@@ -18,8 +19,8 @@ export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows
   return html`
     <div class="table-block">
       <div class="table-head"><p id=${id} class="caption">${caption}</p><div class="toolbar">
-        <${Button} kind="quiet" aria-label=${caption && `Copy table: ${caption}`} onClick=${() => copyTable(heads, copied())}>Copy table<//>
-        ${csv && html`<${Button} kind="quiet" aria-label=${`Save ${caption || "the table"} as CSV`} onClick=${csv}>CSV<//>`}${actions}</div></div>
+        <${Button} kind="quiet" aria-label=${caption && t("Copy table: {title}", { title: caption })} onClick=${() => copyTable(heads, copied())}>Copy table<//>
+        ${csv && html`<${Button} kind="quiet" aria-label=${t("Save {title} as CSV", { title: caption || "the table" })} onClick=${csv}>CSV<//>`}${actions}</div></div>
       <div class=${`table-scroll ${rows.length > LONG ? "long" : ""}`} tabindex="0" role="region" aria-labelledby=${id}>
         <table aria-labelledby=${id} data-testid=${testid}>
           <thead><tr>${heads.map(({ label, unit, numeric }, at) => html`<th key=${at} scope="col" class=${numeric === false ? "text" : ""}>

@@ -1,19 +1,20 @@
 /** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
 
 import { html, signal, useRef } from "/parts/preact.js";
-import { words } from "/app/words.js";
+import { t } from "/app/words.js";
 import { Button } from "/parts/fields.js";
+import { PARTS } from "/project/saving.js";
 
 const FEW = 12;
 
 /** @param {string} time */
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 
-// "body, motion changed", each part in its word.
-/** @param {string} text */
-const changed = (text) => {
-  const parts = /^(.+) changed$/.exec(text)?.[1].split(", ");
-  return parts ? `${parts.map(words).join(", ")} ${words("changed")}` : text;
+// What a state was made by: the parts that were changed, or words.
+/** @param {string} words */
+const changed = (words) => {
+  const parts = words.split(", ").map((key) => PARTS[key]);
+  return parts.includes(undefined) ? t(words) : t("{parts} changed", { parts: parts.map((part) => t(String(part))).join(", ") });
 };
 
 /** The dialog; `handle.current.openIt()` opens it.
@@ -70,7 +71,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
   /** @param {Server.ProjectFacts} one */
   const remove = (one) => act(async () => {
     await app.call(`projects/${one.id}`, { method: "DELETE" });
-    app.say(`${one.name} was deleted; it can be brought back below.`);
+    app.say(t("{name} was deleted; it can be brought back below.", { name: one.name }));
     if (one.id !== projects.here.value.id) return;
     const next = lists.value.projects.find((each) => each.id !== one.id);
     await (next ? projects.open(next.id) : projects.begin("New project"));
@@ -94,7 +95,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
                 ${one.id === here.id
                   ? html`<span class="project-open">open</span>`
                   : html`<${Act} text="Open" one=${one} go=${act(() => projects.open(one.id), true)} />`}
-                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, `${one.name} (copy)`))} />
+                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, t("{name} (copy)", { name: one.name }), one.name))} />
                 <${Act} text="Take away" one=${one} go=${take(one)} />
                 <${Act} text="Delete" one=${one} go=${remove(one)} />
               </div>
@@ -106,20 +107,20 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <input id="project-file" type="file" accept=".zip" onChange=${bring} aria-describedby="project-file-about" />
           <p id="project-file-about" class="field-help">Its studies are computed again here.</p>
         </div>
-        <h2>What ${here.name} was</h2>
+        <h2>${t("What {name} was", { name: here.name })}</h2>
         <ul class="project-list states" aria-label="History">
           ${states.map((one) => html`
             <li key=${one.number}>
               <p><span>${changed(one.words)}</span><span class="quiet">${when(one.time)}</span></p>
               ${one.here
                 ? html`<span class="project-open">now</span>`
-                : html`<${Button} aria-label=${`Go back to state ${one.number}: ${one.words}`}
+                : html`<${Button} aria-label=${t("Go back to state {number}: {change}", { number: one.number, change: changed(one.words) })}
                     onClick=${act(() => projects.restore(one.number))}>Go back to it<//>`}
             </li>`)}
         </ul>
         ${lists.value.states.length > FEW && !all.value && html`
           <${Button} onClick=${() => (all.value = true)}>
-            All ${lists.value.states.length} states
+            ${t("All {count} states", { count: lists.value.states.length })}
           <//>`}
         ${lists.value.deleted.length > 0 && html`
           <h2>Deleted</h2>
@@ -137,7 +138,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
 
 /** @param {{ text: string, one: Server.ProjectFacts, go: () => unknown }} props */
 const Act = ({ text, one, go }) => html`
-  <${Button} aria-label=${`${text}: ${one.name}`} onClick=${go}>${text}<//>`;
+  <${Button} aria-label=${`${t(text)}: ${one.name}`} onClick=${go}>${text}<//>`;
 
 /** @param {{ for: string, label: string, value: string, text: string, onSubmit: (event: any) => unknown }} props */
 const NameForm = ({ for: what, label, value, text, onSubmit }) => html`

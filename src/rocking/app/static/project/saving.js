@@ -3,13 +3,14 @@
 import { signal } from "/parts/preact.js";
 import { hush } from "/app/say.js";
 import { formsOf, inputsOf } from "/app/shape.js";
+import { t } from "/app/words.js";
 
 const OPEN = "rocking.project";
 const PAUSE = 400; // after the last change, before it is saved [ms]
 /** @typedef {{ inputs: Server.Inputs }} Own */
 
-/** @type {{ [key: string]: string | undefined }} */
-const WORDS = {
+/** What a project consists of, in words. @type {{ [key: string]: string | undefined }} */
+export const PARTS = {
   body: "body", motion: "motion", restitution: "restitution", response: "start", settings: "gravity", decide: "Decide",
   inventory: "Inventory", measure: "Measure", records: "Records", space: "In space", bed: "contact bed",
 };
@@ -84,7 +85,7 @@ export const createProjects = (app, first) => {
     clearTimeout(timer);
     if (!changed.size || clash.value) return;
     const document = own();
-    const words = `${[...changed].map((key) => WORDS[key] ?? key).join(", ")} changed`;
+    const words = [...changed].join(", ");
     const mine = [...changed];
     changed.clear();
     saving.value = "saving";
@@ -102,7 +103,7 @@ export const createProjects = (app, first) => {
       refused = error.status >= 400 && error.status < 500 && ![401, 403, 408, 409, 429].includes(error.status);
       if (error.kind !== "offline") sent.pop();
       if (error.kind === "conflict") await differ(document);
-      else if (!["offline", "forbidden"].includes(error.kind)) app.say(complaint = `Not saved: ${error.message}`, "error");
+      else if (!["offline", "forbidden"].includes(error.kind)) app.say(complaint = t("Not saved: {reason}", { reason: error.message }), "error");
     }
   });
   /** @param {Own} mine */
@@ -229,8 +230,8 @@ export const createProjects = (app, first) => {
     /** Begin another project: with the usual start, or with what is on the screen.
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
-    /** @param {string} id @param {string} name */
-    copy: (id, name) => change(() => app.call("projects", { json: { name, copy_of: id } })),
+    /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
+    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("a copy of {name}", { name: of }) } })),
     /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
     /** @param {string} name */
@@ -256,11 +257,11 @@ export const createProjects = (app, first) => {
       const { theirs } = clash.value;
       try {
         const facts = keepMine
-          ? await app.call("projects", { json: { name: `${theirs.name} (mine)`, document: own() } }) : theirs;
+          ? await app.call("projects", { json: { name: t("{name} (mine)", { name: theirs.name }), document: own() } }) : theirs;
         clash.value = null;
         show(known(facts));
       } catch (error) {
-        app.say(`Not saved: ${error.message}`, "error");
+        app.say(t("Not saved: {reason}", { reason: error.message }), "error");
       }
     }),
     /** Open the project of this tab, else the one that was changed last, else a first one.

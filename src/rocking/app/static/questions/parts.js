@@ -6,6 +6,7 @@ import { keyOf, refusalWords } from "/app/refusal.js";
 import { Fetched } from "/charts/pictured.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 /** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them.
  * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
@@ -54,7 +55,7 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
     changed();
     try {
       for (let k = 0; k < chosen.length; k += AT_ONCE) {
-        if (chosen.length > AT_ONCE) sending.value = `Sending ${k + 1} of ${chosen.length}`;
+        if (chosen.length > AT_ONCE) sending.value = t("Sending {number} of {count}", { number: k + 1, count: chosen.length });
         sent = [...sent, ...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file)))];
       }
       const all = adds ? [...(files.value || []), ...sent] : sent;
@@ -73,7 +74,7 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
         ${files.value.map((one) => html`<li key=${one.sha}><span translate=${false}>${one.name}</span>
-          <${Button} kind="quiet" aria-label=${`Leave out ${one.name}`}
+          <${Button} kind="quiet" aria-label=${t("Leave out {name}", { name: one.name })}
             onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out<//></li>`)}
       </ul>`}<//>`;
 };
@@ -123,7 +124,7 @@ const WORDS = {
 /** @param {string} name */
 const wordsOf = (name) => {
   const ending = name.replace(/^.*\./s, "");
-  return name.startsWith("record.") ? `Record (${ending.toUpperCase()})` : WORDS[name] ?? WORDS[ending];
+  return name.startsWith("record.") ? t("Record ({format})", { format: ending.toUpperCase() }) : WORDS[name] ?? WORDS[ending];
 };
 
 /** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
@@ -134,7 +135,8 @@ const Files = ({ questions, question }) => html`
   </div>
   <details><summary>The same on the command line</summary>
     ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} --out ${question.command}</pre>` : html`
-    <p class="field-help">Save it as question.toml, its files beside it${question.command === "motions" && " and the records in a folder records"}:</p>
+    <p class="field-help">${question.command === "motions"
+      ? "Save it as question.toml, its files beside it and the records in a folder records:" : "Save it as question.toml, its files beside it:"}</p>
     <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
@@ -151,10 +153,10 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     <h2 id="earlier-title">Asked before</h2>
     <ul class="project-list" aria-label="Asked before">
       ${questions.all.value.map((one) => html`<li key=${one.id}>
-        <p><strong>${one.name}</strong><span class="quiet">${new Date(one.asked).toLocaleString()}, ${one.state}</span></p>
+        <p><strong>${one.name}</strong><span class="quiet">${new Date(one.asked).toLocaleString()}, ${t(one.state)}</span></p>
         <div class="toolbar">
-          <${Button} aria-label=${`Show ${one.name}`} onClick=${() => questions.open(one.id)}>Show<//>
-          <${Button} aria-label=${`Delete ${one.name}`} onClick=${() => questions.remove(one.id)}>Delete<//>
+          <${Button} aria-label=${t("Show {name}", { name: one.name })} onClick=${() => questions.open(one.id)}>Show<//>
+          <${Button} aria-label=${t("Delete {name}", { name: one.name })} onClick=${() => questions.remove(one.id)}>Delete<//>
         </div></li>`)}
     </ul>
   </section>`;

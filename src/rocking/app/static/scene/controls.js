@@ -1,5 +1,6 @@
 /** Play, speed, scrubbing and what the ground does: the controls under the stage. */
 import { el, svg } from "/app/dom.js";
+import { t } from "/app/words.js";
 
 const SPEEDS = [
   ["2", "2\u00d7"],
@@ -93,14 +94,14 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const tell = (now, end, rotation, share) => {
     range.value = String(end > 0 ? (1000 * now) / end : 0);
     time.textContent = `${now.toFixed(3)} s`;
-    place.textContent = `\u03b8 = ${fixed(rotation * DEGREES, 2)}\u00b0, ${fixed(share, 2)} of \u03b1`;
+    place.textContent = t("\u03b8 = {rotation}\u00b0, {share} of \u03b1", { rotation: fixed(rotation * DEGREES, 2), share: fixed(share, 2) });
     const degrees = fixed(rotation * DEGREES, 1);
-    range.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds, ${degrees} degrees`);
+    range.setAttribute("aria-valuetext", t("{time} seconds, {angle} degrees", { time: now.toFixed(2), angle: degrees }));
   };
   /** @param {string} mode @param {number} times @param {boolean} rides */
   const tellGround = (mode, times, rides) => {
     const far = "the ground moves far: the picture rides with it";
-    const magnified = times === 1 ? "" : `ground and body shift ${times} times as far as in truth`;
+    const magnified = times === 1 ? "" : t("ground and body shift {factor} times as far as in truth", { factor: times });
     const words = mode !== "ride" && rides ? far : magnified;
     if (factor.textContent !== words) factor.textContent = words;
   };

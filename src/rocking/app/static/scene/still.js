@@ -4,6 +4,7 @@ import { svg } from "/app/dom.js";
 import { legendOf, under } from "/charts/curves.js";
 import { SvgPen } from "/charts/pen.js";
 import { readColours } from "/scene/theme.js";
+import { t } from "/app/words.js";
 
 /** The instant that a stage shows; `names` are the models in words.
  * @param {import("/scene/stage.js").Stage} stage @param {number} now @param {string[]} names */
@@ -14,5 +15,5 @@ export const sceneStill = (stage, now, names) => {
   stage.paint(/** @type {any} */ (pen), camera, readColours(stage.canvas), play, now);
   const legend = legendOf(play.actors.map(({ colour, dash }, k) => ({ label: names[k], colour, dash })), camera.width);
   const drawing = svg("svg", { width: camera.width, height: camera.height }, pen.node);
-  return { node: under(legend, camera.width, camera.height, drawing), title: `The body at ${now.toFixed(3)} s`, alt: play.words };
+  return { node: under(legend, camera.width, camera.height, drawing), title: t("The body at {time} s", { time: now.toFixed(3) }), alt: play.words };
 };

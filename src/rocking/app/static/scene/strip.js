@@ -1,6 +1,6 @@
 /** The strip under the stage: every rotation over alpha, drawn once, with a line at the present instant. */
 import { highest } from "/app/extremes.js";
-import { words } from "/app/words.js";
+import { t } from "/app/words.js";
 import { readColours } from "/scene/theme.js";
 
 const LEFT = 40;
@@ -115,7 +115,7 @@ export class Strip {
     pen.fillText("0 s", LEFT, this.height - 5);
     pen.textAlign = "center";
     const axis = this.width > 420 ? "rotation over slenderness angle, \u03b8/\u03b1" : "\u03b8/\u03b1";
-    pen.fillText(words(axis), 0.5 * (LEFT + this.width), this.height - 5);
+    pen.fillText(t(axis), 0.5 * (LEFT + this.width), this.height - 5);
   }
 
   /** @param {CanvasRenderingContext2D} pen @param {Actor} actor @param {number} thick */

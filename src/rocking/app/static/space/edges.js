@@ -4,13 +4,14 @@ import { html } from "/parts/preact.js";
 import { number } from "/app/format.js";
 import { Rows } from "/parts/table.js";
 import { Scene } from "/space/scene.js";
+import { t } from "/app/words.js";
 
 /** The edges of a question's body. @param {{ question: Server.WholeQuestion, answer: any, children: any }} props */
 export const Edges = ({ question, answer, children }) => {
   const round = answer.body.base.kind !== "polygon";
   const models = Object.keys(answer.edges[0].coefficients);
   const doubts = [...new Set(answer.edges.flatMap((/** @type {any} */ { coefficients }) => Object.entries(coefficients)
-    .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${name}: ${words}`))))];
+    .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${t(name)}: ${t(words)}`))))];
   return html`
     <p class="verdict" data-testid="verdict">What is left of its speed when it falls back from an edge of its base, by model.</p>
     <${Scene} question=${question} title="The edges of its base" label="The body with the edges of its base numbered" onSpace=${() => {}}
@@ -19,7 +20,7 @@ export const Edges = ({ question, answer, children }) => {
         stage.draw();
       }}
       words=${round ? "Its base is round: it is tipped in four directions."
-        : `Its base has ${answer.edges.length + answer.edges_left_out} edges it may rock about; edge 0 runs from corner 0 to corner 1.`}
+        : t("Its base has {count} edges it may rock about; edge 0 runs from corner 0 to corner 1.", { count: answer.edges.length + answer.edges_left_out })}
       legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}
     <${Rows} caption="Edges and corners" head=${[round ? "from" : "from edge", "onto", "slenderness [\u00b0]", ...models]}

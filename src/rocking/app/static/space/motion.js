@@ -8,6 +8,7 @@ import { Clock } from "/scene/clock.js";
 import { noteFrame, resetFrames } from "/scene/frames.js";
 import { Played } from "/space/played.js";
 import { Scene } from "/space/scene.js";
+import { t } from "/app/words.js";
 
 const WORTH = 0.01; // of the largest loss
 const TOLD = 100; // between two looks at words and curve while it is played [ms]
@@ -96,7 +97,7 @@ export const MotionScene = ({ question, answer }) => {
   }, []);
   return html`
     <${Scene} question=${question} words=${words.value} legend=${LEGEND} title="The body as it moves" onStage=${standing} onSpace=${toggle}
-      label=${`The body as it moves: ${answer.summary}`} />
+      label=${t("The body as it moves: {summary}", { summary: answer.summary })} />
     <div class="scene-row" role="group" aria-label="Play">
       <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>
         ${running.value ? "Pause" : "Play"}</button>

@@ -1,3 +1,4 @@
+import { t } from "/app/words.js";
 /** The motion of a body in space: where it is at an instant, what touches then, and that in words. */
 
 const DEGREES = 180 / Math.PI;
@@ -58,13 +59,19 @@ export class Played {
   /** What is seen at an instant that was shown. @param {number} instant */
   words(instant) {
     const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
-    const points = `on ${vertices.length} point${vertices.length === 1 ? "" : "s"}`;
-    const slides = sliding.length ? `, ${sliding.length === vertices.length ? "all" : sliding.length} sliding` : "";
-    const touches = vertices.length ? `${points}${slides}` : "in the air";
-    const fallen = instant >= this.fell ? "; it has overturned" : "";
-    return `At ${instant.toFixed(2)} s: tilted ${(this.tilt * DEGREES).toFixed(2)}\u00b0, ${touches}${fallen}.`;
+    const facts = { time: instant.toFixed(2), tilt: (this.tilt * DEGREES).toFixed(2), contact: contactWords(vertices.length, sliding.length) };
+    return instant >= this.fell ? t("At {time} s: tilted {tilt}\u00b0, {contact}; it has overturned.", facts)
+      : t("At {time} s: tilted {tilt}\u00b0, {contact}.", facts);
   }
 }
+
+/** @param {number} count @param {number} sliding */
+const contactWords = (count, sliding) => {
+  if (!count) return t("in the air");
+  if (!sliding) return t(["on {count} point", "on {count} points"], { count });
+  return sliding === count ? t(["on {count} point, all sliding", "on {count} points, all sliding"], { count })
+    : t("on {count} points, {sliding} sliding", { count, sliding });
+};
 
 /** @param {number} one @param {number} other @param {number} share */
 const between = (one, other, share) => one + (other - one) * share;

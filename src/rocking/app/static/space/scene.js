@@ -10,6 +10,7 @@ import { Made } from "/parts/made.js";
 import { readGlb } from "/space/glb.js";
 import { Stage } from "/space/stage.js";
 import { markKey, riseKey } from "/space/textures.js";
+import { t } from "/app/words.js";
 
 const LIBRARY = "/vendor/three/three.module.min.js"; // for this view alone, when there is something to show
 const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
@@ -45,7 +46,7 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
       onStage(made);
       canvas.current.dataset.drawn = "true";
     };
-    build().catch((error) => (trouble.value = `No picture: ${error.message}. All that it shows stands in words below.`));
+    build().catch((error) => (trouble.value = t("No picture: {reason}. All that it shows stands in words below.", { reason: error.message })));
     return () => {
       gone = true;
       watcher.disconnect();

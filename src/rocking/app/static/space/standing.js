@@ -7,6 +7,7 @@ import { Rows } from "/parts/table.js";
 import { Drawing } from "/questions/parts.js";
 import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
+import { t } from "/app/words.js";
 
 const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a question about a file that has no axes of its own
 /** @typedef {SpaceStage & { setIn: (pose: SpacePose) => void, settleIn: (pose: SpacePose) => void }} Setting */
@@ -20,6 +21,9 @@ const COLOURS = [["rise", "how high the centre is where that point is lowest"], 
 const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
 /** @param {number | null | undefined} value */
 const millimetres = (value) => (value === null || value === undefined ? "\u2013" : number(1000 * value, 3));
+
+const ROLLS = "It rolls all the way round, its axis {tilt}\u00b0 from the vertical, its centre {height} mm high.";
+const BALANCES = "It can be balanced all the way round, its axis {tilt}\u00b0 from the vertical, its centre {height} mm high.";
 
 /** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another.
  * @param {{ question: Server.WholeQuestion, answer: any, onPose: (pose: number, up: number[]) => unknown, children: any }} props */
@@ -49,35 +53,37 @@ export const Standing = ({ question, answer, onPose, children }) => {
   const here = answer.stable[shown];
   const most = answer.stable.at(-1).energy;
   const low = answer.stable[0].centre_height;
-  const words = `Pose ${shown}: its centre ${millimetres(here.centre_height)} mm over the ground, ${joules(here.energy, most)} J above the lowest pose; `
-    + `the plumb line ${millimetres(here.nearest_edge)} mm inside the nearest edge of the support polygon. `
-    + (here.barrier === null || !Number.isFinite(here.barrier) ? "It knows no other pose."
-      : `To leave it the centre must rise ${millimetres(here.barrier)} mm.`);
-  const ways = answer.stable.length === 1 ? "one way" : `${answer.stable.length} ways`;
+  const stands = t("Pose {pose}: its centre {height} mm over the ground, {energy} J above the lowest pose; the plumb line {edge} mm inside the nearest edge of the support polygon.", {
+    pose: shown, height: millimetres(here.centre_height), energy: joules(here.energy, most), edge: millimetres(here.nearest_edge),
+  });
+  const leaves = here.barrier === null || !Number.isFinite(here.barrier) ? t("It knows no other pose.")
+    : t("To leave it the centre must rise {rise} mm.", { rise: millimetres(here.barrier) });
   return html`
-    <p class="verdict" data-testid="verdict">It can stand in ${ways}; as it is set down it stands in pose ${answer.stands_in}.</p>
-    <${Scene} question=${question} words=${words} onStage=${built} title="Its ways to stand" label="The body on its support polygon, with its equilibria"
+    <p class="verdict" data-testid="verdict">${t(
+      ["It can stand in one way; as it is set down it stands in pose {pose}.", "It can stand in {count} ways; as it is set down it stands in pose {pose}."],
+      { count: answer.stable.length, pose: answer.stands_in })}</p>
+    <${Scene} question=${question} words=${`${stands} ${leaves}`} onStage=${built} title="Its ways to stand" label="The body on its support polygon, with its equilibria"
       onSpace=${() => {}} legend=${[
-        ["stable", `${answer.stable.length} stable: it stands on that side`], ["saddle", `${answer.saddles} saddles: balanced on an edge`],
-        ["summit", `${answer.summits} summits: balanced on a corner`], ["plumb", "centre of mass and plumb line"],
-        ["rise", `dark: the centre is low (from ${millimetres(low)} mm) when that point is below; bright: high`]]} />
+        ["stable", t("{number} stable: it stands on that side", { number: answer.stable.length })], ["saddle", t("{number} saddles: balanced on an edge", { number: answer.saddles })],
+        ["summit", t("{number} summits: balanced on a corner", { number: answer.summits })], ["plumb", "centre of mass and plumb line"],
+        ["rise", t("dark: the centre is low (from {height} mm) when that point is below; bright: high", { height: millimetres(low) })]]} />
     <div class="space-choices">
       <${Choice} label="Set down in" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
         options=${poses.filter((each, k) => k < FEW || each.pose === shown).map((each) => [String(each.pose),
-          `pose ${each.pose}: ${millimetres(each.barrier)} mm to leave it`])} />
+          t("pose {pose}: {rise} mm to leave it", { pose: each.pose, rise: millimetres(each.barrier) })])} />
       <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
         colours.value = next;
         stage.current?.colourful(next === "rise");
       } }} options=${COLOURS} />
     </div>
-    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt}>It ${each.kind === "stable" ? "rolls" : "can be balanced"} all the way round,
-      its axis ${number((each.tilt * 180) / Math.PI, 3)}\u00b0 from the vertical, its centre ${millimetres(each.centre_height)} mm high.</p>`)}
+    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt}>${t(each.kind === "stable" ? ROLLS : BALANCES,
+      { tilt: number((each.tilt * 180) / Math.PI, 3), height: millimetres(each.centre_height) })}</p>`)}
     ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
-    }}>Go on in pose ${shown}<//></div>`}
+    }}>${t("Go on in pose {pose}", { pose: shown })}<//></div>`}
     ${children}
-    <${Drawing} question=${question} alt=${`Rise of the centre by tilt and azimuth from pose ${answer.stands_in}, and its support polygon`} />
+    <${Drawing} question=${question} alt=${t("Rise of the centre by tilt and azimuth from pose {pose}, and its support polygon", { pose: answer.stands_in })} />
     <h3>What it takes to topple it, by direction</h3>
     <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
       rows=${answer.directions.map((/** @type {any} */ each) => [
@@ -87,8 +93,8 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <${Rows} caption="Poses" head=${["pose", "rise to leave [mm]", "centre [mm]", "energy [J]", "nearest edge [mm]"]}
       rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier), millimetres(each.centre_height),
         joules(each.energy, most), millimetres(each.nearest_edge)])} />
-    ${poses.length > FEW && html`<p class="field-help">And ${poses.length - FEW} more, which a rise of
-      ${millimetres(poses[FEW].barrier)} mm or less leaves.</p>`}
+    ${poses.length > FEW && html`<p class="field-help">${t("And {count} more, which a rise of {rise} mm or less leaves.",
+      { count: poses.length - FEW, rise: millimetres(poses[FEW].barrier) })}</p>`}
     ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 

@@ -7,6 +7,7 @@ import { groundOf } from "/drawing/body-picture.js";
 import { pathOf, regionPaths } from "/drawing/outline.js";
 import { centreMark, footMark, words } from "/drawing/symbols.js";
 import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/viewport.js";
+import { t } from "/app/words.js";
 
 const HEIGHT = 460;
 const NARROWEST = 80; // pixels: what is narrower is about to be hidden or shown
@@ -341,11 +342,11 @@ const vertices = (editor, regions, view) => {
   return model.ringsOf(regions).flatMap(({ region, ring, points }) =>
     points.map(([x, y], vertex) => {
       const key = keyOf({ region, ring, vertex });
-      const where = `${ring < 0 ? `region ${region + 1}` : `hole ${ring + 1} of region ${region + 1}`}`;
+      const where = `${ring < 0 ? t("region {region}", { region: region + 1 }) : t("hole {hole} of region {region}", { hole: ring + 1, region: region + 1 })}`;
       return svg("g", {
         class: `vertex${key === chosen ? " chosen" : ""}`, tabindex: "0", role: "button", "data-place": key,
         transform: `translate(${view.x(x)} ${view.y(y)})`,
-        "aria-label": `Vertex ${vertex + 1} of ${where}: x ${number(x, 7)}, y ${number(y, 7)} ${editor.units()}`,
+        "aria-label": t("Vertex {number} of {place}: x {x}, y {y} {unit}", { number: vertex + 1, place: where, x: number(x, 7), y: number(y, 7), unit: editor.units() }),
       }, svg("circle", { class: "reach", r: 16 }), svg("circle", { class: "dot", r: 5.5 }));
     }));
 };

@@ -5,6 +5,7 @@ import { editable, tidy } from "/app/format.js";
 import { Button, NumberField, Switch } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
 import * as model from "/views/body-editor-model.js";
+import { t } from "/app/words.js";
 
 /** What is done with the whole drawing; `children` are the tools. @param {{ editor: Editor, children?: any }} props */
 export const Tools = ({ editor, children }) => {
@@ -41,14 +42,14 @@ export const Details = ({ editor }) => {
   return html`
     <div class="stack">
       <div class="fields">
-        ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${`Vertex ${axis}`}
+        ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${t("Vertex {axis}", { axis })}
           value=${point[index]} on=${put(index)} />`)}
         <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional aside placeholder=${editable(editor.step())}
           help="Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks." />
         <${Switch} label="Snap to grid" value=${snap} on=${set("snap")} />
       </div>
       <div class="fields" data-testid="densities">${regions.map(({ density }, index) => html`
-        <${NumberField} key=${index} label=${`Density of region ${index + 1}`} unit="kg/m3" above=${0} optional
+        <${NumberField} key=${index} label=${t("Density of region {number}", { number: index + 1 })} unit="kg/m3" above=${0} optional
           help="Empty: 2400 kg/m\u00b3." value=${density} on=${weigh(index)} />`)}</div>
     </div>`;
 };

@@ -6,6 +6,7 @@ import { boxOf } from "/drawing/viewport.js";
 import { Button, Frame, NumberField, Slider, toWrong, wrongIn } from "/parts/fields.js";
 import * as model from "/views/body-editor-model.js";
 import { asHole, asOutline, asRegion } from "/views/body-paste.js";
+import { t } from "/app/words.js";
 
 /** @type {{ [key: string]: number[] | undefined }} */
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -23,7 +24,9 @@ export const createTool = (editor) => {
   const say = (words) => (editor.told.value = words);
   const tell = () => {
     const { points, cursor } = held();
-    say(`${points.length} points set${cursor ? `; the cursor stands at x ${number(cursor[0], 7)}, y ${number(cursor[1], 7)} ${editor.units()}` : ""}.`);
+    const count = points.length;
+    say(cursor ? t("{count} points set; the cursor stands at x {x}, y {y} {unit}.", { count, x: number(cursor[0], 7), y: number(cursor[1], 7), unit: editor.units() })
+      : t("{count} points set.", { count }));
     editor.tell();
   };
   const leave = () => {
@@ -44,7 +47,7 @@ export const createTool = (editor) => {
     const { points } = held();
     if (points.length < 3) return say("An outline needs three points.");
     leave();
-    say(use(editor, points) ?? `${points.length} points added.`);
+    say(use(editor, points) ?? t("{count} points added.", { count: points.length }));
     return editor.board.focus();
   };
   const measured = () => {
@@ -128,7 +131,7 @@ export const EdgePart = ({ editor }) => {
     const made = model.withArc(editor.regions(), place, rise.value, off.value ?? Math.abs(rise.value) / 100, tidy);
     if (!made) return editor.tool.say("That needs more than 1000 chords: let it be further off the arc.");
     editor.change(made.regions);
-    return editor.tool.say(`An arc of ${made.chords} chords, at most ${number(made.error)} ${editor.units()} off.`);
+    return editor.tool.say(t("An arc of {count} chords, at most {length} {unit} off.", { count: made.chords, length: number(made.error), unit: editor.units() }));
   };
   /** @param {number | null} value */
   const rises = (value) => {
@@ -206,7 +209,7 @@ export const PhotoPart = ({ editor }) => {
       scale: photo.scale * factor, x: from[0] + (photo.x - from[0]) * factor, y: from[1] + (photo.y - from[1]) * factor,
     });
     editor.tool.leave();
-    return say(`The picture is ${number(photo.scale * photo.width)} by ${number(photo.scale * photo.height)} ${editor.units()} now.`);
+    return say(t("The picture is {width} by {height} {unit} now.", { width: number(photo.scale * photo.width), height: number(photo.scale * photo.height), unit: editor.units() }));
   };
   const away = () => {
     box.current.querySelector("[type=file]").value = "";

@@ -5,6 +5,7 @@ import { number, quantity } from "/app/format.js";
 import { sameSides } from "/drawing/body-picture.js";
 import { Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
+import { t } from "/app/words.js";
 
 /** The table of facts. @param {{ app: App, facts: Server.DescribedBody }} props */
 export const Facts = ({ app, facts: body }) => {
@@ -47,7 +48,7 @@ const settled = (length, { sides }) =>
 /** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
   ${warnings.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}
-  ${!warnings.length && html`<${Note} kind="good" words=${`It uplifts at ${upliftWords(body)} of ground acceleration.`} />`}
+  ${!warnings.length && html`<${Note} kind="good" words=${t("It uplifts at {acceleration} of ground acceleration.", { acceleration: upliftWords(body) })} />`}
   ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
 
 /** @param {Pick<Server.DescribedBody, "sides" | "gravity">} body */

@@ -4,6 +4,7 @@ import { html, useRef, useSignal } from "/parts/preact.js";
 import { Button, Field, toWrong } from "/parts/fields.js";
 import * as model from "/views/body-editor-model.js";
 import { parsePoints } from "/views/body-points.js";
+import { listed, t } from "/app/words.js";
 
 /** @type {[string, string, (editor: Editor, points: Ring) => string | void][]} */
 const USES = [
@@ -20,7 +21,7 @@ export const PastePart = ({ editor }) => {
     const { points, fault: wrong } = parsePoints(given);
     text.value = given;
     fault.value = wrong;
-    told.value = wrong ? "" : `${points.length} points read, in ${editor.units()}.`;
+    told.value = wrong ? "" : t("{count} points read, in {unit}.", { count: points.length, unit: editor.units() });
     return wrong ? null : points;
   };
   /** @param {(editor: Editor, points: Ring) => string | void} make */
@@ -44,7 +45,7 @@ export const PastePart = ({ editor }) => {
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
   editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
-  const words = `The ${points.length} points are the whole body now.`;
+  const words = t("The {count} points are the whole body now.", { count: points.length });
   return lost ? `${words} ${lost}` : words;
 };
 
@@ -76,12 +77,11 @@ const lostWords = (section, regions) => {
   const holes = regions.flatMap((each) => each.holes ?? []).length;
   const others = regions.length - 1;
   const gone = [
-    holes ? `${holes} hole${holes > 1 ? "s" : ""}` : "",
-    others ? `${others} other region${others > 1 ? "s" : ""}` : "",
-    section.feet ? "the feet" : "",
-    section.ground ? "the height of the ground" : "",
+    holes ? t(["{count} hole", "{count} holes"], { count: holes }) : "",
+    others ? t(["{count} other region", "{count} other regions"], { count: others }) : "",
+    section.feet ? t("the feet") : "",
+    section.ground ? t("the height of the ground") : "",
   ].filter(Boolean);
   if (!gone.length) return "";
-  const list = gone.join(", ").replace(/, ([^,]*)$/, " and $1");
-  return `Gone with the former body: ${list}. Undo brings them back.`;
+  return t("Gone with the former body: {parts}. Undo brings them back.", { parts: listed(gone) });
 };

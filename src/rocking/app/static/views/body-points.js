@@ -1,6 +1,7 @@
 /** Points pasted from a table or a file: two columns, any usual separator, decimal commas too. */
 
 import { parseNumber } from "/app/format.js";
+import { t } from "/app/words.js";
 
 /** Read points from text: {points, fault}. A first line of headings is passed over.
  * @param {string} text @returns {{ points: Ring, fault: string }} */
@@ -15,12 +16,12 @@ export const parsePoints = (text) => {
     const pair = pairOf(line);
     if (pair) points.push(pair);
     else if (points.length || /\d/.test(line)) return {
-      points: [], fault: `Line ${at}, \u201c${line.slice(0, 40)}\u201d, is not two numbers.`,
+      points: [], fault: t("Line {number}, \u201c{line}\u201d, is not two numbers.", { number: at, line: line.slice(0, 40) }),
     };
   }
   const ring = open(points);
   return ring.length < 3 ? {
-    points: [], fault: `A polygon needs three points, found ${ring.length}.`,
+    points: [], fault: t("A polygon needs three points, found {count}.", { count: ring.length }),
   } : { points: ring, fault: "" };
 };
 

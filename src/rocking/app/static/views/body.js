@@ -10,6 +10,7 @@ import { Editor, createEditor } from "/views/body-editor.js";
 import { Facts, Warnings } from "/views/body-facts.js";
 import { BodyFile } from "/views/body-file.js";
 import { Form } from "/views/body-form.js";
+import { t } from "/app/words.js";
 
 const OLDER = "The picture and the numbers are those of the last valid sizes.";
 
@@ -59,7 +60,7 @@ const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, fa
     <${Card} title="To scale" kind=${kind}>
       <div class="refusal" role="alert" data-testid="body-refusal">
         ${refused && html`<${Note} kind="error" words=${refused.message} />`}
-        ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${OLDER}`} />`}</div>
+        ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${t(OLDER)}`} />`}</div>
       <div ...${facts && aboutOf(facts)}><${Pictured} title="The body to scale"><${Drawn} draw=${drawn} of=${[facts]} /><//></div>
       <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div><//>
     <${Card} title="Numbers" kind=${kind}>

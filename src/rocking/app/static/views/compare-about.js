@@ -4,6 +4,7 @@ import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 import { number } from "/app/format.js";
 import { wordsOf } from "/views/response-labels.js";
+import { t } from "/app/words.js";
 
 /** @param {string} label */
 const familyOf = (label) => label.replace(/^.*\*/s, "").split(":")[0];
@@ -37,17 +38,23 @@ export const About = ({ app, label, onClose }) => {
 const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((words) => html`<li key=${words}>${words}</li>`)}</ul>`
   : html`<p>None is known.</p>`);
 
+/** @type {{ [foot: string]: string }} */
+const LANDS = {
+  left: "Of this body, landing on the left foot: r = {coefficient}; of a measured body 95 % lie from {low} to {high}.",
+  right: "Of this body, landing on the right foot: r = {coefficient}; of a measured body 95 % lie from {low} to {high}.",
+};
+
 /** @param {{ found: Server.ImpactAnswered | null, name: string }} props */
 const Evidence = ({ found, name }) => {
   if (!found) return html`<p class="waiting">Computing</p>`;
   const rows = Object.entries(found.coefficients)
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
   if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
-  return html`${rows.map(({ foot, row }) => html`<p key=${foot}>Of this body, landing on the ${foot} foot: r = ${number(row.coefficient, 4)};
-      of a measured body 95 % lie from ${number(row.low_95, 4)} to ${number(row.high_95, 4)}.${" "}
+  return html`${rows.map(({ foot, row }) => html`<p key=${foot}>${t(LANDS[foot], {
+        coefficient: number(row.coefficient, 4), low: number(row.low_95, 4), high: number(row.high_95, 4) })}${" "}
       ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
-    <p class="field-help">${found.measured.measurements.length} published measurements. ${found.measured.source}</p>`;
+    <p class="field-help">${t("{count} published measurements.", { count: found.measured.measurements.length })} ${found.measured.source}</p>`;
 };
 
 /** @param {{ of: string[] }} props */

@@ -3,6 +3,7 @@
 import { html, useSignal } from "/parts/preact.js";
 import { Fetched } from "/charts/pictured.js";
 import { Button, Choice, Note } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
@@ -25,13 +26,13 @@ export const Studies = ({ app, asked }) => {
     <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
       ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
           <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
-        <${Choice} label="Study" translate=${false} value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
+        <${Choice} label="Study" own value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" words=${NOTHING} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
-          <${Fetched} key=${chosen.value} title=${`Models compared: ${study.name}`} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${`${study.name}: its models side by side, and what the choice changes`}
+          <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: study.name })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: its models side by side, and what the choice changes", { name: study.name })}
             onError=${() => (refused.value = chosen.value)} />
           ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Take away the comparison">
-            ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${`${words} as CSV`}
-              onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${words}, CSV<//>`)}</div>`}`}`}
+            ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${t("{table} as CSV", { table: words })}
+              onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${t("{table}, CSV", { table: words })}<//>`)}</div>`}`}`}
     </section>`;
 };

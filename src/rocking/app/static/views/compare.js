@@ -16,6 +16,7 @@ import { Swatch, wordsOf } from "/views/response-labels.js";
 import { complete } from "/views/response-controls.js";
 import { readRestitution } from "/views/response-restitution.js";
 import { Banner, inWords, outcomeOf, verdictKind } from "/views/response-words.js";
+import { t } from "/app/words.js";
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -71,7 +72,7 @@ const createMargins = (app) => {
       const inputs = app.inputs.get();
       const { tables, files } = /** @type {NonNullable<ReturnType<typeof motionOf>>} */ (motionOf(inputs));
       [of.value, ended.value] = [keyOf(inputs), null];
-      const name = `Margins of ${inputs.body.name || app.project.here.value.name}`;
+      const name = t("Margins of {name}", { name: inputs.body.name || app.project.here.value.name });
       return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name, { project: "" });
     },
   };
@@ -97,7 +98,7 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
     <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
       <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
     ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
-    ${found.value && faulty.value && html`<${Note} kind="error" role="alert" words=${`${faulty.value} ${OLDER}`} />`}
+    ${found.value && faulty.value && html`<${Note} kind="error" role="alert" words=${`${faulty.value} ${t(OLDER)}`} />`}
     ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
@@ -123,6 +124,17 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
     <${Studies} app=${app} asked=${studies} />`;
 };
 
+const VERDICTS = {
+  falls: {
+    all: "{count} of {total} models: it overturns; the choice of the model does not change that.",
+    but: "{count} of {total} models: it overturns; it stands with {models}. The model matters.",
+  },
+  stands: {
+    all: "{count} of {total} models: it stands; the choice of the model does not change that.",
+    but: "{count} of {total} models: it stands; it overturns with {models}. The model matters.",
+  },
+};
+
 /** The answer in plain words, from what was computed: what most models say first.
  * @param {Server.ResponseAnswered} found @param {Server.ResponseFacts[]} there */
 const sentencesOf = (found, there) => {
@@ -130,14 +142,13 @@ const sentencesOf = (found, there) => {
   const falls = ({ outcome }) => outcome === "overturned";
   const [fallen, standing] = [there.filter(falls), there.filter((one) => !falls(one))];
   const [most, fewer] = fallen.length > standing.length ? [fallen, standing] : [standing, fallen];
-  const [verb, other] = most === fallen ? ["overturns", "stands"] : ["stands", "overturns"];
-  const names = fewer.map(({ label }) => wordsOf(label)).join(", ");
-  const words = fewer.length ? `it ${other} with ${names}. The model matters.` : "the choice of the model does not change that.";
+  const text = VERDICTS[most === fallen ? "falls" : "stands"][fewer.length ? "but" : "all"];
+  const counted = { count: most.length, total: there.length, models: fewer.map(({ label }) => wordsOf(label)).join(", ") };
   const peaks = standing.map((one) => one.peak_ratio);
-  const ends = [...new Set([lowest(peaks), highest(peaks)].map((peak) => number(peak, 3)))].join(" to ");
-  const lean = highest(peaks, 0) > 0 ? [`Where it stands it leans to ${ends} of the angle at which it would fall by itself.`] : [];
-  const doubts = found.verdict.sentence.split(/(?<=\.) (?=Still|The ground)/).slice(1);
-  return [`${most.length} of ${there.length} models: it ${verb}; ${words}`, ...lean, ...doubts.map((each) => inWords(each, there))];
+  const [low, high] = [lowest(peaks), highest(peaks)].map((peak) => number(peak, 3));
+  const ends = low === high ? low : t("{low} to {high}", { low, high });
+  const lean = highest(peaks, 0) > 0 ? [t("Where it stands it leans to {angle} of the angle at which it would fall by itself.", { angle: ends })] : [];
+  return [t(text, counted), ...lean, ...found.verdict.doubts.map((each) => inWords(each, there))];
 };
 
 /** @type {Words} */
@@ -161,7 +172,7 @@ const Model = ({ answer, shown, opened, toggle, margin }) => {
   const name = wordsOf(label);
   const { kind, sign, word } = outcomeOf(answer);
   return html`<tr data-testid=${`compare-${label}`} data-outcome=${answer.outcome} class=${open ? "chosen" : null}>
-    <td>${answer.series && html`<label class="tick"><input type="checkbox" aria-label=${`Show ${name}`} checked=${shown} onChange=${() => toggle(label)} /></label>`}</td>
+    <td>${answer.series && html`<label class="tick"><input type="checkbox" aria-label=${t("Show {name}", { name })} checked=${shown} onChange=${() => toggle(label)} /></label>`}</td>
     <th scope="row"><button type="button" class="button quiet model-open" aria-expanded=${open} onClick=${() => (opened.value = open ? null : label)}>
       <${Swatch} label=${label} />${name}</button></th>
     ${answer.error ? html`<td colspan="5" class="text">${answer.error}</td>` : html`

@@ -8,6 +8,7 @@ import { Choice, Field, KeyField, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
 import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
+import { t } from "/app/words.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
@@ -48,12 +49,12 @@ const Decide = ({ app, questions }) => {
     const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
     if (predicts) {
       const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
-      questions.ask(tables, asked.files ?? {}, `How likely does ${name} overturn?`, { command: "predict" });
+      questions.ask(tables, asked.files ?? {}, t("How likely does {name} overturn?", { name }), { command: "predict" });
       return;
     }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, `Does ${name} stand?`);
+    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Does {name} stand?", { name }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
@@ -117,7 +118,7 @@ const crossings = (app, questions, range) => {
     campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
     minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
   };
-  questions.ask(tables, known.files, `When does ${body.name || app.project.here.value.name} overturn?`, { command: "minimum" });
+  questions.ask(tables, known.files, t("When does {name} overturn?", { name: body.name || app.project.here.value.name }), { command: "minimum" });
   return "";
 };
 
@@ -132,19 +133,20 @@ const MOST = 20; // crossings in the table
 /** @type {{ [mode: number]: string | undefined }} */
 const STANDS = { "-2": "not lifted", "-1": "stays standing" };
 /** @param {number} mode */
-const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "falls, no impact" : `falls, ${mode} impact${mode === 1 ? "" : "s"}`);
+const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "falls, no impact" : t(["falls, {count} impact", "falls, {count} impacts"], { count: mode }));
 
 /** @param {Given} given */
 const Crossings = ({ answer, question }) => html`
   <p class=${`verdict ${answer.minimum_acceleration === null ? "good" : "bad"}`} data-testid="verdict">
-    ${answer.minimum_acceleration === null ? "It overturns nowhere" : `It first overturns at a PGA of ${number(answer.minimum_acceleration / G, 4)} g, ${number(answer.minimum_acceleration / answer.motion.peak_ground_acceleration, 4)} times this motion`}.</p>
+    ${answer.minimum_acceleration === null ? "It overturns nowhere." : t("It first overturns at a PGA of {acceleration} g, {factor} times this motion.", {
+      acceleration: number(answer.minimum_acceleration / G, 4), factor: number(answer.minimum_acceleration / answer.motion.peak_ground_acceleration, 4) })}</p>
   <p>${sentence(answer.sentence)}</p>
   <${Drawing} question=${question} alt="Where the body overturns, by the acceleration of the ground" />
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
     rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.peak_ground_acceleration / G, 6), number(each.scale, 6), number(each.uplift_ratio, 4),
       modeOf(each.mode_below), modeOf(each.mode_above)])} />
-  <p class="field-help">Restitution: ${answer.restitution}.
-    ${answer.crossings.length > MOST && ` The first ${MOST} of ${answer.crossings.length} crossings; the CSV has all of them.`}</p>`;
+  <p class="field-help">${t("Restitution: {model}.", { model: answer.restitution })}
+    ${answer.crossings.length > MOST && ` ${t("The first {shown} of {count} crossings; the CSV has all of them.", { shown: MOST, count: answer.crossings.length })}`}</p>`;
 
 const MARKS = { overturning: "bad", uplift: "fair" };
 
@@ -154,7 +156,7 @@ const Verdict = ({ answer, question }) => {
   const fallen = (each) => each.overturned.filter((/** @type {number} */ one) => one === 1).length;
   const rows = Object.entries(answer.models).map(([name, each]) => [
     name, number(each.coefficient.left), number(each.coefficient.right),
-    [`${fallen(each)} of ${each.overturned.length}`, fallen(each) ? "bad" : "good"],
+    [t("{number} of {count}", { number: fallen(each), count: each.overturned.length }), fallen(each) ? "bad" : "good"],
     each.min_factor === null ? "none found" : number(each.min_factor, 3),
   ]);
   const some = Object.values(answer.models).some(fallen);
@@ -167,28 +169,28 @@ const Verdict = ({ answer, question }) => {
     <h3>How likely is it?</h3>
     <${Chances} of=${answer.prediction} />
     <${Sources} of=${answer.prediction} />
-    ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">Models that say nothing of this body:
-      ${Object.entries(answer.refused).map(([name, why]) => `${name}: ${why}`).join("; ")}</p>`}`;
+    ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">${t("Models that say nothing of this body: {reasons}", {
+      reasons: Object.entries(answer.refused).map(([name, why]) => `${t(name)}: ${t(why)}`).join("; ") })}</p>`}`;
 };
 
 /** @type {Words} */
 const WHAT = { uplift: "rocks", sliding: "slides", overturning: "overturns" };
 /** @param {number | null} low @param {number | null} high */
-const between = (low, high) => (low === null ? "\u2013" : `${percent(low)} to ${percent(high)}`);
+const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", { low: percent(low), high: percent(high) }));
 
 /** Probabilities, under these motions and if others like them came; beside them those with another restitution.
  * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval", "with other motions like these"]}
     rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
-      ...Object.entries(beside).map(([model, each]) => [`overturns, all else alike, by ${modelWords(model)}`, each])].map(([words, each]) => [
+      ...Object.entries(beside).map(([model, each]) => [t("overturns, all else alike, by {model}", { model: modelWords(model) }), each])].map(([words, each]) => [
       words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
 
 /** Source and processing of the motions, and the scale of the words for probabilities.
  * @param {{ of: any }} props */
 const Sources = ({ of: { motions, likelihood_scale, not_sampled, repairs } }) => html`
   <details><summary>Source and processing of the ground motions</summary>
-    <ul translate="no">${motions.map((/** @type {any} */ each) => html`<li key=${each.name}>${each.name}: ${each.provenance.join("; ")}</li>`)}</ul></details>
+    <ul translate="no">${motions.map((/** @type {any} */ each) => html`<li key=${each.name} translate="no">${each.name}: ${each.provenance.join("; ")}</li>`)}</ul></details>
   <details><summary>Likelihood terms</summary><p translate="no">${likelihood_scale}</p></details>
   <details><summary>Not sampled</summary>
     <ul>${not_sampled.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
@@ -200,7 +202,7 @@ const Forecast = ({ answer, question }) => {
   const { high } = answer.probability.overturning;
   const shares = Object.entries(answer.shares).sort(([, one], [, other]) => other.total - one.total);
   /** @param {number} low @param {number} at @param {number} high */
-  const share = (low, at, high) => `${number(at, 2)} (${number(low, 2)} to ${number(high, 2)})`;
+  const share = (low, at, high) => t("{value} ({low} to {high})", { value: number(at, 2), low: number(low, 2), high: number(high, 2) });
   return html`
     <p class=${`verdict ${high <= 0.05 ? "good" : high <= 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
     <p>${answer.growth.sentence}</p>

@@ -6,6 +6,7 @@ import { modelStyle, modelWords } from "/app/palette.js";
 import { createTime, Figure } from "/charts/figure.js";
 import { Button, Choice, KeyField, Note, Refused, sentence, toWrong } from "/parts/fields.js";
 import { filled, refusedOf, useForm } from "/questions/parts.js";
+import { t } from "/app/words.js";
 
 const VARIED = {
   slenderness: "slenderness", damping: "damping", modulus_over_thickness: "stiffness of a layer", friction: "friction",
@@ -61,7 +62,7 @@ const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
   const log = values[0] > 0 && values[values.length - 1] / values[0] > 8;
   const words = shown.value.replaceAll("_", " ");
   const shape = {
-    title: `The contact bed: ${words}`, x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
+    title: t("The contact bed: {refusal}", { refusal: words }), x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
     series: [BED, ...beside.map(([name]) => ({ ...modelStyle(name), label: modelWords(name) }))], height: 300,
   };
   const data = useMemo(() => [values, curve, ...beside.map(([, each]) => each)], [values, shown.value]);

@@ -5,6 +5,7 @@ import { percent } from "/app/format.js";
 import { Note, sentence } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { Swatch, wordsOf } from "/views/response-labels.js";
+import { t } from "/app/words.js";
 
 const COLUMNS = [
   { label: "Model" }, { label: "Coefficient r", digits: 5 }, { label: "95 % interval", numeric: true },
@@ -22,11 +23,11 @@ export const Coefficients = ({ app, answer, foot }) => {
     percent(row.energy_loss), row.friction_demand, row.admissible ? "yes" : html`<strong class="bad">no</strong>`,
   ]);
   const copied = () => rows.map((row) => [
-    row.model, row.coefficient, `${row.low_95} to ${row.high_95}`, row.impulse_ratio, row.energy_loss,
+    row.model, row.coefficient, t("{low} to {high}", { low: row.low_95, high: row.high_95 }), row.impulse_ratio, row.energy_loss,
     row.friction_demand, row.admissible ? "yes" : "no",
   ]);
   return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"
-    caption=${`Velocity after over velocity before, landing on the ${foot} foot`}
+    caption=${t("Velocity after over velocity before, landing on the {foot} foot", { foot })}
     csv=${() => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 
@@ -40,5 +41,5 @@ export const Warnings = ({ answer, foot }) => {
   }
   return html`<div class="stack" data-testid="impact-warnings">${[...found].map(([words, whose]) => html`
     <${Note} key=${words} kind="warning"
-      words=${sentence(whose.length === models.length ? words : `${whose.map(wordsOf).join(", ")}: ${words}`)} />`)}</div>`;
+      words=${sentence(whose.length === models.length ? words : `${whose.map((/** @type {string} */ model) => t(wordsOf(model))).join(", ")}: ${t(words)}`)} />`)}</div>`;
 };

@@ -12,6 +12,10 @@ import { Laboratory } from "/views/impact-bed.js";
 import { Evidence, slendernessOf } from "/views/impact-evidence.js";
 import { impulseRows } from "/views/impact-impulse.js";
 import { Coefficients, Warnings } from "/views/impact-table.js";
+import { t } from "/app/words.js";
+
+/** @type {{ [foot in Foot]: string }} */
+const ONTO = { left: "Onto the left foot", right: "Onto the right foot" };
 
 /** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -42,7 +46,7 @@ const Impact = ({ app, asked, faulty }) => {
       <p class="lead">Each time the body comes back to the ground it loses speed. Every model says how much; the published
         measurements say how far to trust it.</p></header>
     <div class="refusal" role="alert" data-testid="impact-refusal">
-      ${wrong && html`<${Note} kind="error" words=${`${sentence(wrong)}${answer ? ` ${OLDER}` : ""}`} />`}</div>
+      ${wrong && html`<${Note} kind="error" words=${`${sentence(wrong)}${answer ? ` ${t(OLDER)}` : ""}`} />`}</div>
     ${!answer && !wrong && html`<p class="waiting">Computing</p>`}
     <div class=${`stack results ${wrong ? "stale" : ""}`} data-testid="impact-results" hidden=${!answer} ...${answer && aboutOf(answer.body)}>
       ${answer && html`<${Results} app=${app} answer=${answer} />`}</div>`;
@@ -54,7 +58,7 @@ const Results = ({ app, answer }) => {
   const feet = /** @type {Foot[]} */ (Object.keys(answer.coefficients));
   const foot = feet.find((each) => each === wanted.value) ?? feet[0];
   const of = [answer, foot];
-  const about = `Onto the ${foot} foot`;
+  const about = ONTO[foot];
   /** @param {string} title @param {(answer: Server.ImpactAnswered, foot: Foot, width: number) => Child} draw @param {string} [lead] */
   const pictured = (title, draw, lead = "") => html`<${Pictured} title=${title} about=${about}>
     ${lead && html`<p class="lead">${lead}</p>`}<${Drawn} draw=${draw} of=${of} /><//>`;

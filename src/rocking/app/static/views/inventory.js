@@ -6,6 +6,7 @@ import { createQuestions, fileAtHand } from "/questions/asking.js";
 import { Choice, Field, KeyField } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileDrop, QuestionView, filled, useForm } from "/questions/parts.js";
+import { t } from "/app/words.js";
 
 const FIRST = { files: [], kind: "pga", level: "0.3", family: "firm-ground", count: "200" };
 /** @type {Words} */
@@ -53,7 +54,7 @@ const Inventory = ({ app, questions }) => {
       inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
-    await questions.ask(tables, { [list.name]: list.sha }, `Which objects stay standing? ${list.name}`);
+    await questions.ask(tables, { [list.name]: list.sha }, t("Which objects stay standing? {name}", { name: list.name }));
     text.value = { of: list, lines: null, id: questions.shown.value?.id };
   };
   const answer = questions.shown.value?.id === text.value?.id ? questions.shown.value?.answer : null;
@@ -112,25 +113,29 @@ const Corrections = ({ answer, text, fixed }) => {
   return rows.length > 0 && html`
     <fieldset><legend>Correct rows, and ask again</legend>
       <pre tabindex="0" aria-label="The header of the list">${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
-      ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${`Line ${each.row}`} help=${each.reason}
+      ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${t("Line {number}", { number: each.row })} help=${each.reason}
         value=${at(each)} />`)}</fieldset>`;
 };
 
 /** Inventory number and name of a row. @param {{ number: string, name: string }} row */
 const label = ({ number, name }) => [...new Set([number, name])].filter(Boolean).join(" ");
 
+/** @param {string[]} ends */
+const between = ([low, high]) => t("{low} to {high}", { low, high });
+
 /** @param {Given} given */
 const Ranking = ({ answer }) => {
-  const counts = ["red", "amber", "green"].map((light) => `${answer.counts[light]} ${light}`).join(", ");
-  const missing = answer.not_assessed.length;
+    const missing = answer.not_assessed.length;
   const noted = answer.objects.some((/** @type {any} */ each) => each.note || each.noted);
   const rows = answer.objects.map((/** @type {any} */ each) => [
     [`${label(each)}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
-    each.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2)).join(" to "), each.in_words, each.what_to_do,
+    between(each.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2))), each.in_words, each.what_to_do,
     ...(noted ? [[[each.note, each.noted].filter(Boolean).join(". "), "own"]] : []),
   ]);
   return html`
-    <p class="verdict" data-testid="verdict">${counts}${missing ? `, ${missing} not assessed` : ""}, at ${answer.hazard.level}.</p>
+    <p class="verdict" data-testid="verdict">${missing
+      ? t("{red} red, {amber} amber, {green} green, {missing} not assessed, at {level}.", { ...answer.counts, missing, level: answer.hazard.level })
+      : t("{red} red, {amber} amber, {green} green, at {level}.", { ...answer.counts, level: answer.hazard.level })}</p>
     ${rows.length > 0 && html`<${Rows} caption="Objects, the worst first"
       head=${["object", "light", "overturns [%]", "what it does", "what to do", ...(noted ? ["note"] : [])]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
@@ -139,7 +144,6 @@ const Ranking = ({ answer }) => {
       <${Rows} caption="Lines of the list that are not objects" head=${["what it says", "line", "why"]}
         rows=${answer.not_objects.map((/** @type {any} */ each) => [[each.text, "own"], String(each.row), each.reason])} /></details>`}
     ${answer.stated.map((/** @type {string} */ each) => html`<p key=${each} class="field-help">${each}</p>`)}
-    ${answer.columns_not_read.length > 0 && html`<p class="field-help">Columns that were not read:${" "}
-      ${answer.columns_not_read.join(", ")}</p>
+    ${answer.columns_not_read.length > 0 && html`<p class="field-help">${t("Columns that were not read: {names}", { names: answer.columns_not_read.join(", ") })}</p>
       <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;
 };

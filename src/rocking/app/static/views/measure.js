@@ -8,6 +8,7 @@ import { Button, Choice, Field, Note } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { Drawing, FileDrop, QuestionView, useForm } from "/questions/parts.js";
 import { record } from "/questions/microphone.js";
+import { t } from "/app/words.js";
 
 const KINDS = [
   ["", "what the file says"], ["times", "times of the impacts"], ["rotation", "rotation"], ["displacement", "displacement"],
@@ -58,7 +59,7 @@ const Measure = ({ app, questions }) => {
     const table = { file: file.name, kind: kind.value, column: column.value.trim(), unit: unit.value.trim() };
     const measurement = Object.fromEntries(Object.entries(table).filter(([, words]) => words));
     const tables = { measurement, ...(trend.value ? { identify: { trend: true } } : {}), ...(known.value === "yes" ? { body: inputs.body } : {}) };
-    questions.ask(tables, { [file.name]: file.sha }, `What ${file.name} says`);
+    questions.ask(tables, { [file.name]: file.sha }, t("What {name} says", { name: file.name }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
@@ -89,15 +90,15 @@ const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
 /** @param {Given} given */
 const Published = ({ answer }) => html`
   <p class="verdict" data-testid="verdict">
-    ${`${answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length} of ${answer.claims.length} claims hold`}</p>
+    ${t("{number} of {count} claims hold", { number: answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length, count: answer.claims.length })}</p>
   ${answer.verdict.map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
   <h3>All models against all measurements</h3>
   <${Rows} caption="Models" head=${["model", "RMSE of r", "95 % interval", "bias"]}
-    rows=${answer.league.map((/** @type {any} */ one) => [one.name, number(one.rmse, 3), `${number(one.rmse_low, 3)} to ${number(one.rmse_high, 3)}`,
+    rows=${answer.league.map((/** @type {any} */ one) => [one.name, number(one.rmse, 3), t("{low} to {high}", { low: number(one.rmse_low, 3), high: number(one.rmse_high, 3) }),
       number(one.bias, 2)])} />
   <h3>Claims</h3>
   <${Rows} caption="Claims" head=${["claim", "verdict"]}
-    rows=${answer.claims.map((/** @type {any} */ one) => [`${one.section}: ${one.claim}`, [one.verdict, MARK[one.verdict]]])} />`;
+    rows=${answer.claims.map((/** @type {any} */ one) => [`${t(one.section)}: ${t(one.claim)}`, [one.verdict, MARK[one.verdict]]])} />`;
 
 /** @type {Words} */
 const HEADS = { within: "within the interval", error: "above what was measured" };

@@ -5,6 +5,7 @@ import { readPulse, writePulse } from "/views/motion-pulse-words.js";
 import { pulsesOf } from "/views/motion-pulses.js";
 import { Sketch } from "/views/motion-sketch.js";
 import { plainWords } from "/views/studies-words.js";
+import { t } from "/app/words.js";
 
 const USUAL = "sine";
 const kept = new Map(); // the parameters of each pulse that were turned
@@ -59,6 +60,6 @@ const Parameter = ({ label, unit, low, high, whole, log, limits, value, error, o
   <div class="parameter">
     <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${whole ? 1 : (high - low) / 200} log=${log}
       value=${Math.min(Math.max(Math.abs(value), low), high)} on=${on} />
-    <${NumberField} kind="exact" label=${`${label}, exactly`} unit=${unit} step=${whole ? 1 : undefined} ...${limits} value=${value}
+    <${NumberField} kind="exact" label=${t("{name}, exactly", { name: label })} unit=${unit} step=${whole ? 1 : undefined} ...${limits} value=${value}
       error=${error} on=${on} />
   </div>`;

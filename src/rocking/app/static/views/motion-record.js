@@ -3,11 +3,12 @@ import { batch, html, signal, useEffect, useLayoutEffect, useRef } from "/parts/
 import { contentOf } from "/app/file-content.js";
 import { freshId } from "/app/dom.js";
 import { Drop } from "/parts/drop.js";
-import { Note } from "/parts/fields.js";
+import { Note, sentence } from "/parts/fields.js";
 import { sendFile } from "/questions/asking.js";
 import { Components } from "/views/motion-components.js";
 import { Needs, blamedOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
+import { t } from "/app/words.js";
 
 /** @type {Words} */
 const FOCUSED = { read: ".record-name", unread: ".drop button" };
@@ -30,7 +31,7 @@ export const createRecord = (app, onChange) => {
   const send = async (given) => {
     const sent = held;
     Object.assign(sent.given, given);
-    said.value = { words: `Reading ${sent.file.name}` };
+    said.value = { words: t("Reading {name}", { name: sent.file.name }) };
     try {
       sent.content ??= await contentOf(sent.file);
       const query = { name: sent.file.name, ...picked(sent.given, TOLD) };
@@ -46,13 +47,13 @@ export const createRecord = (app, onChange) => {
   /** @param {Server.RecordFacts} found */
   const took = (found) => {
     if (found.needs.length && !enough(found.needs)) {
-      said.value = { words: `${found.message}.`, kind: "warning" };
+      said.value = { words: sentence(found.message), kind: "warning" };
       return ask(found);
     }
     answer.value = found;
-    end(found.doubts ? { words: `Check the input: ${found.doubts}.`, kind: "warning" } : {}, "read");
+    end(found.doubts ? { words: t("Check the input: {doubts}.", { doubts: found.doubts }), kind: "warning" } : {}, "read");
     onChange({ record: found.record, file_name: found.file_name, ...picked(held.given, [...TOLD, "component"]) });
-    return app.say(`${found.file_name} is read.`);
+    return app.say(t("{name} is read.", { name: found.file_name }));
   };
   /** @param {LeftOpen} found */
   const ask = (found) => ([asked.value, blamed.value, waiting.value] = [{ answer: found, given: { ...held.given } }, null, true]);
@@ -60,9 +61,9 @@ export const createRecord = (app, onChange) => {
   const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);
   /** @param {string} words @param {any[]} [places] */
   const why = (words, places = []) => {
-    const stays = app.inputs.get().motion ? " The motion stays as it was." : "";
-    const named = places.some(({ kind }) => kind === "file") ? `The file ${words}` : words;
-    return { words: `${named.replace(/([^.?!])$/, "$1.")}${stays}`, kind: "error" };
+    const stays = app.inputs.get().motion ? ` ${t("The motion stays as it was.")}` : "";
+    const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: words }) : words;
+    return { words: `${sentence(named)}${stays}`, kind: "error" };
   };
   // What was answered stays as it was typed, with the refusal beside the field that it is about.
   /** @param {any} error */
@@ -88,7 +89,7 @@ export const createRecord = (app, onChange) => {
         ...steps.filter((/** @type {RecordStep} */ { name }) => name !== "response")];
       form.at("shown").value = records[0].name;
       app.go("records");
-      app.say(`${records[0].name} is read with its StationXML here: press Ask, then use it as the motion.`);
+      app.say(t("{name} is read with its StationXML here: press Ask, then use it as the motion.", { name: records[0].name }));
     } catch (error) {
       app.say(error.message, "error");
     }
@@ -106,7 +107,7 @@ export const createRecord = (app, onChange) => {
     [asked.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
     if (!most || file.size <= most) return send();
-    return end(why(`${file.name} is larger than the ${Math.round(most / 2 ** 20)} MiB that the server takes.`), "unread");
+    return end(why(t("{name} is larger than the {size} MiB that the server takes.", { name: file.name, size: Math.round(most / 2 ** 20) })), "unread");
   };
   const forget = () => batch(() => {
     held = null;
@@ -143,7 +144,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   return html`
     <div ref=${place} class="record-editor">
       <${Drop} label="Drop a record here, or" name="Record file" many folders=${false} on=${record.take} testid="record-file" data-testid="record-drop">
-        <p class="field-help">${`Formats: ${formats}. Of counts (miniSEED) drop their StationXML with them.`}</p><//>
+        <p class="field-help">${t("Formats: {formats}. Of counts (miniSEED) drop their StationXML with them.", { formats })}</p><//>
       <div aria-live="polite" data-testid="record-answer">
         ${said.value?.words && html`<${Note} ...${said.value} />`}
         ${lost && html`<${Note} kind="warning" words="The server no longer has this file: drop it once more." />`}</div>
@@ -151,7 +152,7 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
         ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>
       <div class="record-held" data-testid="record-held">${motion && html`
-        <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || `record ${motion.record?.slice(0, 12)}`}</p>
+        <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || t("record {number}", { number: motion.record?.slice(0, 12) })}</p>
         <${Components} names=${known ? (answer.value.components ?? []).map((/** @type {any} */ one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
       </div>
     </div>`;

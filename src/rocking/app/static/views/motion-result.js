@@ -8,6 +8,7 @@ import { Table } from "/parts/table.js";
 import { aboutOf } from "/views/about.js";
 import { Spectrum } from "/views/motion-spectrum.js";
 import { plainWords } from "/views/studies-words.js";
+import { t } from "/app/words.js";
 
 const TRACES = [
   { key: "acceleration", label: "acceleration", unit: "m/s2", colour: "#0070B2" },
@@ -42,7 +43,7 @@ export const Result = ({ app, answer, part, time, stale }) => {
         <div class="motion-traces" data-testid="motion-traces">
           ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((one) => html`
             <${Trace} key=${one.key} trace=${one} series=${series} part=${part?.window ?? null} time=${time} />`)}</div>
-        <p class="field-help">${of > shown && `${shown} of ${of} samples are drawn: the extremes of every dot. ${LOOK}`}</p>
+        <p class="field-help">${of > shown && t("{shown} of {count} samples are drawn: the extremes of every dot. {hint}", { shown, count: of, hint: LOOK })}</p>
         <div class="toolbar">${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
       <${Card} title="Response spectrum"><${Spectrum} spectrum=${answer.spectrum} />
         <div class="toolbar">${saver("CSV", "table/spectrum.csv", "Response spectrum as CSV")}</div><//>
@@ -56,7 +57,7 @@ export const Result = ({ app, answer, part, time, stale }) => {
 const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
   const data = useMemo(() => [series.time, series[key]], [series]);
   const shape = {
-    title: titled(label), x: { label: "time", unit: "s" }, y: { label: "", unit }, series: [{ label, colour, width: 1.4 }],
+    title: titled(t(label)), x: { label: "time", unit: "s" }, y: { label: "", unit }, series: [{ label, colour, width: 1.4 }],
     height: 180,
   };
   return html`<${Figure} shape=${shape} data=${data} part=${part} time=${time} />`;
@@ -72,7 +73,7 @@ const factsOf = (answer) => {
   if (answer.time_step) found.push(["Time step", quantity(answer.time_step, "s", 5)]);
   if (answer.samples) found.push(["Samples", String(answer.samples)]);
   for (const key of /** @type {const} */ (["event", "station", "component", "format", "file_unit"])) {
-    if (answer[key]) found.push([titled(key.replace("_", " ")), String(answer[key])]);
+    if (answer[key]) found.push([titled(t(key.replace("_", " "))), String(answer[key])]);
   }
   if (answer.peak_vertical_acceleration) {
     found.push(["Peak vertical acceleration", quantity(answer.peak_vertical_acceleration, "m/s2", 4)]);

@@ -8,6 +8,12 @@ const KINDS = {
   pseudo_velocity: { label: "pseudo-velocity", unit: "m/s", colour: "#009960" },
   spectral_displacement: { label: "relative displacement", unit: "m", colour: "#D96C00" },
 };
+/** @type {Words} */
+const TITLES = {
+  pseudo_acceleration: "Pseudo-acceleration over period, 5 % damping",
+  pseudo_velocity: "Pseudo-velocity over period, 5 % damping",
+  spectral_displacement: "Relative displacement over period, 5 % damping",
+};
 const WORDS = [["pseudo_acceleration", "Acceleration"], ["pseudo_velocity", "Velocity"], ["spectral_displacement", "Displacement"]];
 
 // a logarithmic axis has no place for a period or a value of zero
@@ -24,7 +30,7 @@ export const Spectrum = ({ spectrum }) => {
   const { label, unit, colour } = KINDS[kind.value];
   const data = useMemo(() => positive(spectrum.period, spectrum[kind.value]), [spectrum, kind.value]);
   const shape = {
-    title: `${label[0].toUpperCase()}${label.slice(1)} over period, 5 % damping`, x: { label: "period", unit: "s", log: true },
+    title: TITLES[kind.value], x: { label: "period", unit: "s", log: true },
     y: { label: "", unit, log: true }, series: [{ label, colour, width: 1.8 }], height: 260,
   };
   return html`

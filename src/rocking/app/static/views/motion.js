@@ -11,6 +11,7 @@ import { Record, createRecord } from "/views/motion-record.js";
 import { Result } from "/views/motion-result.js";
 import { Scale } from "/views/motion-scale.js";
 import { Synthetic, usualSynthetic } from "/views/motion-synthetic.js";
+import { t } from "/app/words.js";
 
 const WAYS = [["record", "Record file"], ["pulse", "Pulse"], ["synthetic", "Synthetic"]];
 const EDITORS = { record: Record, pulse: Pulse, synthetic: Synthetic };
@@ -111,5 +112,5 @@ const blamedOf = (refused) => {
 const pendingWords = (motion, faulty, waits) => {
   const file = waits ? "The new file is not read yet" : "No file is chosen yet";
   const why = faulty && !waits ? "A number is marked as wrong" : file;
-  return `${why}: what is measured below, and what shakes the body, is still ${motion.file_name ?? "the motion from before"}.`;
+  return t("{reason}: what is measured below, and what shakes the body, is still {motion}.", { reason: why, motion: motion.file_name ?? "the motion from before" });
 };

@@ -4,6 +4,7 @@ import { html } from "/parts/preact.js";
 import { spelt } from "/app/refusal.js";
 import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { filled } from "/questions/parts.js";
+import { t } from "/app/words.js";
 
 const KEYS = ["units", "time_step", "format", "skip"];
 const MOST_REASONS = 12; // files that get their fields without being chosen
@@ -52,7 +53,7 @@ export const FileOptions = ({ app, form, names, reasons }) => {
     <div class="chain" role="group" aria-label="Options of single files">
       ${shown.length > 0 && html`<ul>${shown.map((name) => html`<li key=${name} aria-label=${name}>
         <div class="toolbar"><strong translate=${false}>${name}</strong>
-          ${name in byFile && html`<${Button} kind="quiet" aria-label=${`Remove the options of ${name}`}
+          ${name in byFile && html`<${Button} kind="quiet" aria-label=${t("Remove the options of {name}", { name })}
             onClick=${() => (form.at("by_file").value = without(name))}>remove<//>`}</div>
         ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name])} />`}
         <div class="fields">${KEYS.map((key) => field(name, key))}</div></li>`)}</ul>`}

@@ -10,6 +10,7 @@ import { Button, Choice, KeyField, Note, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
 import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
+import { t } from "/app/words.js";
 
 const G = 9.80665;
 const FIRST = { files: [], curve: [], steps: [], motion: {}, by_file: {}, set: {}, of: {}, code: "eurocode8", shown: "", list: "", format: "" };
@@ -58,7 +59,7 @@ const Records = ({ app, questions }) => {
       <${FileDrop} label="Drop records or a folder here, or" many accept=${recordEndings(app)} files=${form.at("files")} questions=${questions}
         app=${app} help="With their StationXML file (.xml) where they are counts." />
       ${records.length > 0 && html`<${Choice} label="What is shown" value=${form.at("shown")} chosen=${shown}
-        options=${[...records.slice(0, 50).map(({ name }) => [name, `${name}, before and after`]),
+        options=${[...records.slice(0, 50).map(({ name }) => [name, t("{name}, before and after", { name })]),
           ["all", "all of them, in a table of measures"], ["target", "those that come close to a spectrum, scaled"]]} />`}
       ${!single && lists.length > 0 && records.length > 1 && html`<${Choice} label="List of records" value=${form.at("list")}
         help="A CSV with the columns motion, or x, y and z, and if needed units and time_step of each row; the files that it names are sent with it."
@@ -74,7 +75,7 @@ const Records = ({ app, questions }) => {
       ${!single && html`<${KeyField} name="mirrored" facts=${app.info.keys.motions.mirrored} value=${form.at("set", "mirrored")} />`}
       ${single && html`<${Choice} label="Written as" value=${form.at("format")} help="Beside columns of time and acceleration."
         options=${[["", "columns only (CSV)"], ...app.info.formats.filter(({ name }) => name !== "columns")
-          .map(({ name, title }) => [name, `${name}: ${title}`])]} />`}
+          .map(({ name, title }) => [name, `${name}: ${t(title)}`])]} />`}
     <//>`;
 };
 
@@ -139,11 +140,11 @@ const Chain = ({ app, form, stations, faulty }) => {
   return html`
     <div class="chain" role="group" aria-labelledby=${heading}>
       <h2 id=${heading}>Steps, in their order</h2>
-      <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${`Step ${place + 1}, ${name}`}>
+      <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${t("Step {number}, {name}", { number: place + 1, name })}>
         <div class="toolbar"><strong>${name}</strong>
-          <${Button} kind="quiet" aria-label=${`Move ${name} earlier`} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
-          <${Button} kind="quiet" aria-label=${`Move ${name} later`} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
-          <${Button} kind="quiet" aria-label=${`Leave out ${name}`} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out<//>
+          <${Button} kind="quiet" aria-label=${t("Move {name} earlier", { name })} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
+          <${Button} kind="quiet" aria-label=${t("Move {name} later", { name })} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
+          <${Button} kind="quiet" aria-label=${t("Leave out {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out<//>
         </div>
         <p class="field-help">${sentence(known[name].words)}</p>
         <div class="fields">
@@ -154,7 +155,7 @@ const Chain = ({ app, form, stations, faulty }) => {
         ${faulty?.place === place && html`<${Note} kind="error" role="alert" words=${faulty?.words} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
-        options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${words.toLowerCase()}`])]} />
+        options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${t(words)}`])]} />
     </div>`;
 };
 
@@ -168,7 +169,7 @@ const keysOf = ({ keys }, { one, keys: known }) => {
 /** @param {{ app: App, form: Form, questions: Questions }} props */
 const Target = ({ app, form, questions }) => {
   const { code } = form.value;
-  const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${words}`]);
+  const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${t(words)}`]);
   return html`
     <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
     ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" name="curve" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
@@ -186,7 +187,7 @@ const shas = (files, folder = "") => Object.fromEntries(files.map((one) => [`${f
 const oneOf = ({ files, steps, motion, by_file: byFile }, app, record) => ({
   tables: { motion: { record: record.name, ...filled({ ...motion, ...byFile[record.name] }, app.info.keys.motion), ...processOf(steps) } },
   files: shas([record, ...files.filter(isStations)]),
-  name: `${record.name}, before and after`,
+  name: t("{name}, before and after", { name: record.name }),
 });
 
 /** @param {any} form @param {App} app @param {string} shown */
@@ -202,7 +203,8 @@ const setOf = ({ files, curve, steps, motion, by_file: byFile, set, of, code, li
     tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...optionsOf(byFile, records, app),
       ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
     files: { ...shas(records, "records/"), ...shas(files.filter(isStations)), ...shas(shown === "target" && code === "file" ? curve : []) },
-    name: `${records.length} records${shown === "target" ? ` for ${wanted.target}` : ""}`,
+    name: wanted.target ? t(["{count} record for {target}", "{count} records for {target}"], { count: records.length, target: wanted.target })
+      : t(["{count} record", "{count} records"], { count: records.length }),
   };
 };
 
@@ -217,10 +219,11 @@ const HEAD = [["samples", "samples"], ["time_step", "step [s]"], ["peak_ground_a
 
 /** @param {Given} given */
 const Corrected = ({ answer, question, questions }) => {
-  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ words) => `${when}: ${words}`));
+  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ words) => `${t(when)}: ${t(words)}`));
   const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
-    <p class="verdict" data-testid="verdict">${answer.name}: PGA ${number(answer.before.peak_ground_acceleration / G, 4)} g before, ${number(answer.after.peak_ground_acceleration / G, 4)} g after.</p>
+    <p class="verdict" data-testid="verdict">${t("{name}: PGA {before} g before, {after} g after.", {
+      name: answer.name, before: number(answer.before.peak_ground_acceleration / G, 4), after: number(answer.after.peak_ground_acceleration / G, 4) })}</p>
     ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
     <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use it as the motion<//></div>
@@ -243,7 +246,7 @@ const use = async ({ app }, question) => {
     const kept = await app.project.within(sent());
     app.inputs.set("response.free", undefined);
     app.inputs.set("motion", { record: kept.record, file_name: kept.file_name });
-    app.say(`${kept.file_name} is the motion of this project.`);
+    app.say(t("{name} is the motion of this project.", { name: kept.file_name }));
   } catch (error) {
     app.say(error.message, "error");
   }
@@ -263,7 +266,8 @@ const Chosen = ({ answer, question }) => {
       ...SHOWN.map(([key, , size]) => number(row[`${key}_${lead}`] * size, 4)), seen.join(" ")];
   });
   return html`
-    <p class="verdict" data-testid="verdict">${selection ? sentence(selection.sentence) : `${records.length} records${left.length ? `, ${left.length} files left out` : ""}.`}</p>
+    <p class="verdict" data-testid="verdict">${selection ? sentence(selection.sentence) : left.length
+      ? t("{count} records, {left} files left out.", { count: records.length, left: left.length }) : t(["{count} record.", "{count} records."], { count: records.length })}</p>
     <${Drawing} question=${question} alt=${selection ? "Spectra of the scaled records, their mean and the target" : "Spectra of the records"} />
     <${Rows} caption="Records" rows=${rows}
       head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />

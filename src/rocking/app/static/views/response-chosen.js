@@ -2,6 +2,7 @@
 import { signal } from "/parts/preact.js";
 import { curveKey } from "/views/response-labels.js";
 import { readRestitution } from "/views/response-restitution.js";
+import { t } from "/app/words.js";
 
 const wanted = signal(null);
 
@@ -9,7 +10,7 @@ const wanted = signal(null);
  * @param {Server.RestitutionTable} [table] @returns {string[]} */
 export const labelsOf = (table) => {
   const { models, value, feet } = readRestitution(table);
-  if (feet) return [`left ${feet[0]}, right ${feet[1]}`];
+  if (feet) return [t("left {left}, right {right}", { left: feet[0], right: feet[1] })];
   return [...models, ...(table?.values ?? (value === null ? [] : [value])).map(String)];
 };
 

@@ -6,6 +6,7 @@ import { detailed } from "/charts/zoom.js";
 import { sharesOf } from "/scene/sampled.js";
 import { styleOf, wordsOf } from "/views/response-labels.js";
 import { together } from "/views/response-series.js";
+import { t } from "/app/words.js";
 
 const TIME = { label: "time", unit: "s" };
 const MOST_FRICTION = 3;
@@ -68,7 +69,7 @@ const KINDS = {
     data: (answers) => [longest(answers).series.time, longest(answers).series.ground_acceleration],
   },
   energy: {
-    title: (lead) => `Energy (${wordsOf(lead.label)})`,
+    title: (lead) => t("Energy ({model})", { model: wordsOf(lead.label) }),
     y: { label: "", unit: "J" },
     series: () => ENERGIES,
     // over the time of all figures
@@ -86,9 +87,11 @@ const KINDS = {
 
 /** What the marks of the figures mean; `whose` impacts are ticked.
  * @param {Server.ResponseFacts[]} answers @param {string} whose */
-export const marksWords = (answers, whose) => `Ticks on the axis: impacts of ${whose}; dashed: the slenderness angles. `
-  + (answers.some(({ outcome }) => outcome === "overturned") ? `Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. ` : "")
-  + "Drag across a chart to look into it with every sample; a double click shows all of it again.";
+export const marksWords = (answers, whose) => [
+  t("Ticks on the axis: impacts of {model}; dashed: the slenderness angles.", { model: whose }),
+  ...(answers.some(({ outcome }) => outcome === "overturned") ? [t("Curves of a body that overturns end at {rotation} \u03b1.", { rotation: FALL_SHOWN })] : []),
+  t("Drag across a chart to look into it with every sample; a double click shows all of it again."),
+].join(" ");
 
 /** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into.
  * @param {{ kinds: string[], answers: Server.ResponseFacts[], lead?: string, ticked: Server.ResponseFacts[], part: any, friction: number, time: Time }} props */
@@ -120,7 +123,7 @@ const OneFigure = ({ kind, answers, lead, rows, ticked, part, friction, time, he
   const marks = useMemo(() => ({
     ticks: rows,
     horizontal: kind === "rotation" ? [-1, 1] : kind === "friction" ? [friction] : [],
-    words: [rows.some(({ at }) => at.length) && `Ticks on the axis: impacts of ${ticked}.`, DASHED[kind]].filter(Boolean).join(" "),
+    words: [rows.some(({ at }) => at.length) && t("Ticks on the axis: impacts of {model}.", { model: ticked }), t(DASHED[kind] ?? "")].filter(Boolean).join(" "),
   }), [rows, friction, ticked]);
   return html`<${Figure} shape=${shape} data=${columns} part=${part} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
 };

@@ -7,6 +7,7 @@ import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.j
 import { curveKey, Swatch, wordsOf } from "/views/response-labels.js";
 import { outcomeOf } from "/views/response-words.js";
 import { Film } from "/views/takeaway-film.js";
+import { t } from "/app/words.js";
 
 /** A card for every model; choosing one makes its model the one that is looked at.
  * @param {{ answers: any[], lead: string | null }} props */
@@ -40,12 +41,12 @@ const factsOf = (answer) => {
   const { right, left } = answer.coefficient;
   const same = Math.abs(right - left) < 1e-12;
   const [onto, other] = [number(right, 4), number(left, 4)];
-  const r = same ? onto : `${other} left, ${onto} right`;
+  const r = same ? onto : t("{first} left, {second} right", { first: other, second: onto });
   const peak = answer.outcome === "overturned"
-    ? `no return at ${quantity(answer.overturning_time, "s", 4)}`
-    : `peak ${quantity(answer.peak_ratio, "\u03b1", 3)}`;
+    ? t("no return at {time}", { time: quantity(answer.overturning_time, "s", 4) })
+    : t("peak {rotation}", { rotation: quantity(answer.peak_ratio, "\u03b1", 3) });
   const count = answer.impacts.length;
-  return `r = ${r} \u00b7 ${peak} \u00b7 ${count} impact${count === 1 ? "" : "s"}`;
+  return `r = ${r} \u00b7 ${peak} \u00b7 ${t(["{count} impact", "{count} impacts"], { count })}`;
 };
 
 const COLUMNS = [
@@ -64,11 +65,12 @@ const rowsOf = (impacts) =>
  * @param {{ app: App, answers: Server.ResponseFacts[], answer: Server.ResponseFacts }} props */
 export const Impacts = ({ app, answers, answer }) => {
   const rows = useMemo(() => rowsOf(answer.impacts), [answer]);
-  const more = rows.length > MOST ? `; the first ${MOST} are shown, copying takes them all` : "";
+  const counted = { count: rows.length, model: wordsOf(answer.label), shown: MOST };
   return html`<${Card} title="Impacts"><div class="impacts">
     <${Choice} label="Model" value=${answer.label} on=${look} options=${answers.map(({ label }) => [label, wordsOf(label)])} />
     <div data-testid="impacts"><${Table} columns=${COLUMNS} rows=${rows.slice(0, MOST)} copied=${() => rows} testid="impacts-table"
-      caption=${`${rows.length} impact${rows.length === 1 ? "" : "s"} (${wordsOf(answer.label)})${more}`}
+      caption=${rows.length > MOST ? t("{count} impacts ({model}); the first {shown} are shown, copying takes them all", counted)
+        : t(["{count} impact ({model})", "{count} impacts ({model})"], counted)}
       csv=${() => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv")} /></div></div><//>`;
 };
 
@@ -84,5 +86,5 @@ export const TakeAway = ({ app, restitution }) => {
     <div class="toolbar">${FILES.map(([words, path]) => html`<${Button} key=${path} onClick=${() => save(path)}>${words}<//>`)}
       <${Film} app=${app}>Animation, GIF<//></div>
     <p class="field-help" data-testid="files-model">${labels.length > 1
-      && `Curves and animation are those of ${wordsOf(chosenOf(labels))}.`}</p><//>`;
+      && t("Curves and animation are those of {model}.", { model: wordsOf(chosenOf(labels)) })}</p><//>`;
 };

@@ -1,6 +1,7 @@
 /** What came out, in words and with a sign that needs no colour. */
 import { html } from "/parts/preact.js";
 import { curveKey, wordsOf } from "/views/response-labels.js";
+import { t } from "/app/words.js";
 
 /** @type {{ [outcome: string]: { kind: string, sign: string, word: string } }} */
 const OUTCOMES = {
@@ -43,6 +44,6 @@ const wordOf = (label) => new RegExp(`(?<![\\w-])${label.replace(/[.*+?^${}()|[\
 
 /** Returns the sentence for the screen reader that stands for the animation. @param {Server.ResponseFacts[]} answers */
 export const sceneWords = (answers) => {
-  const each = answers.map((answer) => `${wordsOf(answer.label)}: ${answer.summary || outcomeOf(answer).word}`);
-  return `The body rocking on the moving ground. ${each.join("; ")}.`;
+  const each = answers.map((answer) => `${t(wordsOf(answer.label))}: ${t(answer.summary || outcomeOf(answer).word)}`);
+  return t("The body rocking on the moving ground. {outcomes}.", { outcomes: each.join("; ") });
 };

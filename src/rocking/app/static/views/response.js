@@ -13,6 +13,7 @@ import { wordsOf } from "/views/response-labels.js";
 import { Cards, Impacts, TakeAway } from "/views/response-results.js";
 import { Scene } from "/views/response-scene.js";
 import { Banner, inWords, verdictKind } from "/views/response-words.js";
+import { t } from "/app/words.js";
 
 const KEYS = ["body", "motion", "restitution", "response", "settings"];
 const FIGURES = ["rotation", "velocity", "ground", "energy", "force", "friction"];
@@ -63,8 +64,7 @@ const onKey = (event, player) => {
 const NONE = [];
 /** @param {{ outcome?: string }} answer */
 const falls = ({ outcome }) => outcome === "overturned";
-const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; "
-  + "there it stays, since a landing on a side is not computed.";
+const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; there it stays, since a landing on a side is not computed.";
 
 /** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean>, faulty: Signal<string> }} props */
 const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }) => {
@@ -87,10 +87,10 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
       <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
     <div aria-live="polite" data-testid="response-refusal">
       ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
-      ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${OLDER}`} />`}
+      ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${t(OLDER)}`} />`}
       ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
-      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[inWords(found.value.verdict.sentence, answers)]} />
+      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[found.value.verdict.sentence, ...found.value.verdict.doubts].map((each) => inWords(each, answers))} />
       <${Cards} answers=${answers} lead=${lead} /></div>`}
     <div class="response" ...${found.value && aboutOf(found.value.body, found.value.motion, there.length === 1 ? [wordsOf(there[0].label)] : [])}>
       <div class="response-stage">
@@ -100,7 +100,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
           <div data-window=${part.value?.window.join(" ") ?? ""}>
             <div class="figures" data-testid="response-charts">
               <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} part=${part.value} friction=${friction} time=${time} /></div>
-            <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && FALL}</p>
+            <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && t(FALL)}</p>
             ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show all of the time<//>`}
           </div></section>`}
       </div>

@@ -3,16 +3,17 @@
 import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
 import { createQuestions, motionOf } from "/questions/asking.js";
-import { Button, Choice, Field } from "/parts/fields.js";
+import { Button, Choice, Field, sentence } from "/parts/fields.js";
 import { Drawing, FileDrop, QuestionView, recordEndings, useForm } from "/questions/parts.js";
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
 import { Standing } from "/space/standing.js";
+import { t } from "/app/words.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
 const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
 /** @type {{ [command: string]: string }} */
-const TITLES = { equilibria: "How it can stand", cor: "Its edges", simulate: "How it moves" };
+const TITLES = { equilibria: "How it can stand: {name}", cor: "Its edges: {name}", simulate: "How it moves: {name}" };
 const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
 const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
 /** @type {{ [axis: string]: number[] | undefined }} */
@@ -88,12 +89,12 @@ const Space = ({ app, questions }) => {
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     const sent = scan ? { [scan.name]: scan.sha } : {};
-    questions.ask(tables, { ...sent, ...motion.files }, `${TITLES[asked.value]}: ${name}`, { command: asked.value });
+    questions.ask(tables, { ...sent, ...motion.files }, t(TITLES[asked.value], { name }), { command: asked.value });
   };
   /** @param {number} number_ @param {number[]} direction */
   const goOn = (number_, direction) => {
     pose.value = { number: number_, up: direction };
-    app.say(`What is asked next is of the body in pose ${number_}.`);
+    app.say(t("What is asked next is of the body in pose {pose}.", { pose: number_ }));
   };
   // One component as long as the view lives: another one would draw the scene anew at every letter that is typed.
   const Found = useRef((/** @type {any} */ { answer, question }) => html`
@@ -108,7 +109,7 @@ const Space = ({ app, questions }) => {
         ...(files.value.length ? files.value.map((/** @type {SentFile} */ { name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
       ${chosen.value === OWN ? html`<p class="field-help">A block or a section, over its depth.</p>` : html`
       <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
-      ${pose.value ? html`<p class="space-pose">Stands in pose ${pose.value.number} of the last answer.
+      ${pose.value ? html`<p class="space-pose">${t("Stands in pose {pose} of the last answer.", { pose: pose.value.number })}
           <${Button} kind="quiet" onClick=${() => (pose.value = null)}>As in the file<//></p>`
         : html`<${Choice} label="Up" value=${up} options=${UP} help="It is let down from there until it rests." />`}
       <${Field} label="Density" name="density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Concrete's if empty." />
@@ -121,7 +122,7 @@ const Space = ({ app, questions }) => {
       ${asked.value === "simulate" && html`
         <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
         ${shaken.value === "records" && html`
-          ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${`A record along ${axis}, or`}
+          ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${t("A record along {axis}, or", { axis })}
             accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
           <${Field} label="Unit of the accelerations" name="record units" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
         <${Field} label="Motion" name="times" unit="times" value=${times} inputmode="decimal" />
@@ -136,7 +137,7 @@ const Space = ({ app, questions }) => {
 const bodyOf = (scan, said) => {
   if (!scan) return { missing: { key: "files", words: "No scan was sent yet." } };
   const kind = scan.name.replace(/^.*\./s, "").toLowerCase();
-  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: `${kind.toUpperCase()} files do not say their unit: choose it.` } };
+  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: t("{format} files do not say their unit: choose it.", { format: kind.toUpperCase() }) } };
   const density = said.density ? parseNumber(said.density) : null;
   if (said.density && !(Number(density) > 0)) return { missing: { key: "density", words: "The density is a number above 0." } };
   const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
@@ -169,9 +170,9 @@ const Answer = ({ answer, question, onPose }) => {
   if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
   if (question.command === "cor") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
   return html`
-    <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}.</p>
+    <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}</p>
     <${MotionScene} question=${question} answer=${answer} />
-    <p>${`Largest tilt ${number((answer.peak_tilt * 180) / Math.PI, 4)}\u00b0, impacts: ${answer.impacts.length}; slid ${number(1000 * answer.sliding_distance, 3)} mm at most.`}</p>
+    <p>${t("Largest tilt {tilt}\u00b0, impacts: {impacts}; slid {distance} mm at most.", { tilt: number((answer.peak_tilt * 180) / Math.PI, 4), impacts: answer.impacts.length, distance: number(1000 * answer.sliding_distance, 3) })}</p>
     <${Drawing} question=${question} alt="Tilt, direction and energy over time" />
     ${scan}`;
 };
@@ -181,12 +182,9 @@ const Taken = ({ body, repairs, own }) => {
   const size = body.size.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
   return html`
   <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
-  <p>${`${size} mm, ${number(body.mass, 4)} kg, centre ${number(1000 * body.centre_height, 4)} mm over the ground.`}</p>
+  <p>${t("{size} mm, {mass} kg, centre {height} mm over the ground.", { size, mass: number(body.mass, 4), height: number(1000 * body.centre_height, 4) })}</p>
   <ul class="space-repairs" aria-label="What was mended">
-    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}.</li>`) : html`<li>Nothing had to be mended.</li>`}
-    ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}.</li>`)}
+    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}</li>`) : html`<li>Nothing had to be mended.</li>`}
+    ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}</li>`)}
   </ul>`;
 };
-
-/** @param {string} words */
-const sentence = (words) => `${words.slice(0, 1).toUpperCase()}${words.slice(1)}`;

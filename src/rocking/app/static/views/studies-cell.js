@@ -1,8 +1,8 @@
 /** The history of one cell of a map. */
 import { batch, html, signal } from "/parts/preact.js";
 import { Figure } from "/charts/figure.js";
-import { number } from "/app/format.js";
-import { Button } from "/parts/fields.js";
+import { Button, stopped } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 /** Beyond this share of alpha a body lies on the ground, and its curve would hide what went before. */
 const MOST = 2;
@@ -33,14 +33,14 @@ export const createCell = (app, study) => {
     // what the cell does not have must be absent, not null
     const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
     const cell = /** @type {any} */ (Object.fromEntries(there.map((key) => [key, inputs[key]])));
-    app.inputs.lend(cell, `a cell of \u201c${study.name}\u201d`);
+    app.inputs.lend(cell, t("a cell of \u201c{study}\u201d", { study: study.name }));
     app.go("response");
   };
   /** @param {Server.HistoryAnswer} found @param {boolean} kept */
   const took = (found, kept) => {
     ({ inputs } = found);
     opens.value = Boolean(inputs) && kept && next === null;
-    words.value = `${wordsOf(found)}${kept ? "" : " Click the cell, or press Enter, to keep it."}`;
+    words.value = kept ? wordsOf(found) : `${wordsOf(found)} ${t("Click the cell, or press Enter, to keep it.")}`;
     curve.value = Boolean(found.answer);
     if (found.answer) data.value = [found.answer.series.time, shareOf(found.answer).map((share) => (Math.abs(share) > MOST ? null : share))];
   };
@@ -80,8 +80,8 @@ export const Cell = ({ cell: { words, data, curve, opens, open } }) => html`
 
 /** @param {Server.HistoryAnswer} found */
 const wordsOf = ({ stored, answer, note }) => {
-  const impacts = `${number(stored.impacts)} impact${stored.impacts === 1 ? "" : "s"}`;
-  return [answer ? `${answer.summary}.` : `${impacts}.`, note ? `${note}.` : ""].join(" ");
+  const impacts = t(["{count} impact", "{count} impacts"], { count: stored.impacts });
+  return [stopped(answer ? answer.summary : impacts), note ? stopped(note) : ""].join(" ");
 };
 
 /** @param {Server.ResponseFacts} answer */

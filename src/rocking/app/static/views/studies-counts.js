@@ -3,6 +3,7 @@ import { html } from "/parts/preact.js";
 import { Table } from "/parts/table.js";
 import { percent } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
+import { t } from "/app/words.js";
 
 const MOST = 500;
 
@@ -12,7 +13,7 @@ export const Counts = ({ found }) => {
   return html`
     ${(found.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "histories", "share"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
-      caption=${several ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes"} />`)}
+      caption=${several ? t("Outcomes with {model}", { model: modelWords(found.restitutions[k]) }) : "Outcomes"} />`)}
     ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
 };
 
@@ -22,5 +23,5 @@ const Columns = ({ name, columns }) => {
   const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));
   const heads = columns.map((each) => ({ label: each.name.replaceAll("_", " "), unit: each.unit === "1" ? "" : each.unit }));
   return html`<div><${Table} columns=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
-    ${count > MOST && html`<p class="quiet">${`${count - MOST} more rows are in the files.`}</p>`}</div>`;
+    ${count > MOST && html`<p class="quiet">${t("{count} more rows are in the files.", { count: count - MOST })}</p>`}</div>`;
 };

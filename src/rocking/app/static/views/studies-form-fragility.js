@@ -4,6 +4,7 @@ import { pretty } from "/app/format.js";
 import { Choice, NumberField, Segmented } from "/parts/fields.js";
 import { Range, rangeOf, unitOf } from "/views/studies-form-parts.js";
 import { RecordChoice } from "/views/studies-form-records.js";
+import { t } from "/app/words.js";
 
 const ANALYSES = [["stripes", "Stripes"], ["incremental", "Incremental"], ["cloud", "Cloud"]];
 const SOURCES = [["synthetic", "Synthetic set"], ["records", "Uploaded records"]];
@@ -31,7 +32,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
   const field = (Kind, key, label, more) => html`<${Kind} label=${label} value=${chosen.value[key]} on=${take(key)} ...${more} />`;
   /** @param {string} key @param {string} label @param {[string, string][]} options */
   const choice = (key, label, options) => field(Choice, key, label, { options });
-  question.current = { name: `fragility, ${kind}`, tables: (inputs) => tablesOf(inputs, chosen.value, levels, records.current) };
+  question.current = { name: t("fragility, {kind}", { kind }), tables: (inputs) => tablesOf(inputs, chosen.value, levels, records.current) };
   return html`<div class="question">
     ${field(Segmented, "kind", "Analysis", { options: ANALYSES })}
     ${field(Segmented, "source", "Motions", { options: SOURCES })}

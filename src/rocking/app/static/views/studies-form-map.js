@@ -3,6 +3,7 @@ import { html, useMemo, useSignal } from "/parts/preact.js";
 import { Choice } from "/parts/fields.js";
 import { greek } from "/views/studies-words.js";
 import { Range, motionsOf, rangeOf, unitOf } from "/views/studies-form-parts.js";
+import { t } from "/app/words.js";
 
 /** @type {{ [measure: string]: number[] | undefined }} */
 const USUAL = {
@@ -49,7 +50,7 @@ export const MapQuestion = ({ app, question }) => {
   const side = (which, range) => html`
     <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words }) => [name, greek(words)])}
       value=${chosen[which]} on=${(name) => (own.value = { ...own.value, [which]: name })} />
-    <${Range} key=${which + chosen[which]} name=${`${SIDES[which]}, values`} range=${range}
+    <${Range} key=${which + chosen[which]} name=${t("{quantity}, values", { quantity: SIDES[which] })} range=${range}
       unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;
   return html`<div class="map-question">${side("x", x)}${side("y", y)}</div>`;
 };

@@ -4,6 +4,7 @@ import { Button } from "/parts/fields.js";
 import { quantity } from "/app/format.js";
 import { Needs } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
+import { t } from "/app/words.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
 
@@ -55,7 +56,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   return html`
     <div class="question" data-testid="record-choice" hidden=${hidden}>
       <p class="quiet" aria-live="polite">${refused.value
-        || (stored.value.length ? `${ticked.length} of ${stored.value.length} records are taken.` : EMPTY)}</p>
+        || (stored.value.length ? t("{number} of {count} records are taken.", { number: ticked.length, count: stored.value.length }) : EMPTY)}</p>
       <ul class="record-list" aria-label="Uploaded records">${stored.value.map((one) => html`
         <${Row} key=${one.record} app=${app} record=${one.record} name=${one.file_name} seen=${looked.value[one.record]}
           ticked=${isTicked(one)} tick=${tick} look=${look} gone=${gone} />`)}</ul>
@@ -91,10 +92,10 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     look(record);
   };
   const remove = async () => {
-    if (!window.confirm(`Delete \u201c${name}\u201d from this server?`)) return;
+    if (!window.confirm(t("Delete \u201c{name}\u201d from this server?", { name }))) return;
     try {
       await app.call(`records/${record}`, { method: "DELETE" });
-      app.say(`${name} is deleted.`);
+      app.say(t("{name} is deleted.", { name }));
       (row.current.nextElementSibling ?? row.current.previousElementSibling)?.querySelector("button").focus();
       gone(record);
     } catch (error) {
@@ -105,10 +106,10 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     <li ref=${row} class="record-row">
       <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
-      <${Button} kind="quiet" aria-label=${`Delete ${name}`} onClick=${remove}>Delete<//>
+      <${Button} kind="quiet" aria-label=${t("Delete {name}", { name })} onClick=${remove}>Delete<//>
       <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
       ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
-        take=${take} button=${{ "aria-label": `Read ${name} so` }} />`}
+        take=${take} button=${{ "aria-label": t("Read {name} so", { name }) }} />`}
     </li>`;
 };
 
@@ -118,9 +119,9 @@ const factsOf = ({ components }, { units, component, vertical }) => {
   const step = chosen?.time_step;
   return [
     component,
-    vertical && `${vertical} upwards`,
-    units && `in ${units}`,
-    step ? `every ${quantity(step, "s")}` : null,
+    vertical && t("{component} upwards", { component: vertical }),
+    units && t("in {unit}", { unit: units }),
+    step ? t("every {time}", { time: quantity(step, "s") }) : null,
   ]
     .filter(Boolean)
     .join(", ");

@@ -7,6 +7,7 @@ import { pretty, quantity } from "/app/format.js";
 import { Choice, Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
+import { t } from "/app/words.js";
 
 /** Fragility curves, of one restitution at a time.
  * @param {{ study: Server.StudyFacts, found: Server.FragilityResult, chosen: { restitution: number } }} props */
@@ -47,13 +48,13 @@ const Analysis = ({ found, analysis }) => {
 /** @param {string | undefined} sentence @param {string} state @param {number | null} threshold @param {string} unit */
 const whyNone = (sentence, state, threshold, unit) => {
   const why = sentence ? withUnit(sentence.slice(state.length + 2), unit) : stepWords(threshold, unit);
-  return `No curve is drawn: ${why}.`.replace(/\.\.$/, ".");
+  return t("No curve is drawn: {reason}.", { reason: why }).replace(/\.\.$/, ".");
 };
 
 /** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance.
  * @param {number | null} threshold @param {string} unit */
 const stepWords = (threshold, unit) => (threshold === null ? "these shares fit none"
-  : `below ${quantity(threshold, unit)} the body cannot uplift and above it always does, a step from 0 to 1`);
+  : t("below {acceleration} the body cannot uplift and above it always does, a step from 0 to 1", { acceleration: quantity(threshold, unit) }));
 
 const NO_CURVE = { x: [], probability: [], low: null, high: null };
 
@@ -78,7 +79,7 @@ const Curve = ({ state, curve, points, index, x }) => {
     { label: "share of the motions", colour: "--ink-soft", width: 0, points: true },
   ].filter((_, k) => drawn[k]);
   const shape = {
-    title: `Probability: ${greek(state)}`,
+    title: t("Probability: {state}", { state: greek(state) }),
     x,
     height: 260,
     y: { label: series.length > 1 ? "probability" : series[0].label, unit: "", range: [0, 1] },
@@ -125,7 +126,7 @@ const columnsOf = (unit) => [
 const rowOf = (state, fit) => {
   /** @param {(number | null)[]} pair */
   const pair = ([low, high]) =>
-    low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`;
+    low == null && high == null ? "\u2013" : t("{low} to {high}", { low: shown(low), high: shown(high) });
   return [
     greek(state),
     fit.median ?? "\u2013",

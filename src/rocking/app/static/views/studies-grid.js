@@ -3,7 +3,7 @@ import { svg } from "/app/dom.js";
 import { SvgPen } from "/charts/pen.js";
 import { colour } from "/charts/style.js";
 import { number, pretty } from "/app/format.js";
-import { words as inLanguage } from "/app/words.js";
+import { t } from "/app/words.js";
 import { greek } from "/views/studies-words.js";
 
 const LEFT = 64;
@@ -300,6 +300,6 @@ export const createGrid = (canvas, x, y) => {
 /** @param {MapAxis} axis @param {number} room */
 const words = (axis, room) => {
   const unit = axis.unit && axis.unit !== "1" ? ` [${pretty(axis.unit)}]` : "";
-  const all = inLanguage(greek(axis.words));
+  const all = t(greek(axis.words));
   return (7 * all.length > room ? all.split(/[,;，；]/)[0] : all) + unit;
 };

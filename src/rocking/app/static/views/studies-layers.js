@@ -3,6 +3,7 @@ import { highest } from "/app/extremes.js";
 import { number, quantity } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 import { greek } from "/views/studies-words.js";
+import { t } from "/app/words.js";
 
 const FAILED = "#999999";
 const VERDICTS = [
@@ -77,15 +78,15 @@ const difference = (found, k, other) => {
   const names = [k, other].map((place) => modelWords(found.restitutions[place]));
   const legend = [
     { paint: "#F2F0E8", words: "same verdict" },
-    { paint: "#D96C00", words: `overturns only with ${names[0]}` },
-    { paint: "#0070B2", words: `overturns only with ${names[1]}` },
+    { paint: "#D96C00", words: t("overturns only with {model}", { model: names[0] }) },
+    { paint: "#0070B2", words: t("overturns only with {model}", { model: names[1] }) },
   ];
   /** @param {number} ix @param {number} iy */
   const paint = (ix, iy) => {
     const [a, b] = [mine[iy][ix] === 2, theirs[iy][ix] === 2];
     return legend[a === b ? 0 : a ? 1 : 2].paint;
   };
-  return { value: "difference", text: `Difference to ${names[1]}`, legend, paint };
+  return { value: "difference", text: t("Difference to {model}", { model: names[1] }), legend, paint };
 };
 
 /** One cell in words. @param {MapFound} found @param {number} k @param {Cell} cell */
@@ -93,8 +94,9 @@ export const cellWords = (found, k, { ix, iy }) => {
   const outcome = found.outcome[k][iy][ix];
   const impacts = found.impacts[k][iy][ix];
   /** @param {Server.Coordinate} axis @param {number} place */
-  const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(Number(values[place]), unit)}`;
+  const named = ({ words, values, unit }, place) => `${t(greek(words))} = ${quantity(Number(values[place]), unit)}`;
   const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
-  const peak = outcome === 1 ? `, peak ${number(found.peak[k][iy][ix])} \u03b1` : "";
-  return `${where}: ${VERDICTS[verdictOf(outcome, impacts)].words}${peak}`;
+  const verdict = outcome === 1 ? t("rocks and stays standing, peak {rotation} \u03b1", { rotation: number(found.peak[k][iy][ix]) })
+    : t(VERDICTS[verdictOf(outcome, impacts)].words);
+  return `${where}: ${verdict}`;
 };

@@ -1,6 +1,7 @@
 /** The studies there are: how far each is, and what can be done with it. */
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { number } from "/app/format.js";
+import { t } from "/app/words.js";
 
 /** @type {Words} */
 const WORDS = {
@@ -26,7 +27,7 @@ const BUSY = ["waiting", "running"];
 
 /** Seconds in words that a person would use. @param {number} seconds */
 const duration = (seconds) => {
-  if (seconds < 1.5) return "a second";
+  if (seconds < 1.5) return t("a second");
   if (seconds < 90) return `${Math.round(seconds)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
   return `${(seconds / 3600).toFixed(1)} h`;
@@ -34,16 +35,16 @@ const duration = (seconds) => {
 
 /** @param {Server.StudyFacts} study */
 const left = (study) => {
-  if (study.seconds_left == null) return "measuring the time left";
+  if (study.seconds_left == null) return t("measuring the time left");
   const [low, high] = (study.seconds_left_between ?? []).map(duration);
-  const between = low === high ? "" : ` (${low} to ${high})`;
-  return `about ${duration(study.seconds_left)} left${between}`;
+  const time = duration(study.seconds_left);
+  return low === high ? t("about {time} left", { time }) : t("about {time} left ({low} to {high})", { time, low, high });
 };
 
 /** @param {Server.StudyFacts} study */
 const pace = (study) => {
-  const parts = [`${number(study.histories_done || 0)} of ${number(study.histories || 0)} histories`];
-  if (study.state === "running" && study.rate) parts.push(`${number(study.rate, 3)} a second`);
+  const parts = [t("{done} of {count} histories", { done: number(study.histories_done || 0), count: number(study.histories || 0) })];
+  if (study.state === "running" && study.rate) parts.push(t("{count} a second", { count: number(study.rate, 3) }));
   if (study.state === "running") parts.push(left(study));
   return parts.join(" \u00b7 ");
 };
@@ -62,7 +63,7 @@ export const actsOf = (app, after) => {
     /** @param {Server.StudyFacts} study */
     resume: (study) => act(study, "/resume", { json: {} }),
     /** @param {Server.StudyFacts} study */
-    remove: (study) => window.confirm(`Delete \u201c${study.name}\u201d and its results?`)
+    remove: (study) => window.confirm(t("Delete \u201c{name}\u201d and its results?", { name: study.name }))
       && act(study, "", { method: "DELETE" }),
   };
 };
@@ -96,13 +97,13 @@ const Study = ({ study, onShow, acts }) => {
     <li ref=${row} class="study" data-testid=${`study-${study.id}`} data-state=${state}>
       <div class="study-head"><strong translate=${false}>${name}</strong><span class="quiet">${KINDS[study.kind] || study.kind}</span></div>
       <progress max="1" value=${study.histories ? (study.histories_done || 0) / study.histories : 0} hidden=${state === "done"}
-        aria-label=${`Progress of ${name}`}></progress>
+        aria-label=${t("Progress of {name}", { name })}></progress>
       <div class="study-line">
         <span class="study-state">${(state === "failed" && study.message) || stateWords(study)}</span>
         <span class="study-facts">${pace(study)}</span>
       </div>
       <div class="toolbar">${buttons.map(([text, does, there, kind = "plain"]) => html`
-        <button type="button" key=${text} class=${`button ${kind}`} aria-label=${`${text}: ${name}`} hidden=${!there}
+        <button type="button" key=${text} class=${`button ${kind}`} aria-label=${`${t(text)}: ${name}`} hidden=${!there}
           onClick=${() => does(study)}>${text}</button>`)}</div>
     </li>`;
 };

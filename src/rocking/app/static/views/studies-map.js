@@ -8,6 +8,7 @@ import { Cell, createCell } from "/views/studies-cell.js";
 import { createGrid } from "/views/studies-grid.js";
 import { cellWords, layersOf } from "/views/studies-layers.js";
 import { greek } from "/views/studies-words.js";
+import { t } from "/app/words.js";
 
 /** @typedef {{ x: number, y: number, from: number[], frame: number[][] | null }} Drag */
 
@@ -16,6 +17,7 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 
 /** @type {{ [key: string]: number | undefined }} */
 const CLOSER = { "+": 2, "=": 2, "-": 0.5 };
+const MAP = "Map of {x} and {y}; arrow keys move from cell to cell, Enter opens the history in Response, plus and minus look closer and from further away, 0 shows all";
 const START = "Click a cell, or walk with the arrow keys. Draw a frame with the pointer, or press +, to look closer.";
 const SHORTEST = 6; // a pointer that moves less has clicked [CSS pixel]
 /** @type {Lines} */
@@ -102,10 +104,9 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
         ${several && html`<${Choice} label="Restitution" value=${k.value} on=${choose} options=${found.restitutions.map((label, value) => [value, modelWords(label)])} />`}
         <${Segmented} label="Show" value=${layer.value} on=${(value) => (wanted.value = value)} options=${layers.map(({ value, text }) => [value, text])} />
       </div>
-      <${Pictured} title="Overturning map" more=${`: ${layer.text}`} canvasOf=${() => painter.current.asSvg(layer.paint, linesOf(layer))}>
+      <${Pictured} title="Overturning map" more=${`: ${t(layer.text)}`} canvasOf=${() => painter.current.asSvg(layer.paint, linesOf(layer))}>
         <div class="map-stage"><canvas ref=${canvas} class="map-canvas" tabindex="0" role="application" data-testid="map-canvas"
-          aria-label=${`Map of ${greek(found.x.words)} and ${greek(found.y.words)}; arrow keys move from cell to cell, `
-            + "Enter opens the history in Response, plus and minus look closer and from further away, 0 shows all"}
+          aria-label=${t(MAP, { x: greek(found.x.words), y: greek(found.y.words) })}
           onKeyDown=${walk} onPointerLeave=${leave} ...${pointer}></canvas></div>
         <ul class="map-legend">${layer.legend.map(({ paint, words }) => html`
           <li key=${words}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${words}</li>`)}</ul><//>

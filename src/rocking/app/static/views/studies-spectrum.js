@@ -4,6 +4,7 @@ import { Segmented } from "/parts/fields.js";
 import { number } from "/app/format.js";
 import { angleStyle, modelWords } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
+import { t } from "/app/words.js";
 
 const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Share that overturns"]];
 
@@ -15,7 +16,7 @@ export const Spectrum = ({ found }) => {
   const share = what.value === "overturned";
   const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (what.value)])], [what.value]);
   const marks = useMemo(() => ({
-    words: count === 1 ? "A gap is a block that overturns." : `Over ${count} motions; a gap is where they overturn the block.`,
+    words: count === 1 ? "A gap is a block that overturns." : t("Over {count} motions; a gap is where they overturn the block.", { count }),
   }), []);
   const shape = {
     title: share ? "Share of the motions that overturn the block" : "Peak rotation over the slenderness angle",
@@ -41,5 +42,5 @@ const lookOf = ({ curves, restitutions }, { angle, restitution }) => {
 /** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */
 const labelOf = (found, { angle, restitution }) => {
   const words = `\u03b1 = ${number(angle, 3)} rad`;
-  return found.restitutions.length > 1 ? `${words}, ${modelWords(restitution)}` : words;
+  return found.restitutions.length > 1 ? `${words}, ${t(modelWords(restitution))}` : words;
 };

@@ -1,7 +1,7 @@
 /** Studies: many histories at once, launched as campaigns; their progress, and their results. */
 import { computed, html, render, signal, useLayoutEffect, useRef } from "/parts/preact.js";
 import { unpacked } from "/app/packed.js";
-import { words } from "/app/words.js";
+import { t } from "/app/words.js";
 import { Switch } from "/parts/fields.js";
 import { StudyForm } from "/views/studies-form.js";
 import { StudyList, actsOf, stateWords } from "/views/studies-list.js";
@@ -37,7 +37,7 @@ export const mount = (section, app) => {
   studies.subscribe((now) => {
     for (const study of now) {
       const before = states.get(study.id);
-      if (before && before !== study.state) app.say(`${study.name}: ${words(stateWords(study))}`);
+      if (before && before !== study.state) app.say(`${study.name}: ${t(stateWords(study))}`);
       states.set(study.id, study.state);
     }
     const done = now.find(({ id, state }) => id === expected && state === "done");

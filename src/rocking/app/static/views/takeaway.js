@@ -4,6 +4,7 @@ import { Button, Card, Choice, Field } from "/parts/fields.js";
 import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
 import { wordsOf } from "/views/response-labels.js";
 import { Film } from "/views/takeaway-film.js";
+import { t } from "/app/words.js";
 
 /** @type {[string, string, string[], string?][]} */
 const TABLES = [
@@ -85,7 +86,7 @@ const File = ({ app, path, name, testid, disabled }) => {
     await app.download(OF_ONE.test(path) ? pathOfChosen(path, inputs.restitution) : path, inputs, `rocking.${kind}`);
     busy.value = false;
   };
-  return html`<${Button} aria-label=${`${name} as ${NAMES[kind]}`} aria-busy=${busy.value ? "true" : null} disabled=${disabled}
+  return html`<${Button} aria-label=${t("{study} as {format}", { study: name, format: NAMES[kind] })} aria-busy=${busy.value ? "true" : null} disabled=${disabled}
     data-testid=${testid} onClick=${save}>${NAMES[kind]}<//>`;
 };
 
@@ -114,8 +115,8 @@ const read = async (app, box) => {
   if (!file) return;
   try {
     const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-    app.inputs.lend(found, `what ${file.name} holds`);
-    app.say(`The inputs of ${file.name} are loaded.`);
+    app.inputs.lend(found, t("what {name} holds", { name: file.name }));
+    app.say(t("The inputs of {name} are loaded.", { name: file.name }));
   } catch (error) {
     app.say(error.message, "error");
   }
