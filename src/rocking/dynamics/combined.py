@@ -26,15 +26,15 @@ _START_UNITS = {
 }  # fmt: skip
 
 
-def plane_inputs(given: Combinations) -> tuple[list[Body], list[Motion], FloatArray, list[Start] | None]:
+def plane_inputs(cases: Combinations) -> tuple[list[Body], list[Motion], FloatArray, list[Start] | None]:
     """Return plane bodies, their motions, scales, and starts where any are stated; refuse everything else."""
-    bodies = _several("bodies", given.bodies, (Body,))
-    motions = [in_plane(motion) for motion in _several("motions", given.motions, (GroundMotion, Pulse, Mapping))]
-    scales = row_of("scale", given.scales)
+    bodies = _several("bodies", cases.bodies, (Body,))
+    motions = [in_plane(motion) for motion in _several("motions", cases.motions, (GroundMotion, Pulse, Mapping))]
+    scales = row_of("scale", cases.scales)
     plausibility.warn(plausibility.of_scaled(motions, scales))
-    if not given.restitutions:
+    if not cases.restitutions:
         raise InvalidValueError("restitution must be at least one model, got none")
-    return bodies, motions, scales, starts_of(given.start, given.rotation, given.angular_velocity)
+    return bodies, motions, scales, starts_of(cases.start, cases.rotation, cases.angular_velocity)
 
 
 def dataset_of(
@@ -86,19 +86,19 @@ def _coordinates(starts: list[Start]) -> dict[str, Any]:
 _KINDS = {"bodies": "Body", "motions": "GroundMotion, Pulse, Mapping"}
 
 
-def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
-    wanted = f"{name} must be one or more of {_KINDS[name]}"
-    if isinstance(given, kinds):
-        return [given]
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InvalidValueError(f"{wanted}, got {checks.given(name, given)}")
-    found = list(given)
-    if not found:
-        raise InvalidValueError(f"{wanted}, got none")
-    for k, item in enumerate(found):
+def _several(name: str, value: Any, kinds: tuple[type, ...]) -> list[Any]:
+    rule = f"{name} must be one or more of {_KINDS[name]}"
+    if isinstance(value, kinds):
+        return [value]
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise InvalidValueError(f"{rule}, got {checks.given(name, value)}")
+    items = list(value)
+    if not items:
+        raise InvalidValueError(f"{rule}, got none")
+    for index, item in enumerate(items):
         if not isinstance(item, kinds):
-            raise InvalidValueError(f"{wanted}, got {checks.given(name, item, f' at index {k}')}")
-    return found
+            raise InvalidValueError(f"{rule}, got {checks.given(name, item, f' at index {index}')}")
+    return items
 
 
 def label_of(restitution: Any) -> str:

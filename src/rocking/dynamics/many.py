@@ -106,10 +106,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     extra("xarray", "simulate_many")
     mechanics = mechanics_for_all(bodies, friction)
     frictions = frictions_of(friction)
-    given = {
+    stated = {
         **options, "friction": next(iter(frictions.tolist()), None), "rotation": rotation, "start": start,
         "angular_velocity": angular_velocity, "duration": duration, "threads": threads, "twin": twin,
         "progress": progress,
     }  # fmt: skip
-    settings, own = mechanics.split(given, mechanics.batch_settings, mechanics.batch_options)
+    settings, own = mechanics.split(stated, mechanics.batch_settings, mechanics.batch_options)
     return mechanics.follow_many(Combinations(bodies, motions, listed(restitution), scale, frictions, **own), settings)

@@ -20,7 +20,7 @@ MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking
 
 def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
     """Return how a body moves, with friction or with None; study: in a study."""
-    return next(each for each in MECHANICS if each.takes(body, friction, study=study))
+    return next(mechanics for mechanics in MECHANICS if mechanics.takes(body, friction, study=study))
 
 
 def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
@@ -32,7 +32,9 @@ def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
 
 def mechanics_of(settings: Settings) -> Mechanics:
     """Return the mechanics that settings are of."""
-    return next(each for each in MECHANICS if isinstance(settings, (each.settings, each.batch_settings)))
+    return next(
+        mechanics for mechanics in MECHANICS if isinstance(settings, (mechanics.settings, mechanics.batch_settings))
+    )
 
 
 def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conventions.g) -> Settings:

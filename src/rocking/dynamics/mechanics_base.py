@@ -39,9 +39,9 @@ def in_space(body: Any) -> bool:
     return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
 
 
-def listed(given: Any) -> list[Any]:
+def listed(value: Any) -> list[Any]:
     """Return a sequence as a list, anything else as a list of one."""
-    return list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [given]
+    return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
 
 
 def row_of(name: str, values: Any) -> FloatArray:
@@ -176,16 +176,16 @@ class Mechanics(ABC):
         """Return the settings, and the other options that these mechanics have; refuse what they have not."""
         names = kind.names()
         self.refuse_others(options, {*names, *own})
-        given = {name: value for name, value in options.items() if value is not None or None not in _usual(name)}
-        settings = kind(**{name: given[name] for name in names if name in given})
-        return settings, {name: given[name] for name in own if name in given}
+        stated = {name: value for name, value in options.items() if value is not None or None not in _usual(name)}
+        settings = kind(**{name: stated[name] for name in names if name in stated})
+        return settings, {name: stated[name] for name in own if name in stated}
 
-    def refuse_others(self, options: Mapping[str, Any], known: set[str]) -> None:
+    def refuse_others(self, options: Mapping[str, Any], allowed: set[str]) -> None:
         """Refuse options that these mechanics do not have, unless they change nothing."""
         for name, value in options.items():
-            if name not in known and not _changes_nothing(name, value):
+            if name not in allowed and not _changes_nothing(name, value):
                 raise InvalidValueError(
-                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: {', '.join(sorted(known))}"
+                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: {', '.join(sorted(allowed))}"
                 )
 
 

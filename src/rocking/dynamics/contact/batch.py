@@ -194,49 +194,49 @@ PIECE = 1 << 14
 """Histories that are handed to the fast engine at a time."""
 
 
-def many_with_contact(given: Combinations, settings: ContactSettings) -> "xr.Dataset":
+def many_with_contact(cases: Combinations, settings: ContactSettings) -> "xr.Dataset":
     """Return the results of every combination of plane bodies."""
-    bodies, motions, scales, starts = plane_inputs(given)
-    check_progress(given.progress)
-    threads, restitutions = thread_count(given.threads), given.restitutions
-    for mu in given.frictions[1:].tolist():
+    bodies, motions, scales, starts = plane_inputs(cases)
+    check_progress(cases.progress)
+    threads, restitutions = thread_count(cases.threads), cases.restitutions
+    for mu in cases.frictions[1:].tolist():
         checked_friction("friction", mu)
-    if chosen(given.engine) == "fast":
+    if chosen(cases.engine) == "fast":
         imposed = [[imposed_on(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
         bases = [PlaneBase.of_body(body) for body in bodies]
         table = _Table(
-            bases, motions, scales, np.array(imposed), given.frictions, starts or [Start()], given.duration, settings
+            bases, motions, scales, np.array(imposed), cases.frictions, starts or [Start()], cases.duration, settings
         )
-        results, ran = table.run(threads, given.progress), FAST
+        results, ran = table.run(threads, cases.progress), FAST
     else:
-        results, ran = _one_by_one(given, bodies, motions, scales, starts or [Start()], settings), REFERENCE
+        results, ran = _one_by_one(cases, bodies, motions, scales, starts or [Start()], settings), REFERENCE
     labels = list(map(label_of, restitutions))
     return dataset_of(
-        bodies, motions, {"scale": scales, "restitution": labels, "friction": given.frictions, "start": starts},
+        bodies, motions, {"scale": scales, "restitution": labels, "friction": cases.frictions, "start": starts},
         results, settings,
         {
             "engine": ran, "bounce": settings.bounce, "bounce_law": settings.bounce_law,
-            "duration": np.nan if given.duration is None else given.duration,
+            "duration": np.nan if cases.duration is None else cases.duration,
         },
     )  # fmt: skip
 
 
 def _one_by_one(
-    given: Combinations, bodies: list[Body], motions: list[Motion], scales: FloatArray, starts: Sequence[Start],
+    cases: Combinations, bodies: list[Body], motions: list[Motion], scales: FloatArray, starts: Sequence[Start],
     settings: ContactSettings,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     rows = []
-    every = product(bodies, motions, scales.tolist(), given.restitutions, given.frictions.tolist(), starts)
+    every = product(bodies, motions, scales.tolist(), cases.restitutions, cases.frictions.tolist(), starts)
     for body, motion, scale, restitution, mu, start in every:
         with warnings.catch_warnings():  # said once, before
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(
                 body, motion, restitution, replace(settings, friction=mu), start=start, scale=scale,
-                duration=given.duration,
+                duration=cases.duration,
             )  # fmt: skip
         rows.append(_row_of(response))
-        if given.progress is not None:
-            given.progress(1)
+        if cases.progress is not None:
+            cases.progress(1)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 

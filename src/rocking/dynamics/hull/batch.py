@@ -30,13 +30,13 @@ RENAMED = {"held": "contacts_held", "replaced": "landings_replaced"}
 """Results whose names in the engine mean something else in `rocking.quantities`."""
 
 
-def many_on_hulls(given: Combinations, settings: HullSettings) -> SpatialBatch:
+def many_on_hulls(cases: Combinations, settings: HullSettings) -> SpatialBatch:
     """Return the outcome of every combination; the motions of which are those of `motions_in_space`."""
-    bodies, motions, scales = listed(given.bodies), motions_in_space(given.motions), row_of("scale", given.scales)
-    frictions, duration = given.frictions, given.duration
-    starts = [None] if given.start is None else listed(given.start)
+    bodies, motions, scales = listed(cases.bodies), motions_in_space(cases.motions), row_of("scale", cases.scales)
+    frictions, duration = cases.frictions, cases.duration
+    starts = [None] if cases.start is None else listed(cases.start)
     made, refused = made_or_refused(HullBody.of, bodies)
-    if not made or not motions or not given.restitutions or not starts:
+    if not made or not motions or not cases.restitutions or not starts:
         raise InvalidValueError("bodies, motions, restitution and start must be at least one each, got none")
     if (frictions < 0.0).any():
         raise InvalidValueError(f"friction must be in [0, 1e+06], got {frictions.min():g}")
@@ -44,7 +44,7 @@ def many_on_hulls(given: Combinations, settings: HullSettings) -> SpatialBatch:
     shaken = [tuple(part for part in motion or () if part is not None) for motion in motions]
     for parts in shaken:
         plausibility.warn(plausibility.of_scaled(parts, scales))
-    laws = [law_on_hull(each) for each in given.restitutions]
+    laws = [law_on_hull(each) for each in cases.restitutions]
     grounds = [
         HullGround.placed(ground_of(*motion or (), until=until), np.eye(3), (math.inf, math.inf), settings.gravity)
         for motion in motions
@@ -52,7 +52,7 @@ def many_on_hulls(given: Combinations, settings: HullSettings) -> SpatialBatch:
     leaning = [start or SpatialStart() for start in starts]
     found = hull_histories(
         made, grounds, laws, frictions, scales, leaning, horizon=duration or 0.0,
-        settings=settings, engine=given.engine, threads=given.threads, progress=given.progress,
+        settings=settings, engine=cases.engine, threads=cases.threads, progress=cases.progress,
     )  # fmt: skip
     # hull_histories has its own order: body, motion, scale, restitution, friction, start
     values = {RENAMED.get(name, name): array for name, array in found.values.items()}

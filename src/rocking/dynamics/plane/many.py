@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def rocking_alone(given: Combinations, settings: PlaneSettings) -> "xr.Dataset":
+def rocking_alone(cases: Combinations, settings: PlaneSettings) -> "xr.Dataset":
     """Return the outcome of every combination of plane bodies that rock alone, and how sure the integration is."""
-    bodies, motions, scales, starts = plane_inputs(given)
-    restitutions = given.restitutions
+    bodies, motions, scales, starts = plane_inputs(cases)
+    restitutions = cases.restitutions
     laws = [each for each in restitutions if isinstance(each, ImpactLaw)]
     if laws and len(restitutions) > 1:
         raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
@@ -41,13 +41,13 @@ def rocking_alone(given: Combinations, settings: PlaneSettings) -> "xr.Dataset":
         for state in states.tolist():
             start_within(row[0], *state)
     shape = (len(bodies), len(motions), scales.size, len(restitutions), len(states))
-    segments, threads, count = [m.segments() for m in motions], thread_count(given.threads), int(np.prod(shape))
+    segments, threads, count = [m.segments() for m in motions], thread_count(cases.threads), int(np.prod(shape))
     rows, fixed = _pieces(all_parameters, scales, states, shape), law_of_rows(law)
-    runner = RowsInPlane(segments, fixed, settings, given.engine)
-    results, work = run_rows(runner, law, count, rows, threads, given.progress)
-    if given.twin:
+    runner = RowsInPlane(segments, fixed, settings, cases.engine)
+    results, work = run_rows(runner, law, count, rows, threads, cases.progress)
+    if cases.twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
-        halved = RowsInPlane([each.refined(2) for each in segments], fixed, finer, given.engine)
+        halved = RowsInPlane([each.refined(2) for each in segments], fixed, finer, cases.engine)
         again, _ = run_rows(halved, law, count, rows, threads)
         change = np.abs(np.abs(results["peak_rotation"]) - np.abs(again["peak_rotation"]))  # NaN without two results
         flips = np.abs(overturned(results["outcome"]) - overturned(again["outcome"]))

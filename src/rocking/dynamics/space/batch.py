@@ -98,12 +98,12 @@ class SpatialBatch:
         return dataset
 
 
-def many_in_space(given: Combinations, settings: SpaceBatchSettings) -> SpatialBatch:
+def many_in_space(cases: Combinations, settings: SpaceBatchSettings) -> SpatialBatch:
     """Return the outcome of every combination."""
     return batch_in_space(
-        listed(given.bodies), motions_in_space(given.motions), given.restitutions, given.scales,
-        None if given.start is None else listed(given.start), settings, given.duration, given.engine, given.threads,
-        given.progress,
+        listed(cases.bodies), motions_in_space(cases.motions), cases.restitutions, cases.scales,
+        None if cases.start is None else listed(cases.start), settings, cases.duration, cases.engine, cases.threads,
+        cases.progress,
     )  # fmt: skip
 
 
