@@ -10,7 +10,6 @@ import pytest
 
 import rocking as rk
 from rocking.app.api.info import listed_measures
-from rocking.cli import main
 from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.motions import Measure, Pulse, intensity, intensity_measures, measure, measures, pulses, scaled_to
@@ -59,15 +58,7 @@ def test_the_pulse_of_the_page():
             type("Incomplete", (Pulse,), answers)()
 
 
-def printed(capsys, *words):
-    """What a command that succeeds prints."""
-    with pytest.raises(SystemExit) as stop:
-        main(list(words))
-    assert stop.value.code in {0, None}
-    return capsys.readouterr().out
-
-
-def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path):
+def test_the_measure_of_the_page_is_at_every_door(monkeypatch, printed, tmp_path):
     """One entry, and commands, studies, scaling, sets of records, pictures, the page and NRML know the measure."""
     _, names = section("An intensity measure")
     rms = replace(names["rms"], openquake=("RMS", "2 m/s2", 0.5))
@@ -82,12 +73,12 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path)
     assert [rms.of(motion) for motion in (made[0], made[1])] == pytest.approx([1.0, 1.0], rel=1e-14, abs=0.0)
     assert made.description()["rms_m_s2"] == 1.0
     pulse = ("motion", "sine:amplitude=3,period=0.8")
-    assert "root mean square of the acceleration" in printed(capsys, *pulse)
-    assert json.loads(printed(capsys, *pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
+    assert "root mean square of the acceleration" in printed(*pulse)
+    assert json.loads(printed(*pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
     file = tmp_path / "curves.xml"
     words = ("fragility", "--width", "0.4", "--height", "1.6", "--synthetic", "point-source", "--count", "30")
     more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--out", str(file), "--crossing", "common-dispersion")
-    assert "rms" in printed(capsys, *words, *more)
+    assert "rms" in printed(*words, *more)
     assert 'imt="RMS"' in file.read_text("utf-8")
     assert axis_label("rms") == "root mean square of the acceleration [m/s$^2$]"
     assert short_name("rms") == "RMS"

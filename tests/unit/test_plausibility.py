@@ -11,7 +11,6 @@ import rocking as rk
 from rocking import plausibility
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Solid, box
-from rocking.cli import main
 from rocking.dynamics import SpatialStart
 from rocking.errors import PlausibilityWarning
 from rocking.evidence import all_measurements
@@ -156,30 +155,22 @@ def test_assumed_density_is_said(tmp_path):
     assert read_body(solid).assumed == plain.assumed
 
 
-def run(capsys, *words):
-    with pytest.raises(SystemExit) as end:
-        main(words)
-    done = capsys.readouterr()
-    assert end.value.code == 0, done.err
-    return done.out, done.err
-
-
-def test_command_line_says_it(capsys):
+def test_command_line_says_it(run):
     """`cor` and `simulate` print doubts and what was assumed; the same stands in the JSON."""
-    out, err = run(capsys, "cor", "--width", "500", "--height", "2000")
+    _, out, err = run("cor", "--width", "500", "--height", "2000")
     assert "rocking: note: check the input: the centre of mass is 1000 m" in err
     assert "density 2400 kg/m3 assumed" in out
-    facts = json.loads(run(capsys, "cor", "--width", "500", "--height", "2000", "--json")[0])["body"]
+    facts = json.loads(run("cor", "--width", "500", "--height", "2000", "--json")[1])["body"]
     assert "1000 m" in facts["warnings"][0]
     assert "assumed" in facts["assumed"][0]
     command = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3000,period=0.8")
-    out, err = run(capsys, *command)
+    _, out, err = run(*command)
     assert "3000 m/s2 (306 g)" in err
     assert "2400 kg/m3 assumed" in out
-    facts = json.loads(run(capsys, *command, "--json")[0])
+    facts = json.loads(run(*command, "--json")[1])
     assert facts["body"]["warnings"] == []
     assert "3000 m/s2" in facts["motion"]["warnings"][0]
-    told, err = run(capsys, "cor", "--width", "0.5", "--height", "2", "--density", "500")
+    _, told, err = run("cor", "--width", "0.5", "--height", "2", "--density", "500")
     assert err == ""
     assert "assumed" not in told
 
@@ -192,31 +183,30 @@ ASKED = {
 
 
 @pytest.mark.parametrize("command", ASKED)
-def test_studies_say_what_was_assumed(capsys, command):
+def test_studies_say_what_was_assumed(printed, answered, command):
     """Pages and JSON of studies tell an assumed density from one that was given."""
     words = (*ASKED[command], "--width", "0.5", "--height", "2")
-    assert "density:      2400 kg/m3 assumed" in run(capsys, *words)[0]
-    assert "assumed" in json.loads(run(capsys, *words, "--json")[0])["assumed"][0]
-    out, _ = run(capsys, *words, "--density", "2400")
-    assert "assumed" not in out
-    assert json.loads(run(capsys, *words, "--density", "2400", "--json")[0])["assumed"] == []
+    assert "density:      2400 kg/m3 assumed" in printed(*words)
+    assert "assumed" in answered(*words)["assumed"][0]
+    assert "assumed" not in printed(*words, "--density", "2400")
+    assert answered(*words, "--density", "2400")["assumed"] == []
 
 
-def test_assumed_friction_is_said(capsys, tmp_path):
+def test_assumed_friction_is_said(printed, answered, tmp_path):
     """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
     words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")
     given = ("--set", "response.assumed_friction=0.5")
-    assert "(assumed 0.5)" in run(capsys, *words)[0]
-    assert "(given 0.5)" in run(capsys, *words, *given)[0]
-    assert json.loads(run(capsys, *words, "--friction", "0.5", "--json")[0])["friction_assumed"] is False
+    assert "(assumed 0.5)" in printed(*words)
+    assert "(given 0.5)" in printed(*words, *given)
+    assert answered(*words, "--friction", "0.5")["friction_assumed"] is False
     for option in ((), given):
-        answer = json.loads(run(capsys, *words, *option, "--json")[0])
+        answer = answered(*words, *option)
         assert (answer["friction"], answer["friction_assumed"]) == (0.5, not option)
     question = tmp_path / "question.toml"
     question.write_text(
         '[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n[motion]\npulse = "sine:amplitude=3,period=.5"\n[response]\n'
     )
-    assert "(assumed 0.5)" in run(capsys, "simulate", str(question))[0]
+    assert "(assumed 0.5)" in printed("simulate", question)
 
 
 def test_the_api_and_the_page_say_it():

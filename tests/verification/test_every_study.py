@@ -1,14 +1,11 @@
 """Every study for every body and motion: components of plane bodies, blocks with a depth, inventories, animations."""
 
-import json
-
 import numpy as np
 import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.campaigns.jobs import Job, JobFolder, analyses
-from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.motions import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
@@ -55,16 +52,8 @@ def files(tmp_path, monkeypatch):
     return tmp_path
 
 
-def _asked(capsys, *words):
-    with pytest.raises(SystemExit) as stop:
-        main([*map(str, words), "--json"])
-    out, error = capsys.readouterr()
-    assert not stop.value.code, error
-    return json.loads(out)
-
-
 @pytest.mark.verifies("second engine", "the plane engine, where the ground hardly moves along y", within="1e-6")
-def test_a_block_of_known_depth_moves_along_y(files, capsys):
+def test_a_block_of_known_depth_moves_along_y(files, run, answered):
     """With y it is a box in space: a y of next to nothing leaves the plane answer, and one that shakes does not."""
     size = ("--width", "0.5", "--height", "2", "--depth", "0.6", "--restitution", "housner")
     axes = ("--x", "scale=0.8,1.0,1.2", "--y", "duration=1.6")
@@ -72,7 +61,7 @@ def test_a_block_of_known_depth_moves_along_y(files, capsys):
     head = "time [s],acceleration [m/s2]"
     np.savetxt(files / "still.csv", np.c_[TIME, still], "%.17g", ",", header=head, comments="")
     plane, calm, shaken = (
-        np.array(_asked(capsys, "map", *size, "x.csv", *more, *axes)["peak_ratio"])
+        np.array(answered("map", *size, "x.csv", *more, *axes)["peak_ratio"])
         for more in ((), ("--motion", "y=still.csv"), ("--motion", "y=y.csv"))
     )
     assert calm == pytest.approx(plane, rel=1e-6)
@@ -80,9 +69,8 @@ def test_a_block_of_known_depth_moves_along_y(files, capsys):
     box_in_space = Solid(Part(box(0.5, 0.6, 2.0), 2400.0))
     python = overturning_map(box_in_space, {"x": X, "y": Y}, ("scale", [0.8, 1.0, 1.2]), ("duration", [1.6]), "housner")
     assert shaken == pytest.approx(python.peak_ratio.values, rel=1e-6)
-    with pytest.raises(SystemExit):
-        main(["map", *size[:4], "x.csv", "--motion", "y=y.csv", *axes])
-    assert "whose depth is given (--depth" in " ".join(capsys.readouterr().err.split())
+    _, _, err = run("map", *size[:4], "x.csv", "--motion", "y=y.csv", *axes)
+    assert "whose depth is given (--depth" in " ".join(err.split())
 
 
 @pytest.mark.verifies("invariant", "the object turned by a quarter, under the motions as they are", within="1e-6")

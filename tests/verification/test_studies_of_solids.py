@@ -9,7 +9,6 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
-from rocking.cli import main
 from rocking.conventions import g
 from rocking.dynamics import HullSettings, SpatialBody, SpatialStart
 from rocking.dynamics.batch import Batch
@@ -180,16 +179,13 @@ def test_a_body_of_known_moments_has_no_ked():
 
 
 @pytest.mark.verifies("behaviour")
-def test_commands(tmp_path, capsys):
+def test_commands(tmp_path, answered):
     """The option of the command gives what Python gives; a picture and a table are written."""
     text = 'units = "m"\n[[solid.part]]\nbox = { width = 0.6, depth = 0.5, height = 0.7 }\ndensity = 2000\n'
     (tmp_path / "body.toml").write_text(text)
     out = [f"picture={tmp_path / 'a.png'}", f"csv={tmp_path / 'a.csv'}", tmp_path / "a.html"]
-    words = ["simulate", str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5", "--friction", "0.2", "--json"]
-    with pytest.raises(SystemExit) as stop:
-        main([*words, *(str(word) for each in out for word in ("--out", each))])
-    assert not stop.value.code
-    told = json.loads(capsys.readouterr().out)
+    words = ["simulate", tmp_path / "body.toml", "sine:amplitude=3,period=0.5", "--friction", "0.2"]
+    told = answered(*words, *(word for file in out for word in ("--out", file)))
     one = rk.simulate(SHORT, PULSE, friction=0.2)
     assert told["outcome"] == "slid"
     assert told["sliding_distance"] == pytest.approx(one.sliding_distance, rel=1e-9)
@@ -356,36 +352,20 @@ def test_refusals_of_studies(ask, says):
 
 
 @pytest.mark.verifies("behaviour")
-def test_commands_of_studies(tmp_path, capsys):
+def test_commands_of_studies(tmp_path, answered):
     """A map and a minimum of the command line, and of a job file, are those of Python; pictures are drawn."""
     body = "[[solid.part]]\nbox = { width = 0.5, depth = 0.6, height = 1.2 }\ndensity = 2000\n"
     (tmp_path / "body.toml").write_text(f'units = "m"\n{body}')
     tall = Solid(Part(box(0.5, 0.6, 1.2), 2000.0))
-    words = [str(tmp_path / "body.toml"), "sine:amplitude=3,period=0.5", "--friction", "0.6", "--json"]
-
-    def asked(*more):
-        with pytest.raises(SystemExit) as stop:
-            main(list(more))
-        assert not stop.value.code
-        return json.loads(capsys.readouterr().out)
-
+    words = [tmp_path / "body.toml", "sine:amplitude=3,period=0.5", "--friction", "0.6"]
     out = ["--out", f"picture={tmp_path / 'map.png'}"]
-    told = asked("map", *words, "--x", "scale=1:4:4", "--y", "period=0.4:0.8:3", *out)
+    told = answered("map", *words, "--x", "scale=1:4:4", "--y", "period=0.4:0.8:3", *out)
     grid = overturning_map(tall, PULSE, ("scale", [1, 2, 3, 4]), ("period", [0.4, 0.6, 0.8]), friction=0.6)
     assert told["mode"] == grid["mode"].values.tolist()
     assert (tmp_path / "map.png").stat().st_size > 1000
-    least = asked("minimum", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
+    least = answered("minimum", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
     python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
     assert least == pytest.approx(python, rel=1e-9)
-
-
-def _asked(capsys, *words):
-    """What a command prints as JSON."""
-    with pytest.raises(SystemExit) as stop:
-        main([*map(str, words), "--json"])
-    out, error = capsys.readouterr()
-    assert not stop.value.code, error
-    return json.loads(out)
 
 
 @pytest.fixture
@@ -407,17 +387,17 @@ def records(tmp_path):
 
 
 @pytest.mark.verifies("behaviour")
-def test_components_of_studies_in_files_and_commands(records, capsys):
+def test_components_of_studies_in_files_and_commands(records, answered):
     """x, y and z of [[motions]], and of the option --motion, are the components that Python takes."""
     folder, motions = records
     body, (x, y, z) = folder / "statue.toml", (f"{axis}={folder / axis}0.csv" for axis in "xyz")
     axes = ("--x", "scale=2.8,3.2", "--y", "friction=0.3,0.8")
-    told = _asked(capsys, "map", body, x, "--motion", y, "--motion", z, *axes)
+    told = answered("map", body, x, "--motion", y, "--motion", z, *axes)
     ask = (("scale", [2.8, 3.2]), ("friction", [0.3, 0.8]))
     python = overturning_map(STATUE, motions[0], *ask)
     assert told["peak_ratio"] == pytest.approx(python.peak_ratio.values, rel=1e-12)
     assert told["motion"]["name"] == "x0, y0, z0"
-    alone = _asked(capsys, "map", body, x, *axes)
+    alone = answered("map", body, x, *axes)
     assert alone["motion"]["name"] == "x0"
     assert alone["peak_ratio"] != pytest.approx(python.peak_ratio.values, rel=1e-3)
 
@@ -425,33 +405,33 @@ def test_components_of_studies_in_files_and_commands(records, capsys):
     job += "y = { axis = 'friction', values = [0.3, 0.8] }\n[motions]\nscale = 2\nx = { record = 'x0.csv' }\n"
     job += "y = { record = 'y0.csv', scale = 1.0 }\nz = { record = 'z0.csv' }\n"
     (folder / "job.toml").write_text(job)
-    assert _asked(capsys, "map", folder / "job.toml")["peak_ratio"] == told["peak_ratio"]
+    assert answered("map", folder / "job.toml")["peak_ratio"] == told["peak_ratio"]
     (folder / "job.toml").write_text(job.replace("scale = 1.0", "scale = 0.5"))
-    assert _asked(capsys, "map", folder / "job.toml")["peak_ratio"] != told["peak_ratio"]
+    assert answered("map", folder / "job.toml")["peak_ratio"] != told["peak_ratio"]
 
 
 @pytest.mark.verifies("behaviour")
-def test_fragilities_of_components_in_files_and_commands(records, capsys):
+def test_fragilities_of_components_in_files_and_commands(records, answered):
     """An axis that is named again begins the next motion; a campaign of the job file has the numbers of Python."""
     folder, motions = records
     words = [f"{axis}={folder / axis}{k}.csv" for k in (0, 1) for axis in "xy"]
     pairs = [{axis: motion[axis] for axis in "xy"} for motion in motions]
     levels, how = [3.0, 6.0, 9.0], ("--friction", "0.7", "--levels", "3,6,9")
-    told = _asked(capsys, "fragility", folder / "statue.toml", *words, *how)
+    told = answered("fragility", folder / "statue.toml", *words, *how)
     found = fragility_analysis(STATUE, pairs, levels, friction=0.7)
     assert told["motions"]["names"] == ["x0, y0, none", "x1, y1, none"]
     fell = found.responses.overturned.sum(axis=0).ravel().tolist()
     assert told["results"][0]["reached"]["overturned"] == fell
     assert 0 < sum(fell) < 6
     crossed = [words[0], words[3], words[2], words[1]]
-    names = _asked(capsys, "fragility", folder / "statue.toml", *crossed, *how)["motions"]["names"]
+    names = answered("fragility", folder / "statue.toml", *crossed, *how)["motions"]["names"]
     assert names == ["x0, y1, none", "x1, y0, none"]
     job = "[campaign]\nname = 'a'\nkind = 'stripes'\n[body]\nfile = 'statue.toml'\n[settings]\nfriction = 0.7\n"
     job += "[fragility]\nlevels = [3, 6, 9]\n"
     for k in (0, 1):
         job += f"[[motions]]\nx = {{ record = 'x{k}.csv' }}\ny = {{ record = 'y{k}.csv' }}\n"
     (folder / "job.toml").write_text(job)
-    assert _asked(capsys, "fragility", folder / "job.toml")["results"] == told["results"]
+    assert answered("fragility", folder / "job.toml")["results"] == told["results"]
 
 
 @pytest.mark.verifies("damage")
@@ -464,15 +444,14 @@ def test_fragilities_of_components_in_files_and_commands(records, capsys):
         ("x = { record = 'x0.csv' }\ny = { record = 'gone.csv' }", "motions\\[0\\]: y: gone.csv"),
     ],
 )
-def test_components_that_are_refused(records, capsys, motions, says):
+def test_components_that_are_refused(records, run, motions, says):
     """What components cannot be is said in one sentence."""
     folder, _ = records
     job = "[body]\nfile = 'statue.toml'\n[settings]\nfriction = 0.7\n[minimum]\n[[motions]]\n"
     (folder / "job.toml").write_text(job + motions)
-    with pytest.raises(SystemExit) as stop:
-        main(["minimum", str(folder / "job.toml")])
-    assert stop.value.code
-    assert re.search(says, " ".join(capsys.readouterr().err.replace("│", " ").split()))
+    code, _, err = run("minimum", folder / "job.toml")
+    assert code == 2
+    assert re.search(says, err)
 
 
 LIST = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,friction,body_file,units
@@ -488,7 +467,7 @@ negative,20,30,90,,-1,,
 
 
 @pytest.mark.verifies("second engine", "the plane engine, and `simulate_many` of the body itself", within="exact")
-def test_an_inventory_of_solids(records, capsys):
+def test_an_inventory_of_solids(records, answered):
     """A box on rough ground falls as often as its rectangle, a smooth one slides; bad rows are told and touch none."""
     folder, motions = records
     pairs = [rk.motions.scaled_to(both["x"], "pga", 7.0) for both in motions]
@@ -519,14 +498,14 @@ def test_an_inventory_of_solids(records, capsys):
     assert np.array_equal(alone.high_rotation.values, found.high_rotation.values)
 
     words = ("inventory", folder / "list.csv", "--motion", folder / "x0.csv", "--pga", "7m/s2")
-    told = {one["name"]: one for one in _asked(capsys, *words)["objects"]}
+    told = {one["name"]: one for one in answered(*words)["objects"]}
     assert [one["slid"] for one in told["smooth"]["directions"]] == [1, 1]
     assert told["plane"]["friction"] is None
-    sliding = {one["name"]: one for one in _asked(capsys, *words, "--friction", "0.1")["objects"]}
+    sliding = {one["name"]: one for one in answered(*words, "--friction", "0.1")["objects"]}
     assert [one["slid"] for one in sliding["plane"]["directions"]] == [1, 1]
     assert sliding["rough"]["directions"] == told["rough"]["directions"]
     job = (
         "[inventory]\nobjects = 'list.csv'\npga = '7m/s2'\n[settings]\nfriction = 0.1\n[motions]\nrecords = 'x0.csv'\n"
     )
     (folder / "job.toml").write_text(job)
-    assert {one["name"]: one for one in _asked(capsys, "inventory", folder / "job.toml")["objects"]} == sliding
+    assert {one["name"]: one for one in answered("inventory", folder / "job.toml")["objects"]} == sliding

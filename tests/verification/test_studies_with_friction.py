@@ -1,13 +1,10 @@
 """Studies of bodies that may slide, hop and fly: what the reference engine gives one by one, and what is known."""
 
-import json
-
 import numpy as np
 import pytest
 from random_cases import noise_motion, section
 
 import rocking as rk
-from rocking.cli import main
 from rocking.conventions import g
 from rocking.dynamics import ContactSettings, RandomRestitution, RockingParameters
 from rocking.dynamics.batch import Batch
@@ -233,23 +230,15 @@ def test_poisoned_rows():
 
 
 @pytest.mark.verifies("behaviour")
-def test_commands(capsys):
+def test_commands(run, answered):
     """The option and the key give one map; both at once are refused."""
-    words = ["map", "--width", "0.5", "--height", "1.2", "sine:amplitude=3,period=0.6", "--json"]
+    words = ["map", "--width", "0.5", "--height", "1.2", "sine:amplitude=3,period=0.6"]
     axes = ["--x", "scale=1:3:5", "--y", "period=0.4:0.8:3"]
     ways = ["--friction", "0.5"], ["--set", "settings.friction=0.5"], ["--friction", "0.3"]
-
-    def asked(*more):
-        with pytest.raises(SystemExit) as stop:
-            main([*words, *axes, *more])
-        printed = capsys.readouterr()
-        return stop.value.code or 0, printed.out, printed.err
-
-    modes = [json.loads(asked(*how)[1])["mode"] for how in ways]
+    modes = [answered(*words, *axes, *how)["mode"] for how in ways]
     assert modes[0] == modes[1]
     assert modes[0] != modes[2]
-    code, _, err = asked(*ways[0], *ways[1])
+    code, _, err = run(*words, *axes, *ways[0], *ways[1])
     assert code == 2
     assert "say the same" in err
-    whole = json.loads(asked("--friction", "0.5", "--restitution", "complementarity")[1])
-    assert whole["mode"] != modes[0]
+    assert answered(*words, *axes, *ways[0], "--restitution", "complementarity")["mode"] != modes[0]

@@ -45,17 +45,13 @@ def ended(desk, question):
     return desk.get(question)
 
 
-def test_the_answer_is_that_of_the_command_line(desk, tmp_path, capsys):
+def test_the_answer_is_that_of_the_command_line(desk, tmp_path, run):
     """The same JSON as the command prints for the same file, with a picture and a report beside it."""
-    from rocking.cli import main
-
     asked = desk.ask("predict", TABLES, {}, "cabinet")
     found = ended(desk, asked.id)
     assert (found.state, found.message, found.files) == ("done", "", ["picture.svg", "report.pdf", "table.csv"])
     (tmp_path / "same.toml").write_text(desk.tables(asked.id))
-    with pytest.raises(SystemExit):
-        main(["predict", str(tmp_path / "same.toml"), "--json"])
-    assert json.loads(desk.answer(asked.id)) == json.loads(capsys.readouterr().out)
+    assert json.loads(desk.answer(asked.id)) == json.loads(run("predict", tmp_path / "same.toml", "--json")[1])
     assert desk.file(asked.id, "picture.svg").read_bytes().startswith(b"<?xml")
     assert desk.file(asked.id, "report.pdf").read_bytes().startswith(b"%PDF")
     with pytest.raises(NotFound, match="has no file"):

@@ -1,6 +1,5 @@
 """Bodies in space from files: every shape against its closed form, meshes with their repairs, and what is refused."""
 
-import json
 import math
 import random
 import re
@@ -10,7 +9,6 @@ import pytest
 
 from rocking.bodies.formats import body_from_toml, describes_solid, read_body, read_plane_body, solid_from_toml
 from rocking.bodies.solid import Polyhedron, RoundBase, box
-from rocking.cli import main
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -114,7 +112,7 @@ def test_a_mesh_beside_the_file(tmp_path, mesh):
         solid_from_toml(text)
 
 
-def test_inner_parts_are_stated_at_every_door(tmp_path, capsys):
+def test_inner_parts_are_stated_at_every_door(tmp_path, run, answered):
     """A box of .75 m3 in one of 6 m3, wound like it: refused by name, 6 or 5.25 t as stated, in every answer."""
     trimesh = pytest.importorskip("trimesh")
     outer, inner = box(1.0, 2.0, 3.0), box(0.5, 1.0, 1.5)
@@ -126,15 +124,11 @@ def test_inner_parts_are_stated_at_every_door(tmp_path, capsys):
         read_body(path, units="m", density=1000.0)
     with pytest.raises(GeometryError, match=r"two\.obj: 1 closed part inside"):
         solid_from_toml('units = "m"\n' + part, folder=tmp_path)
-    said = ["equilibria", str(path), "--units", "m", "--density", "1000", "--json"]
-    with pytest.raises(SystemExit, match="2"):
-        main(said)
-    assert "--set body.inner_parts=solid or --set body.inner_parts=cavity" in capsys.readouterr().err
+    said = ["equilibria", path, "--units", "m", "--density", "1000"]
+    assert "--set body.inner_parts=solid or --set body.inner_parts=cavity" in run(*said)[2]
     for how, mass in (("solid", 6000.0), ("cavity", 5250.0)):
         text = 'units = "m"\n' + part.replace(" }", f", inner_parts = '{how}' }}")
-        with pytest.raises(SystemExit, match="0"):
-            main([*said, "--set", f"body.inner_parts={how}"])
-        printed = json.loads(capsys.readouterr().out)
+        printed = answered(*said, "--set", f"body.inner_parts={how}")
         solids = read_body(path, units="m", density=1000.0, inner_parts=how), solid_from_toml(text, folder=tmp_path)
         found = [(printed["body"]["mass"], printed["body"]["repairs"]), *((each.mass, each.repairs) for each in solids)]
         for weight, repairs in found:

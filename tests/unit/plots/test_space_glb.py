@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.dynamics.space.attitude import matrix
 from rocking.plots.space_glb import GltfFile
 
@@ -147,15 +146,3 @@ def test_what_is_told_to_touch_is_on_the_ground(solid, tmp_path):
     assert checked > 50
     assert array(extras["tilt"]).max() == pytest.approx(response.peak_tilt, rel=0.02)  # 60 poses a second
     assert np.abs(above[:, np.argmax(array(extras["tilt"]))]).max() > slack
-
-
-def test_plane_bodies_are_refused(tmp_path, capsys):
-    """What is plane has no such file, and nothing is written."""
-    sizes = ["--width", "1", "--height", "4"]
-    target = str(tmp_path / "body.glb")
-    for words in (["cor", *sizes], ["simulate", *sizes, "--free", "0.5"]):
-        with pytest.raises(SystemExit) as ended:
-            main([*words, "--out", target])
-        assert ended.value.code == 2
-        assert "a body in space, of which .glb files are" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())

@@ -1,13 +1,11 @@
 """Models of a file that the owner of the machine names are known by name; those that break their word are refused."""
 
 import hashlib
-import json
 import os
 
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.errors import RockingError
 from rocking.restitution import from_file, registry
 from rocking.restitution.from_file import register_own
@@ -42,7 +40,7 @@ def own(tmp_path, monkeypatch):
     return write
 
 
-def test_a_model_is_known_by_its_name(own, capsys):
+def test_a_model_is_known_by_its_name(own, answered):
     """0.9 of Housner's 15.5/17 by name, at the command line and on the page, with the file's hash; twice is once."""
     path = own(f"0.9 * {HOUSNER}")
     register_own()
@@ -52,10 +50,7 @@ def test_a_model_is_known_by_its_name(own, capsys):
     assert rk.coefficient_of_restitution(block, "mine") == pytest.approx(0.9 * 15.5 / 17.0, rel=1e-14, abs=0.0)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     assert rk.restitution.models()["mine"].reference == f"own model, mine.py, SHA-256 {digest}: my notes"
-    with pytest.raises(SystemExit) as stop:
-        main(["models", "mine", "--json"])
-    assert not stop.value.code
-    assert digest in json.loads(capsys.readouterr().out)["mine"]["reference"]
+    assert digest in answered("models", "mine")["mine"]["reference"]
     response = rk.simulate(block, rk.pulses.sine(4.0, 0.8), "0.98*mine")
     assert response._facts["restitution_file"] == f"mine.py, SHA-256 {digest}"
     assert "restitution_file" not in rk.simulate(block, rk.pulses.sine(4.0, 0.8), "ked")._facts
@@ -147,16 +142,12 @@ def test_negative_controls(own, value, name, reason):
     assert set(registry._MODELS) == before
 
 
-def test_a_command_and_a_server_refuse_the_file(own, capsys, monkeypatch):
+def test_a_command_and_a_server_refuse_the_file(own, run, monkeypatch):
     """A file that is not there, or is no code, stops every command, serve too, with words and no traceback."""
     monkeypatch.setattr("rocking.cli.serve._serve", lambda *_, **__: pytest.fail("it serves"))
     path = own("(")
     for words in (["cor", "--width", "1", "--height", "4"], ["serve", "--no-browser"]):
-        with pytest.raises(SystemExit) as stop:
-            main(words)
-        assert stop.value.code == 2
-        assert f"rocking: {path}" in capsys.readouterr().err
+        code, _, err = run(*words)
+        assert (code, f"rocking: {path}" in err) == (2, True)
     path.unlink()
-    with pytest.raises(SystemExit):
-        main(["serve", "--no-browser"])
-    assert "cannot be read" in capsys.readouterr().err
+    assert "cannot be read" in run("serve", "--no-browser")[2]

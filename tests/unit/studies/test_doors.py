@@ -1,13 +1,11 @@
 """rk.fragility and rk.inventory: datasets with units that say what the analyses behind them say, and refusals."""
 
-import json
 import math
 
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli import main
 from rocking.studies import fragility_analysis
 from rocking.studies.inventory import InventoryObject, Thresholds, assess
 from rocking.studies.inventory.hazard import Hazard
@@ -78,15 +76,12 @@ def test_inventory_is_the_assessment():
     assert labelled["uplift_acceleration"].attrs["units"] == "m/s2"
 
 
-def test_the_command_and_the_door_say_the_same(tmp_path, capsys):
+def test_the_command_and_the_door_say_the_same(tmp_path, answered):
     """One file, one family: each light, count and sentence of `rocking inventory --json`."""
     path = tmp_path / "list.csv"
     path.write_text("name,width_cm,depth_cm,height_cm\nvase,12,12,100\nbroken,?,1,1\nchest,120,90,100\n")
     labelled = rk.inventory(path, "point-source", pga="0.3g", count=4, seed=2)
-    command = ["inventory", str(path), "--synthetic", "point-source", "--pga", "0.3g", "--count", "4", "--seed", "2"]
-    with pytest.raises(SystemExit):
-        main([*command, "--json"])
-    said = json.loads(capsys.readouterr().out)
+    said = answered("inventory", path, "--synthetic", "point-source", "--pga", "0.3g", "--count", 4, "--seed", 2)
     assert labelled["object"].values.tolist() == [each["name"] for each in said["objects"]]
     assert labelled["light"].values.tolist() == [each["light"] for each in said["objects"]]
     assert labelled["in_words"].values.tolist() == [each["in_words"] for each in said["objects"]]

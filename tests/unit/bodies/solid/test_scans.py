@@ -14,7 +14,6 @@ from rocking.bodies.solid import _shells, box, extrusion, rotation_about
 from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
 from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid.standing import settled
-from rocking.cli import main
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -362,17 +361,10 @@ def test_thin_parts_stay_solid(tmp_path):
     assert found.volume == pytest.approx(walls + 0.3 * 0.02 * 0.4, rel=0.03)
 
 
-def test_on_the_command_line(tmp_path, capsys):
+def test_on_the_command_line(tmp_path, run, printed):
     """An open statue in mm, by one command: what was mended is printed; refusals name the options as they are typed."""
     trimesh.Trimesh(1000.0 * V[:-1], SIDES, process=False).export(tmp_path / "statue.stl")
-    command = ["cor", str(tmp_path / "statue.stl"), "--units", "mm"]
-    with pytest.raises(SystemExit) as stop:
-        main(command)
-    assert stop.value.code == 0
-    assert "! closed the open bottom" in capsys.readouterr().out
-    with pytest.raises(SystemExit):
-        main([*command, "--set", "body.repair=none"])
-    assert "--set body.repair=safe closes an open bottom" in capsys.readouterr().err
-    with pytest.raises(SystemExit):
-        main([*command, "--set", "body.wall=200"])
-    assert "leaves nothing hollow" in capsys.readouterr().err
+    command = ["cor", tmp_path / "statue.stl", "--units", "mm"]
+    assert "! closed the open bottom" in printed(*command)
+    assert "--set body.repair=safe closes an open bottom" in run(*command, "--set", "body.repair=none")[2]
+    assert "leaves nothing hollow" in run(*command, "--set", "body.wall=200")[2]

@@ -13,7 +13,6 @@ from rocking.bodies.solid import Part, Polyhedron, Solid, SolidMoments, box, ext
 from rocking.bodies.solid._known import check_possible
 from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid._self_crossing import check_crossings, meeting_boxes, pierced
-from rocking.cli import main
 from rocking.errors import GeometryError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -75,17 +74,6 @@ def test_a_bow_is_refused_with_its_place(tmp_path):
     # negative control: turned the right way, (1 + 0.9) / 2 of 4 m3
     whole = read_body(saved(tmp_path / "ok.obj", bow(0.9), COLUMN.faces), units="m", density=1000.0)
     assert whole.mass == pytest.approx(3800.0, rel=1e-13, abs=0.0)
-
-
-def test_cor_of_a_bow_is_one_sentence(capsys, tmp_path):
-    """The command line refuses the bow in words."""
-    path = saved(tmp_path / "bow.obj", bow(), COLUMN.faces)
-    with pytest.raises(SystemExit) as stop:
-        main(["cor", str(path), "--units", "m"])
-    printed = capsys.readouterr()
-    assert stop.value.code not in (0, None)
-    assert "passes through itself" in printed.err
-    assert "Traceback" not in printed.err + printed.out
 
 
 def test_a_corner_pulled_through_the_wall():

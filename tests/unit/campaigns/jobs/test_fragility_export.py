@@ -2,7 +2,6 @@
 
 import csv
 import re
-from contextlib import suppress
 from functools import cache, partial
 
 import numpy as np
@@ -13,7 +12,6 @@ import rocking as rk
 from rocking.campaigns import Campaign
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export
 from rocking.campaigns.jobs.findings import READ
-from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.studies import fragility_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
@@ -122,14 +120,12 @@ def test_refused_in_the_job(value):
         Job.of_text(f"{STRIPES}[export]\nbootstrap = {value}\n")
 
 
-def test_command_line(tmp_path, capsys, monkeypatch):
+def test_command_line(tmp_path, printed, monkeypatch):
     """`rocking campaign export` writes what the job asks for."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "job.toml").write_text(ASKED, encoding="utf-8")
-    for words in (("run", "job.toml", "--out", "c"), ("export", "c", "--out", "fragility=r.csv")):
-        with suppress(SystemExit):
-            main(["campaign", *words])
-    capsys.readouterr()
+    printed("campaign", "run", "job.toml", "--out", "c")
+    printed("campaign", "export", "c", "--out", "fragility=r.csv")
     assert (tmp_path / "r.csv").read_bytes() == to_csv(from_python(99, 6), tmp_path / "w.csv").read_bytes()
 
 

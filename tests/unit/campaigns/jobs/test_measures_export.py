@@ -14,7 +14,6 @@ import rocking as rk
 from rocking.campaigns import CampaignIncompleteError, CampaignInterrupted
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
 from rocking.campaigns.jobs.exporting import exports_of, measures_table
-from rocking.cli import main
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
@@ -234,14 +233,12 @@ def test_names_that_look_alike(wanted):
     assert np.isfinite(measures_table(alike).columns["p(a-b)"].values).all()
 
 
-def test_command_line(tmp_path, capsys, monkeypatch):
+def test_command_line(tmp_path, answered, monkeypatch):
     """`rocking campaign export` takes the restitution of which it is: another has another ranking; JSON says what."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "job.toml").write_text(text_of("housner", "ked"), encoding="utf-8")
-    exports = [f"export c --out measures={name}.csv --restitution {name} --json" for name in ("housner", "ked")]
-    for line in ("run job.toml --out c --json", *exports):
-        with pytest.raises(SystemExit):
-            main(["campaign", *line.split()])
-        told = json.loads(capsys.readouterr().out)
-    assert told["what"] == "measures"
+    answered("campaign", "run", "job.toml", "--out", "c")
+    for name in ("housner", "ked"):
+        told = answered("campaign", "export", "c", "--out", f"measures={name}.csv", "--restitution", name)
+        assert told["what"] == "measures"
     assert (tmp_path / "housner.csv").read_bytes() != (tmp_path / "ked.csv").read_bytes()

@@ -8,7 +8,6 @@ import pytest
 
 import rocking as rk
 from rocking import examples
-from rocking.cli import main
 from rocking.errors import InvalidValueError, RockingError, located
 from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.reading import InputFiles, read_text, tables_in, validated
@@ -67,13 +66,10 @@ def test_a_question_has_one_start(given):
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_examples_run_as_they_say(path, capsys):
+def test_examples_run_as_they_say(path, run):
     """Every example is recognised, answered, and prints JSON with the restitutions that it lists."""
     question = problem_in(path)
-    with pytest.raises(SystemExit) as stop:
-        main(["simulate", str(path), "--json"])
-    assert not stop.value.code
-    printed = json.loads(capsys.readouterr().out)
+    printed = json.loads(run("simulate", path, "--json")[1])
     assert [*printed["other_models"]] == [*question.restitutions][1:]
     first = question.answer(next(iter(question.restitutions.values())))
     assert printed["peak_rotation"] == first.peak_rotation
@@ -131,14 +127,3 @@ def test_slips_are_refused_by_name(case, tmp_path):
         problem_in(path)
     assert words in str(refused.value)
     assert str(refused.value).startswith(str(path))
-
-
-@pytest.mark.parametrize("more", [["--scale", "2"], ["--free", "0.5"], ["x.at2"], ["--restitution", "ked"]])
-def test_the_file_stands_alone(more, tmp_path, capsys):
-    """A file that says everything takes no option that says something of it again."""
-    path = tmp_path / "question.toml"
-    path.write_text(TEXT)
-    with pytest.raises(SystemExit) as stop:
-        main(["simulate", str(path), *more])
-    assert stop.value.code == 2
-    assert "says everything itself, so it takes no" in capsys.readouterr().err
