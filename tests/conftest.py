@@ -101,3 +101,20 @@ def refuses(run):
         assert err.count("\n") == 1
 
     return check
+
+
+@pytest.fixture
+def mesh(tmp_path):
+    """Return what writes a prism 1 x 1 x 4 m, or another shape, as a mesh: all of its faces or some, scaled or not."""
+    trimesh = pytest.importorskip("trimesh")
+    from rocking.bodies.solid import box
+
+    def write(name, scale=1.0, keep=slice(None), turn=None, shape=None):
+        shape = box(1.0, 1.0, 4.0) if shape is None else shape
+        faces = shape.faces[keep].copy()
+        if turn is not None:
+            faces[turn] = faces[turn, ::-1]
+        trimesh.Trimesh(shape.vertices * scale, faces, process=False).export(tmp_path / name)
+        return tmp_path / name
+
+    return write

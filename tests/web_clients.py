@@ -1,9 +1,15 @@
 """The web application in a folder of its own, and those who ask it: a script with its key, a page that is signed in."""
 
+import contextlib
 import hashlib
+import json
 import math
+import subprocess
+import sys
+from pathlib import Path
 
 from fastapi.testclient import TestClient
+from waiting import HANG
 
 from rocking.app.application import create_app
 from rocking.app.settings import Limits, ServerSettings
@@ -23,6 +29,23 @@ def script_of(app, **options):
     origin = state.settings.origin
     head = {"Authorization": f"Bearer {state.sessions.key}", "Origin": origin}
     return TestClient(app, base_url=origin, headers=head, **options)
+
+
+@contextlib.contextmanager
+def serving(folder, *words):
+    """Run `rocking serve` in a process of its own: the process, its address, and what a script sends as head."""
+    command = [sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--data", str(folder), *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        try:
+            told = json.loads(process.stdout.readline())
+            url, key = told["url"].partition("/#")[0].rstrip("/"), Path(told["key_file"]).read_text("utf-8").strip()
+            yield process, url, {"Authorization": f"Bearer {key}", "Origin": url}
+        finally:
+            process.terminate()
+            try:
+                process.wait(HANG)
+            except subprocess.TimeoutExpired:
+                process.kill()
 
 
 class Page:

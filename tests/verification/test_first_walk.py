@@ -3,8 +3,6 @@
 import json
 import math
 import re
-import subprocess
-import sys
 
 import pytest
 import xarray
@@ -57,14 +55,6 @@ OUTLINE = [
 MAP = "--motion sine:amplitude=1,period=0.8 --x frequency_ratio=0.5:8:30 --y amplitude_ratio=1:10:30"
 
 
-def rocking(folder, *words):
-    """What a command prints."""
-    ran = subprocess.run(
-        [sys.executable, "-m", "rocking", *words], cwd=folder, capture_output=True, text=True, check=True
-    )
-    return ran.stdout
-
-
 def expected(onto, share=0.6):
     """The coefficient by Housner's equation, with moments that sums over slices of the outline give."""
     body, slices = Polygon(OUTLINE), 2000
@@ -90,27 +80,28 @@ def expected(onto, share=0.6):
     control="within",
     room="doors",
 )
-def test_the_walk(tmp_path):
+def test_the_walk(tmp_path, monkeypatch, printed):
     """The own model has its coefficient, and the map counts the cells that it changes as two maps by themselves do."""
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "lean.toml").write_text(BODY)
     (tmp_path / "mymodel.py").write_text(MODEL)
-    assert "Which model to use" in rocking(tmp_path, "cor", "lean.toml", "--recommend")
-    assert "a student's idea" in rocking(tmp_path, "models", "mymodel.py:SpreadImpulse")
+    assert "Which model to use" in printed("cor", "lean.toml", "--recommend")
+    assert "a student's idea" in printed("models", "mymodel.py:SpreadImpulse")
     own = ("--restitution", "mymodel.py:SpreadImpulse")
-    text = rocking(tmp_path, "cor", "lean.toml", *own, "--restitution", "ked")
+    text = printed("cor", "lean.toml", *own, "--restitution", "ked")
     left, right = map(float, re.findall(r"spread-impulse\S*\s+(0\.\d+)", text))
     assert left == pytest.approx(expected("left"), abs=2e-6)  # six digits are printed
     assert right == pytest.approx(expected("right"), abs=2e-6)
     assert left != pytest.approx(expected("right"), abs=1e-3)  # the feet are not confused
 
-    both = rocking(tmp_path, "map", "lean.toml", *MAP.split(), *own, "--restitution", "housner", "--out", "map.png")
+    both = printed("map", "lean.toml", *MAP.split(), *own, "--restitution", "housner", "--out", "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     flipped, cells = map(int, re.search(r"in (\d+) of ([\d,]+) cells", both).groups())
     outcomes = []
     for model in (own[1], "housner"):
-        rocking(tmp_path, "map", "lean.toml", *MAP.split(), "--restitution", model, "--out", "one.nc")
+        printed("map", "lean.toml", *MAP.split(), "--restitution", model, "--out", "one.nc")
         with xarray.open_dataset(tmp_path / "one.nc") as table:
             outcomes.append(table["overturned"].values.copy())
     assert cells == outcomes[0].size == 900
     assert flipped == (outcomes[0] != outcomes[1]).sum() > 0
-    assert json.loads(rocking(tmp_path, "simulate", "lean.toml", "sine:amplitude=3,period=0.8", *own, "--json"))
+    assert json.loads(printed("simulate", "lean.toml", "sine:amplitude=3,period=0.8", *own, "--json"))

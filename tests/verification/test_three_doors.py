@@ -3,16 +3,14 @@
 import io
 import json
 import math
-import os
 import subprocess
 import sys
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
 from waiting import HANG
-from web_clients import new_application, script_of
+from web_clients import new_application, script_of, serving
 
 import rocking as rk
 from rocking import conventions
@@ -118,15 +116,11 @@ def served(tmp_path_factory):
     """A real server in a process of its own, asked over a socket."""
     import httpx
 
-    words = [sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--data", tmp_path_factory.mktemp("d")]
-    with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, text=True) as process:
-        told = json.loads(process.stdout.readline())
-        url = told["url"].partition("/#")[0].rstrip("/")
-        head = {"Authorization": f"Bearer {Path(told['key_file']).read_text().strip()}", "Origin": url}
-        with httpx.Client(base_url=url, headers=head, timeout=HANG) as client:
-            yield client
-        process.terminate()
-        process.wait(10)
+    with (
+        serving(tmp_path_factory.mktemp("d")) as (_, url, head),
+        httpx.Client(base_url=url, headers=head, timeout=HANG) as client,
+    ):
+        yield client
 
 
 def document_of(case, client, record):
@@ -149,17 +143,14 @@ def application(client, document):
     return {one.pop("label"): one for one in answer.json()["answers"]}
 
 
-def command_line(client, document, folder):
-    """What `rocking simulate FILE.toml --json` prints, of the file that the application hands out."""
+def unpacked(client, document, folder):
+    """The file that the application hands out."""
     bundle = client.post("/api/inputs.zip", json=document)
     assert bundle.status_code == 200, bundle.text
     with zipfile.ZipFile(io.BytesIO(bundle.content)) as files:
         files.extractall(folder)
     (toml,) = folder.rglob("*.toml")
-    words = [sys.executable, "-m", "rocking", "simulate", str(toml), "--json"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ}, timeout=HANG)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return toml
 
 
 def in_python(case, record):
@@ -230,7 +221,7 @@ def numbers_in(facts):
 
 @pytest.mark.verifies(against="application, command line and Python")
 @pytest.mark.parametrize("case", CASES)
-def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
+def test_three_doors_agree_to_the_last_digit(run, case, inside, record, tmp_path):
     """Application, command line and Python give equal float64 for every number of every restitution."""
     document = document_of(case, inside, record)
     answers = application(inside, document)
@@ -243,7 +234,9 @@ def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
         assert answer.pop("fall") == {
             "time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying),
         }  # fmt: skip
-    printed = command_line(inside, document, tmp_path)
+    code, out, err = run("simulate", unpacked(inside, document, tmp_path), "--json")
+    assert code == 0, err
+    printed = json.loads(out)
     others, _ = printed.pop("other_models"), printed.pop("units")
     first, *rest = answers.items()
     assert {key: value for key, value in first[1].items() if key != "series"} == printed

@@ -214,15 +214,7 @@ def trickled(target: Target) -> float:
     with socket.create_connection(("127.0.0.1", target.port), timeout=5) as line:
         line.sendall(b"GET / HTTP/1.1\r\nX: ")
         line.settimeout(0.05)
-        while time.perf_counter() - start < 2.5:
-            try:
-                line.sendall(b"a")
-                if not line.recv(1000):
-                    break
-            except TimeoutError:
-                continue
-            except ConnectionError:
-                break
+        ended_within(line, 2.5)
     return time.perf_counter() - start
 
 

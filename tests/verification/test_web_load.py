@@ -1,19 +1,16 @@
 """Fifty users at once while a campaign runs, on a real server."""
 
 import asyncio
-import json
 import os
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
 from waiting import HANG, allowed
+from web_clients import serving
 
 pytestmark = [pytest.mark.verifies(room="doors"), pytest.mark.speed]
 
@@ -39,18 +36,8 @@ JOB = {
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
     """Start `rocking serve` as a process of its own."""
-    folder = tmp_path_factory.mktemp("load")
-    command = [sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", "0", "--data", str(folder)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        try:
-            told = json.loads(process.stdout.readline())
-            key = Path(told["key_file"]).read_text(encoding="utf-8").strip()
-            head = {"Authorization": f"Bearer {key}", "Origin": told["url"].rstrip("/")}
-            yield {"url": told["url"].rstrip("/"), "head": head}
-        finally:
-            process.terminate()
-            process.wait(timeout=HANG)
+    with serving(tmp_path_factory.mktemp("load"), "--port", "0") as (_, url, head):
+        yield {"url": url, "head": head}
 
 
 async def one_user(client: httpx.AsyncClient, number: int, until: float) -> list[tuple[str, float, int]]:

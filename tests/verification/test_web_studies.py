@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 import websockets
 from waiting import HANG, allowed, wait_for
+from web_clients import serving
 
 from rocking.campaigns.jobs import Job, JobFolder, export
 
@@ -48,24 +49,11 @@ LONG["settings"]["longest_step"] = 0.002
 
 @dataclass
 class Server:
-    """A server in a process of its own.
-
-    Parameters
-    ----------
-    process : Popen
-        The process.
-    url, key : str
-        Where it is, and the key for scripts.
-    """
+    """A server in a process of its own."""
 
     process: "subprocess.Popen[str]"
     url: str
-    key: str
-
-    @property
-    def head(self) -> dict[str, str]:
-        """What a script sends with every request."""
-        return {"Authorization": f"Bearer {self.key}", "Origin": self.url}
+    head: dict[str, str]
 
     @cached_property
     def client(self) -> httpx.Client:
@@ -100,23 +88,10 @@ class Server:
 
 @contextmanager
 def _serving(folder: Path) -> Iterator[Server]:
-    command = [sys.executable, "-m", "rocking", "serve", "--json", "--data", str(folder), "--workers", "1"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    try:
-        assert process.stdout is not None
-        told = json.loads(process.stdout.readline())
-        server = Server(process, told["url"], Path(told["key_file"]).read_text().strip())
+    with serving(folder, "--workers", "1") as told:
+        server = Server(*told)
         with server.client:
             yield server
-    finally:
-        process.terminate()
-        try:
-            process.wait(10.0)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        if process.stdout is not None:
-            process.stdout.close()
 
 
 def _children(study: str) -> list[int]:

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from station_files import channel, station_xml
 
 import rocking as rk
 from rocking import conventions
@@ -20,20 +21,7 @@ WAVE = 0.3 * np.sin(2.0 * np.pi * np.arange(800) * 0.01) * np.exp(-0.3 * np.aran
 COLUMNS = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(WAVE)).encode()
 BARE = "\n".join(f"{value:.6f}" for value in WAVE).encode()
 
-STATIONS = """<?xml version='1.0' encoding='UTF-8'?>
-<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">
- <Source>typed</Source><Created>1999-12-31T00:00:00</Created>
- <Network code="XX"><Station code="ABC">
-  <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Site><Name>Cellar</Name></Site>
-  <Channel code="HNE" locationCode="" startDate="1960-01-01T00:00:00">
-   <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Depth>0.0</Depth>
-   <SampleRate>100.0</SampleRate>
-   <Response><InstrumentSensitivity><Value>2000.0</Value><Frequency>1.0</Frequency>
-    <InputUnits><Name>M/S**2</Name></InputUnits><OutputUnits><Name>COUNTS</Name></OutputUnits>
-   </InstrumentSensitivity></Response>
-  </Channel></Station></Network>
-</FDSNStationXML>
-"""
+STATIONS = station_xml(channel(gain=2000.0))
 
 
 def sent(client, content, name="a.txt", **query):

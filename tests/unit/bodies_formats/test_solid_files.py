@@ -33,23 +33,6 @@ SHAPES = {
 }
 
 
-@pytest.fixture
-def mesh(tmp_path):
-    """Write a prism 1 x 1 x 4 m as a mesh: all of its faces or some, as they are or in mm."""
-    trimesh = pytest.importorskip("trimesh")
-
-    def write(name, scale=1.0, keep=slice(None), turn=None, prism=None):
-        shape = box(1.0, 1.0, 4.0) if prism is None else prism
-        faces = shape.faces[keep].copy()
-        if turn is not None:
-            faces[turn] = faces[turn, ::-1]
-        path = tmp_path / name
-        trimesh.Trimesh(shape.vertices * scale, faces, process=False).export(path)
-        return path
-
-    return write
-
-
 @pytest.mark.verifies("closed form", "volumes and centres of all shapes, in three units", within="1e-12")
 @pytest.mark.parametrize("unit", [("m", 1.0), ("cm", 0.01), ("ft", 0.3048)])
 @pytest.mark.parametrize(("shape", "volume", "height"), SHAPES.values(), ids=list(SHAPES))
@@ -149,7 +132,7 @@ def test_meshes_ask_for_their_unit(mesh, name):
 
 def test_glb_is_read_as_its_specification_says(mesh):
     """GLB is in metres with y up, and that is told; asked for z, the same file lies down."""
-    path = mesh("a.glb", prism=box(1.0, 4.0, 1.0))
+    path = mesh("a.glb", shape=box(1.0, 4.0, 1.0))
     found = read_body(path)
     assert found.centre[2] - found.ground == pytest.approx(2.0)
     assert found.repairs == ("read in m and with y up, as the specification of GLB says",)
@@ -172,7 +155,7 @@ def test_holes_are_refused_or_closed(mesh):
     rings = [(0, 3, 2, 1), (0, 1, 5, 9, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 8, 7), (9, 5, 6, 7, 8), (4, 9, 8)]
     faces = np.array([(ring[0], ring[i], ring[i + 1]) for ring in rings for i in range(1, len(ring) - 1)])
     prism = Polyhedron(points, faces)
-    path = mesh("small.ply", keep=slice(0, -1), prism=prism)
+    path = mesh("small.ply", keep=slice(0, -1), shape=prism)
     found = read_body(path, units="m", density=1000.0)
     assert found.mass == pytest.approx(4000.0, rel=1e-9)
     assert any(sentence.startswith("closed 1 hole") for sentence in found.repairs)

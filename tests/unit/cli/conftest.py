@@ -25,3 +25,15 @@ def _quantities(monkeypatch, request):
         return plain(answer)
 
     monkeypatch.setattr(Answer, "plain", checked)
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Return what writes a file of the user's."""
+
+    def write(text, name="body.toml"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write

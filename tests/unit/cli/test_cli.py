@@ -21,11 +21,9 @@ class Mine(rk.restitution.RestitutionModel):
 
 
 @pytest.fixture
-def own(tmp_path):
+def own(file):
     """File of a model of the user's."""
-    path = tmp_path / "mine.py"
-    path.write_text(MINE, encoding="utf-8")
-    return path
+    return file(MINE, "mine.py")
 
 
 def test_cor_json_and_csv(run, tmp_path):

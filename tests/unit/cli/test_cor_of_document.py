@@ -19,11 +19,9 @@ models = ["ked", "housner"]
 
 
 @pytest.fixture
-def taken(tmp_path):
+def taken(file):
     """Return a file to take away, without the record beside it."""
-    path = tmp_path / "response.toml"
-    path.write_text(TAKEN)
-    return path
+    return file(TAKEN, "response.toml")
 
 
 def test_the_body_is_taken_and_the_rest_is_for_simulate(run, taken):

@@ -24,34 +24,6 @@ WEDGE = (
 )
 
 
-@pytest.fixture
-def file(tmp_path):
-    """Write a body file."""
-
-    def write(text, name="body.toml"):
-        path = tmp_path / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
-
-
-@pytest.fixture
-def mesh(tmp_path):
-    """Write the faces of a shape as a mesh."""
-    trimesh = pytest.importorskip("trimesh")
-
-    def write(name, scale=1.0, keep=slice(None), turn=None, shape=None):
-        shape = box(1.0, 1.0, 4.0) if shape is None else shape
-        faces = shape.faces[keep].copy()
-        if turn is not None:
-            faces[turn] = faces[turn, ::-1]
-        trimesh.Trimesh(shape.vertices * scale, faces, process=False).export(tmp_path / name)
-        return tmp_path / name
-
-    return write
-
-
 def test_prism_edge_by_edge(answered, file):
     """Prism 1 x 1 x 4: Housner 31/34, horizontal momentum 16/17, KED 0.9473668350323697, p^2 = 3 g / (4 R)."""
     answer = answered(file(PRISM))

@@ -16,18 +16,6 @@ DRUM = 'units = "m"\n[[solid.part]]\ncylinder = { diameter = 1.0, height = 2.0 }
 G = 9.80665
 
 
-@pytest.fixture
-def file(tmp_path):
-    """Write a body file."""
-
-    def write(text):
-        path = tmp_path / "body.toml"
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
-
-
 def test_a_box_in_closed_form(answered, file):
     """Six poses, the one that it stands in, and the rise over its edges and towards its corners."""
     answer = answered(file(PRISM))

@@ -13,19 +13,15 @@ COMMAND = "inventory"
 
 
 @pytest.fixture
-def objects(tmp_path):
+def objects(file):
     """File of two objects and a bad row."""
-    path = tmp_path / "objects.csv"
-    path.write_text(LIST, encoding="utf-8")
-    return path
+    return file(LIST, "objects.csv")
 
 
 @pytest.fixture
-def record(tmp_path):
+def record(file):
     """File of a record."""
-    path = tmp_path / "record.txt"
-    path.write_text(RECORD, encoding="utf-8")
-    return path
+    return file(RECORD, "record.txt")
 
 
 FEW = ("--synthetic", "point-source", "--count", "80", "--seed", "2")

@@ -18,11 +18,9 @@ PEER = "A DATABASE\nSOMEWHERE 01/17/94, CELLAR, 360\nACCELERATION IN UNITS OF G\
 
 
 @pytest.fixture
-def triangle(tmp_path):
+def triangle(file):
     """File of the triangle."""
-    path = tmp_path / "triangle.txt"
-    path.write_text(TRIANGLE, encoding="utf-8")
-    return path
+    return file(TRIANGLE, "triangle.txt")
 
 
 def test_record_by_closed_form(answered, triangle):

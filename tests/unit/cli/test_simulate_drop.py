@@ -17,11 +17,9 @@ BLOCK = ("--width", "0.5", "--height", "1.4", "--friction", "0.6")
 
 
 @pytest.fixture
-def body(tmp_path):
+def body(file):
     """Body file of a prism."""
-    path = tmp_path / "prism.toml"
-    path.write_text(PRISM, encoding="utf-8")
-    return path
+    return file(PRISM, "prism.toml")
 
 
 @pytest.mark.verifies("closed form", "time and energy of a landing, of a solid and of a plane body", within="1e-9")

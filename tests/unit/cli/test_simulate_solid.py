@@ -32,21 +32,17 @@ def same(answer, response):
 
 
 @pytest.fixture
-def body(tmp_path):
+def body(file):
     """Body file of a prism."""
-    path = tmp_path / "prism.toml"
-    path.write_text(PRISM, encoding="utf-8")
-    return path
+    return file(PRISM, "prism.toml")
 
 
 @pytest.fixture
-def record(tmp_path):
+def record(file):
     """Time and three components in four columns [m/s2]."""
     k = np.arange(60)
     rows = np.column_stack([k * 0.02, 3.0 * np.sin(k * 0.2), 3.5 * np.sin(k * 0.15), 2.0 * np.cos(k * 0.3)])
-    path = tmp_path / "record.txt"
-    path.write_text("\n".join(" ".join(f"{x:.6f}" for x in row) for row in rows) + "\n", encoding="utf-8")
-    return path
+    return file("\n".join(" ".join(f"{x:.6f}" for x in row) for row in rows) + "\n", "record.txt")
 
 
 def test_json_is_python_to_the_last_digit(answered, body):

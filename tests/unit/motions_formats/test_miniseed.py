@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from station_files import channel, station_xml
 
 from rocking.errors import InvalidValueError, MissingExtraError, RecordError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
@@ -19,20 +20,7 @@ WITHOUT = importlib.util.find_spec("obspy") is None
 COPIES = max(1, int(os.environ.get("ROCKING_FUZZ", "2000")) // 10)
 """Damaged copies; fewer than of a text format, since ObsPy takes longer over each: 200 unless ROCKING_FUZZ is set."""
 COUNTS = [1000, 3000, -1000, 1000, 2000, 0]  # mean 1000
-STATIONS = """<?xml version='1.0' encoding='UTF-8'?>
-<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">
- <Source>typed</Source><Created>1999-12-31T00:00:00</Created>
- <Network code="XX"><Station code="ABC">
-  <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Site><Name>Cellar</Name></Site>
-  <Channel code="HNE" locationCode="" startDate="1960-01-01T00:00:00">
-   <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Depth>0.0</Depth>
-   <SampleRate>100.0</SampleRate>
-   <Response><InstrumentSensitivity><Value>2000.0</Value><Frequency>1.0</Frequency>
-    <InputUnits><Name>M/S**2</Name></InputUnits><OutputUnits><Name>COUNTS</Name></OutputUnits>
-   </InstrumentSensitivity></Response>
-  </Channel></Station></Network>
-</FDSNStationXML>
-"""
+STATIONS = station_xml(channel(gain=2000.0))
 
 
 def recorded(*rows: Any, codes: tuple[str, ...] = ("HNE",), late: float = 0.0) -> Source:

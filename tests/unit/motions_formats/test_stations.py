@@ -1,60 +1,17 @@
 """StationXML files beside counts: by network, station, location, channel and date, in files and in folders."""
 
-import numpy as np
-import pytest
+import hashlib
 
-from rocking.errors import RecordError
-from rocking.motions import processed
+import pytest
+from station_files import burst, channel, station_xml, write_counts
+
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions import GroundMotion, processed
 from rocking.motions.formats import read_motion, read_records
+from rocking.motions.formats.reader import motions_in
 
 obspy = pytest.importorskip("obspy")
 pytestmark = pytest.mark.verifies(room="motions and records")
-
-CORNER = 8.0  # of the first-order low pass that the instrument is [Hz]
-
-
-def channel(code="HNE", location="", gain=4000.0, begins="1960-01-01", ends="", unit="M/S**2", counts="COUNTS", dip=0):
-    """One channel of a StationXML file: a low pass of first order; gain [counts/unit]."""
-    factor = 2.0 * np.pi * CORNER * (1.0 + CORNER**-2) ** 0.5
-    names = f"<InputUnits><Name>{unit}</Name></InputUnits><OutputUnits><Name>{counts}</Name></OutputUnits>"
-    azimuth = 0.0 if code == "HNN" else 90.0
-    until = f' endDate="{ends}T00:00:00"' if ends else ""
-    return f"""<Channel code="{code}" locationCode="{location}" startDate="{begins}T00:00:00"{until}>
-   <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Depth>0.0</Depth>
-   <Azimuth>{azimuth}</Azimuth><Dip>{dip}</Dip><SampleRate>100.0</SampleRate>
-   <Response><InstrumentSensitivity><Value>{gain}</Value><Frequency>1.0</Frequency>{names}</InstrumentSensitivity>
-    <Stage number="1"><PolesZeros>{names}<PzTransferFunctionType>LAPLACE (RADIANS/SECOND)</PzTransferFunctionType>
-      <NormalizationFactor>{factor}</NormalizationFactor><NormalizationFrequency>1.0</NormalizationFrequency>
-      <Pole number="0"><Real>{-2.0 * np.pi * CORNER}</Real><Imaginary>0.0</Imaginary></Pole>
-     </PolesZeros><StageGain><Value>{gain}</Value><Frequency>1.0</Frequency></StageGain></Stage></Response>
-  </Channel>"""
-
-
-def station_xml(*channels, station="ABC"):
-    place = (
-        "<Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Site><Name>Cellar</Name></Site>"
-    )
-    return (
-        '<?xml version="1.0"?><FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">'
-        "<Source>typed</Source><Created>1999-12-31T00:00:00</Created>"
-        f'<Network code="XX"><Station code="{station}">{place}{"".join(channels)}</Station></Network></FDSNStationXML>'
-    )
-
-
-def burst():
-    time = np.arange(2000) * 0.01
-    return 3.0 * np.exp(-(((time - 10.0) / 0.8) ** 2)) * np.sin(2.0 * np.pi * 5.0 * (time - 10.0))
-
-
-def write_counts(path, location="", code="HNE", station="ABC", gain=4000.0):
-    """The counts that the instrument makes of a burst of 5 Hz; gain [counts/(m/s2)] at 1 Hz."""
-    low_pass = gain * (1.0 + CORNER**-2) ** 0.5 / (1.0 + 1j * np.fft.rfftfreq(4096, 0.01) / CORNER)
-    counts = np.fft.irfft(np.fft.rfft(burst(), 4096) * low_pass, 4096)[:2000]
-    trace = obspy.Trace(np.rint(counts).astype(np.int32))
-    about = {"network": "XX", "station": station, "location": location, "channel": code, "delta": 0.01}
-    trace.stats.update(about)
-    trace.write(str(path), format="MSEED")
-    return path
 
 
 def with_response_out(path, stations):
@@ -156,3 +113,27 @@ def test_cases_with_stations(case_records):
     assert len(records) == 2
     assert not records.left_out
     assert all(part is not None for record in records for part in record.parts)
+
+
+@pytest.mark.verifies("closed form", "a low pass of first order", within="2e-3", control="within")
+def test_a_known_response_is_taken_out(tmp_path):
+    """What a first-order low pass made of a burst of 5 Hz is the burst again, to 0.2 %; its counts are 10 % off."""
+    stations = tmp_path / "station.xml"
+    stations.write_text(station_xml(channel()), encoding="utf-8")
+    write_counts(tmp_path / "counts.mseed")
+    (motion,) = motions_in(tmp_path / "counts.mseed", stations=stations)
+    found = processed(motion, [f"response:stations={stations},low=0.2,high=30"])
+    # counts are whole, and 12000 stand for the peak
+    assert found.acceleration == pytest.approx(burst(), abs=2e-3 * 3.0)
+    assert motion.acceleration != pytest.approx(burst(), abs=0.1 * 3.0)
+    digest = hashlib.sha256(stations.read_bytes()).hexdigest()
+    assert found.provenance[-1].startswith(f"response of the instrument by station.xml, SHA-256 {digest} removed")
+    (in_set,) = read_records(tmp_path / "*.mseed", stations=stations)  # as a set of one, which needs it as well
+    assert in_set.x.acceleration.tolist() == motion.acceleration.tolist()
+    with pytest.raises(RecordError, match="counts"):
+        read_records(tmp_path / "*.mseed")
+    for words, message in (("low=0.2,high=45", "high must be"), ("low=0,high=20", "low must be")):
+        with pytest.raises(InvalidValueError, match=message):
+            processed(motion, [f"response:stations={stations},{words}"])
+    with pytest.raises(InvalidValueError, match="counts of a recorder"):
+        processed(GroundMotion([0.0, 1.0], 0.01), [f"response:stations={stations}"])
