@@ -42,9 +42,10 @@ def left_out(number: int) -> dict[str, Any]:
     return {
         "share": SHARES[number % len(SHARES)],
         "groups": sum(each.within for each in groups) / len(groups),
-        "measurements": sum(each.inside for each in groups) / sum(each.rows for each in groups),
-        "single": sum(each.inside for each in groups if each.rows == 1) / sum(each.rows == 1 for each in groups),
-        "width": float(np.mean([each.width for each in groups])),
+        "measurements": sum(each.inside for each in groups) / sum(each.measurements for each in groups),
+        "single": sum(each.inside for each in groups if each.measurements == 1)
+        / sum(each.measurements == 1 for each in groups),
+        "width": float(np.mean([each.interval_width for each in groups])),
     }
 
 

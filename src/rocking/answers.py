@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.conventions import UNITS
 from rocking.messages import Message
-from rocking.quantities import QUANTITIES, Quantity
+from rocking.quantities import QUANTITIES, Quantity, quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +70,8 @@ class Answer:
         """Return the values as JSON has them, null where there is no finite number, and the unit of each quantity."""
         own = dict(self.quantities)
         tree = _plain(self, own)
-        known = {**QUANTITIES, **own}
-        owners = dict.fromkeys(name for _, name in _owners(tree, (), known) if name and known[name].unit)
-        units = {name: known[name].unit for name in owners}
+        owners = dict.fromkeys(name for _, name in _owners(tree, (), own) if name)
+        units = {name: entry.unit for name in owners if (entry := quantity(name, own)) and entry.unit}
         return {**tree, "units": units} if units else tree
 
     @property
@@ -80,7 +79,7 @@ class Answer:
         """Numbers without an entry in `rocking.quantities`, by their keys; none if all is well."""
         own = dict(self.quantities)
         tree = _plain(self, own)
-        return [path for path, name in _owners(tree, (), {**QUANTITIES, **own}) if not name]
+        return [path for path, name in _owners(tree, (), own) if not name]
 
 
 def _array(name: str, values: Sequence[Any]) -> np.ndarray:
@@ -111,19 +110,19 @@ def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one 
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _owners(value: Any, path: tuple[str, ...], known: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+def _owners(value: Any, path: tuple[str, ...], own: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     """Yield the keys of every number, and the last of them that is a quantity; empty if none is."""
     if isinstance(value, dict):
         for name, each in value.items():
-            yield from _owners(each, (*path, name), known)
+            yield from _owners(each, (*path, name), own)
     elif isinstance(value, list):
         # the numbers of a list have one quantity
         number = next((each for each in value if isinstance(each, (int, float)) and not isinstance(each, bool)), None)
         for each in value if number is None else [number]:
-            yield from _owners(each, path, known)
+            yield from _owners(each, path, own)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        name = next((each for each in reversed(path) if each in known), "")
-        has_unit = bool(name) and (isinstance(value, int) or bool(known[name].unit))
+        name, entry = next(((each, entry) for each in reversed(path) if (entry := quantity(each, own))), ("", None))
+        has_unit = entry is not None and (isinstance(value, int) or bool(entry.unit))
         yield ".".join(path), name if has_unit else ""
 
 

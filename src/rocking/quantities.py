@@ -1,7 +1,8 @@
 """Every result once: its name, unit and meaning, and what its codes stand for; tables, files, answers read it here."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any
 
 from rocking.outcome import UNCOUNTED, ContactMode, Outcome, Regime, Status
@@ -56,10 +57,30 @@ def with_units(values: Mapping[str, Any]) -> dict[str, Any]:
     >>> with_units({"mass": 2.0, "engine": "fast", "semi_diagonal_left": 1.0})
     {'mass': 2.0, 'engine': 'fast', 'semi_diagonal_left': 1.0, 'mass_units': 'kg', 'semi_diagonal_left_units': 'm'}
     """
-    numbers = (name for name, value in values.items() if not isinstance(value, str))
-    entries = {name: QUANTITIES.get(name.removesuffix("_left").removesuffix("_right")) for name in numbers}
+    entries = {name: quantity(name) for name, value in values.items() if not isinstance(value, str)}
     units = {f"{name}_units": entry.unit for name, entry in entries.items() if entry and entry.unit not in {"", "1"}}
     return {**values, **units}
+
+
+_ENDS = {
+    "_low": "lower end of the 95 % interval", "_high": "upper end of the 95 % interval", "_left": "left foot",
+    "_right": "right foot",
+}  # fmt: skip
+
+
+def quantity(name: str, own: Mapping[str, Quantity] = MappingProxyType({})) -> Quantity | None:
+    """Return the entry of a name; own: entries of one answer, which take precedence.
+
+    A name with _low, _high, _left or _right after it is that of an end of the interval, or of one foot.
+
+    >>> quantity("scatter_low").meaning
+    'logarithmic scatter, lower end of the 95 % interval'
+    """
+    if entry := own.get(name) or QUANTITIES.get(name):
+        return entry
+    end = next((each for each in _ENDS if name.endswith(each)), "")
+    entry = quantity(name.removesuffix(end), own) if end else None
+    return entry and replace(entry, name=name, meaning=f"{entry.meaning}, {_ENDS[end]}", label="")
 
 
 def _words(members: Iterable[Any]) -> dict[int, str]:
@@ -234,8 +255,6 @@ _BODY = (
 _IMPACT_MODELS = (
     Quantity("low_95", "1", "lower end of the 95 % interval of one measured body"),
     Quantity("high_95", "1", "upper end of the 95 % interval of one measured body"),
-    Quantity("coefficient_low", "1", "smallest coefficient that the printed digits allow"),
-    Quantity("coefficient_high", "1", "largest coefficient that the printed digits allow"),
     Quantity("impulse_ratio", "1", "distance of the impulse over the lever of the new foot", label="k"),
     Quantity("impulse_position", "m", "x of the impulse on the ground"),
     Quantity("energy_loss", "1", "fraction of the kinetic energy that is lost at the impact"),
@@ -291,8 +310,6 @@ _STUDIES = (
     Quantity("only_second", "1", "number of histories that overturn only with the second"),
     Quantity("compared", "1", "number of histories that are compared"),
     Quantity("unknown", "1", "number of histories without a result in one of both"),
-    Quantity("share_low", "1", "lower end of the 95 % interval of a fraction"),
-    Quantity("share_high", "1", "upper end of the 95 % interval of a fraction"),
     Quantity("not_lifted", "1", "number of histories without uplift"),
     Quantity("rocked", "1", "number of histories with rocking and without overturning"),
     Quantity("largest_peak_ratio", "1", "largest peak ratio without overturning", label="peak / alpha"),
@@ -326,13 +343,8 @@ _DECISIONS = (
     Quantity("beside", "1", "probability of overturning with another restitution model"),
     Quantity("sliding_beyond", "m", "sliding distance of which the probability is given"),
     Quantity("per_motion", "1", "probability under each motion"),
-    Quantity("per_motion_low", "1", "lower end of the 95 % interval under each motion"),
-    Quantity("per_motion_high", "1", "upper end of the 95 % interval under each motion"),
-    *(
-        Quantity(f"{index}{end}", "1", f"{words} of the variance of overturning{meaning}")
-        for index, words in (("first", "first-order index"), ("total", "total index"))
-        for end, meaning in (("", ""), ("_low", ", 2.5 %"), ("_high", ", 97.5 %"))
-    ),
+    Quantity("first", "1", "first-order index of the variance of overturning"),
+    Quantity("total", "1", "total index of the variance of overturning"),
     Quantity("input_low", "1", "mean of the input in the lowest fifth of its samples, in the unit of the input"),
     Quantity("input_high", "1", "mean of the input in the highest fifth of its samples, in the unit of the input"),
     Quantity("probability_low", "1", "probability of overturning there, lowest fifth"),
@@ -474,6 +486,55 @@ _IMPACTS_AND_INTERVALS = (
     Quantity("end", "s", "end of the interval", label="to", digits=".6f"),
     Quantity("distance", "m", "path of the feet along the ground in the interval", label="sliding distance"),
 )
+_IDENTIFICATION = (
+    Quantity("no_scatter", "1", "probability that the coefficient does not scatter", digits=".3g"),
+    Quantity("trend", "1", "slope of the logarithm of the coefficient over that of the speed"),
+    Quantity("independent", "1", "number of independent measured values"),
+    Quantity("advantage", "1", "logarithm of the likelihood over that of times with a constant mean interval"),
+    Quantity("residual_times", "s", "times of the residuals"),
+    Quantity("speed", "rad/s", "angular velocity before the impact, without sign"),
+    Quantity("release_ratio", "1", "initial rotation over the slenderness angle", digits="g"),
+    Quantity("timing_noise", "s", "standard deviation of a measured time", digits=".2g"),
+    Quantity("deviation", "1", "standard deviation of the mean coefficient", digits=".2g"),
+    Quantity("clock", "s", "lead of the clock of the measurement over that of the motion"),
+    Quantity("gain", "1", "measured over true rotation"),
+    Quantity("stretches", "1", "number of measured states at which half cycles begin anew"),
+    Quantity("half_cycles_left_out", "1", "number of half cycles that rocking alone does not explain"),
+    Quantity("used", "s", "duration of the half cycles that are used"),
+    Quantity("measured", "s", "duration of the measurement"),
+    Quantity("predictable", "s", "time up to which the rotation can be predicted from rest"),
+    Quantity("common", "1", "standard deviation of the logarithm of the coefficient, common to all trials"),
+)
+_SCORES = (
+    Quantity("outcomes", "1", "number of outcomes"),
+    Quantity("happened", "1", "number of outcomes with the event"),
+    Quantity("left_out", "1", "number of outcomes without a probability"),
+    Quantity("brier", "1", "Brier score", label="Brier", digits=".3f"),
+    Quantity("logarithmic", "1", "logarithmic score", digits=".3f"),
+    Quantity("balanced_accuracy", "1", "balanced accuracy", digits=".3f"),
+    Quantity("sureness", "1", "overconfidence; positive if overconfident"),
+    Quantity("calibration", "1", "fitted parameters of a calibration"),
+    Quantity("predicted", "1", "mean of the predicted probabilities", digits=".2f"),
+    Quantity("observed", "1", "fraction of the outcomes with the event", digits=".2f"),
+)
+_LEAGUE = (
+    Quantity("correlation", "1", "correlation with the measurements"),
+    Quantity("concordance", "1", "concordance with the measurements"),
+    Quantity("log_loss_rmse", "1", "root mean square error of the logarithm of the energy loss"),
+    Quantity("leave_one_out", "1", "root mean square error of measurements left out one by one"),
+    Quantity("leave_group_out", "1", "root mean square error of groups left out one by one"),
+    Quantity("bic", "1", "Bayesian information criterion"),
+    Quantity("by_group", "1", "root mean square error of each group"),
+    Quantity("by_band", "1", "root mean square error in each band of h/b"),
+    Quantity("ahead_of_ked", "1", "error of KED beyond that of the model: value, low, high"),
+    Quantity("fitted", "1", "fitted parameters of a model"),
+    Quantity("shares", "1", "shares of the scatter"),
+    Quantity("inside", "1", "number of measurements within their intervals"),
+    Quantity("interval_width", "1", "mean width of the intervals"),
+    Quantity("covered", "1", "number of measurements within their intervals, and of all"),
+    Quantity("printed", "1", "values that the paper prints"),
+    Quantity("recomputed", "1", "values that are recomputed"),
+)
 QUANTITIES: dict[str, Quantity] = {
     each.name: each
     for each in (
@@ -481,6 +542,9 @@ QUANTITIES: dict[str, Quantity] = {
         *_IMPACT_MODELS,
         *_STUDIES,
         *_DECISIONS,
+        *_IDENTIFICATION,
+        *_SCORES,
+        *_LEAGUE,
         *_INVENTORY,
         *_MOTION,
         *_RESPONSE,

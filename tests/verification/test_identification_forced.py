@@ -185,7 +185,7 @@ def test_mirror_images_have_the_same_coefficients(response):
     assert straight.coefficients["right"].low < 0.86 < straight.coefficients["right"].high
     assert "Friction is not identified" in str(straight)
     assert math.isnan(straight.forced.friction.value)
-    assert straight.to_dict()["forced"]["stretches"] >= 1
+    assert straight.answer()["forced"]["stretches"] >= 1
 
 
 @pytest.mark.verifies("damage", "what cannot be identified under a motion", room="evidence")

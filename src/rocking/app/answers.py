@@ -18,7 +18,7 @@ from rocking import answers
 from rocking.app.errors import Refused, kind_of, kind_of_status
 from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
-from rocking.quantities import QUANTITIES
+from rocking.quantities import quantity as quantity_of
 
 Point = tuple[float, float]  # x and y [m]
 Foot = Literal["left", "right"]  # where a body stands or lands
@@ -144,7 +144,7 @@ def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: An
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
-    entry = QUANTITIES.get(key if quantity is None else quantity)
+    entry = quantity_of(key if quantity is None else quantity)
     if words is None and entry is not None:
         words = entry.meaning
     if not isinstance(words, str):

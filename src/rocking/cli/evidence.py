@@ -128,18 +128,10 @@ class CalibrationAnswer:
 
     def answer(self) -> "Answer":
         """Return the calibration and the league."""
-        from dataclasses import asdict
+        from rocking.evidence.hierarchy import hierarchy_answer
 
-        from rocking.answers import Answer
-
-        return Answer({
-            "measurements": len(self.data),
-            "model": self.calibration.model().label,
-            "calibration": self.calibration.summary,
-            "shares": self.calibration.shares,
-            "left_out_groups": [{**asdict(each), "within": each.within} for each in self.left_out],
-            "league": [row.answer() for row in self.league],
-        })  # fmt: skip
+        league = [row.answer() for row in self.league]
+        return hierarchy_answer(self.calibration, self.left_out) | {"measurements": len(self.data), "league": league}
 
     def show(self, page: Page) -> None:
         from rocking.evidence import verdict
@@ -155,7 +147,7 @@ class CalibrationAnswer:
         page.table(
             ("group, left out", "n", "inside", "width", "mean within 95 %"),
             [
-                (e.name, str(e.rows), str(e.inside), f"{e.width:.3f}", "yes" if e.within else "no")
+                (e.name, str(e.measurements), str(e.inside), f"{e.interval_width:.3f}", "yes" if e.within else "no")
                 for e in self.left_out
             ],
             ("group, left out",),

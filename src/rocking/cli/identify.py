@@ -133,7 +133,7 @@ class IdentifiedAnswer:
 
     def answer(self) -> Answer:
         """Return the coefficients, impacts and fit."""
-        return Answer(self.found.to_dict())
+        return self.found.answer()
 
     def draw(self) -> Any:
         return self.found.plot()
@@ -155,8 +155,8 @@ class IdentifiedAnswer:
         page.line()
         for each in found.designs[:_TELLING]:
             page.line(
-                f"Let go from {each.peak:g} of its slenderness angle, {each.impacts} impacts timed to "
-                f"{1e3 * each.noise:.2g} ms: r to +- {NORMAL_95 * each.deviation:.2g}."
+                f"Let go from {each.release_ratio:g} of its slenderness angle, {each.impacts} impacts timed to "
+                f"{1e3 * each.timing_noise:.2g} ms: r to +- {NORMAL_95 * each.deviation:.2g}."
             )
         page.warn(found.doubts)
 

@@ -27,9 +27,7 @@ def paper(
     with bar("recomputing tables and claims", quiet=as_json):
         result = reproduce(selected(which)) if which else reproduce()
     if as_json:
-        from rocking.reports.paper_folder import as_plain
-
-        print_json(as_plain(result))
+        print_json(result.answer().plain())
     if out is None:
         if not as_json:
             _show(result)

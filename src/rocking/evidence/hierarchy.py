@@ -1,6 +1,7 @@
 """The calibration that knows who measured what: rows of one block, interface and laboratory deviate together."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.conventions import FloatArray
 from rocking.evidence.calibration import (
     FIELDS,
@@ -52,15 +54,29 @@ class LeftOut:
     """A group of measurements beside what is predicted of it by all others."""
 
     name: str  # group and interface
-    rows: int  # how many it has
+    measurements: int  # how many it has
     inside: int  # those within their intervals for a single measured body
-    width: float  # mean width of these intervals [-]
+    interval_width: float  # mean width of these intervals [-]
     probability: float  # predicted probability of a lower mean than that of the group [-]
+
+    def answer(self) -> Answer:
+        """Return what is shown of the group."""
+        return Answer({**vars(self), "within": self.within})
 
     @property
     def within(self) -> bool:
         """Whether the group's mean lies within its 95 % interval."""
         return 0.5 * (1.0 - LEVEL) <= self.probability <= 0.5 * (1.0 + LEVEL)
+
+
+def hierarchy_answer(calibration: "HierarchicalCalibration", left_out: Sequence[LeftOut]) -> Answer:
+    """Return what is shown of a calibration with groups."""
+    return Answer({
+        "model": calibration.model().label,
+        "calibration": calibration.summary,
+        "shares": calibration.shares,
+        "left_out_groups": [each.answer() for each in left_out],
+    })  # fmt: skip
 
 
 def calibrate_hierarchy(measurements: DataSet | None = None) -> HierarchicalCalibration:
@@ -139,8 +155,8 @@ def unseen(data: DataSet) -> FloatArray:
 def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
     """Return what a calibration says of new interfaces, and how it fared on groups that it had not seen."""
     shares = ", ".join(f"{100.0 * share:.0f} % by {name}" for name, share in found.shares.items() if share > 0.0)
-    rows, inside = sum(each.rows for each in groups), sum(each.inside for each in groups)
-    width = sum(each.rows * each.width for each in groups) / rows
+    rows, inside = sum(each.measurements for each in groups), sum(each.inside for each in groups)
+    width = sum(each.measurements * each.interval_width for each in groups) / rows
     return (
         f"For a body on a new interface the scatter is divided: {shares}. Of {len(groups)} groups, each left out, the "
         f"means of {sum(each.within for each in groups)} lie within their {100.0 * LEVEL:.0f} % intervals; of their "

@@ -39,9 +39,9 @@ def peaks_bound(before: float, after: float, noise: float) -> float:
 class Design:
     """What an experiment would tell."""
 
-    peak: float  # rotation from which the body is let go, over its slenderness angle [-]
+    release_ratio: float  # rotation from which the body is let go, over its slenderness angle [-]
     impacts: int  # number of impacts whose times are kept
-    noise: float  # standard deviation of a time [s]
+    timing_noise: float  # standard deviation of a time [s]
     # least standard deviation of the mean coefficient of restitution, with the scatter of impacts in it [-]
     deviation: float
 

@@ -197,9 +197,9 @@ def _forced(found: ForcedPosterior, friction: IntervalEstimate) -> ForcedRocking
     seen, kind = problem.seen, problem.kinds[0]
     return ForcedRocking(
         clock=estimated(found.shared((CLOCK, 1.0))), gain=estimated(found.shared((GAIN + kind, 1.0)), 1.0),
-        friction=friction, stretches=int(np.sum(~seen.joined)), odd=problem.odd,
-        seen=float(np.sum(seen.end - seen.begin)), measured=float(np.ptp(problem.series.time)),
-        foreseen=_foreseen(problem, fit.x),
+        friction=friction, stretches=int(np.sum(~seen.joined)), half_cycles_left_out=problem.odd,
+        used=float(np.sum(seen.end - seen.begin)), measured=float(np.ptp(problem.series.time)),
+        predictable=_foreseen(problem, fit.x),
     )  # fmt: skip
 
 

@@ -1,12 +1,13 @@
 """What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure it is."""
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics import RandomRestitution
@@ -16,6 +17,7 @@ from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
 from rocking.messages import Message
+from rocking.quantities import Quantity
 from rocking.restitution import RestitutionModel, implied, models
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 LEVELS = (0.5, 0.025, 0.975)
 """Of an estimate and its interval."""
 
+_NOISES = {"times": "s", "rotation": "rad", "angular_velocity": "rad/s"}  # units of residuals
 _ENDS = (("value", "", ""), ("low", "_low", ", 2.5 % of it"), ("high", "_high", ", 97.5 % of it"))
 
 
@@ -53,6 +56,10 @@ class IntervalEstimate:
         width = self.high - self.low
         how = f".{max(0, 1 - math.floor(math.log10(width)))}f" if 0.0 < width < math.inf else ".4g"
         return f"{self.value:{how}} ({self.low:{how}} to {self.high:{how}})"
+
+
+def _ends(estimate: IntervalEstimate | None) -> dict[str, float] | None:
+    return None if estimate is None else vars(estimate)
 
 
 def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate:
@@ -84,14 +91,14 @@ class ModelComparison:
         What it says, as the geometric mean of both sides [-].
     within : bool
         Whether that is within the interval of the measured mean.
-    error : float
+    bias : float
         What it says less what was measured [-].
     """
 
     model: str
     coefficient: float
     within: bool
-    error: float
+    bias: float
 
 
 @dataclass(frozen=True)
@@ -103,11 +110,19 @@ class ForcedRocking:
     # coefficient of friction; where it is not identified only the low end is a number, a bound at 95 % [-]
     friction: IntervalEstimate
     stretches: int  # how often the half cycles begin anew, in a state that was measured and with no impact before them
-    odd: int  # half cycles that were left out, since rocking alone does not explain them
-    seen: float  # seen, measured: duration of the half cycles that were used, and of the measurement [s]
+    half_cycles_left_out: int  # half cycles that were left out, since rocking alone does not explain them
+    used: float  # used, measured: duration of the half cycles that were used, and of the measurement [s]
     measured: float
     # when a difference of 1e-4 in r changes what follows from rest by a tenth of its peak; NaN if never [s]
-    foreseen: float
+    predictable: float
+
+    def answer(self) -> Answer:
+        """Return what is shown of it."""
+        return Answer({
+            "clock": vars(self.clock), "gain": vars(self.gain), "friction": vars(self.friction),
+            "stretches": self.stretches, "half_cycles_left_out": self.half_cycles_left_out, "used": self.used,
+            "measured": self.measured, "predictable": self.predictable,
+        })  # fmt: skip
 
     def __str__(self) -> str:
         """Return it in sentences."""
@@ -118,13 +133,13 @@ class ForcedRocking:
         if math.isfinite(self.friction.value):
             friction = f"The feet slid; the coefficient of friction is {self.friction}. r is told without the slip."
         told = "From rest a difference of 1e-4 in r changes the motion nowhere by a tenth of its peak."
-        if math.isfinite(self.foreseen):
+        if math.isfinite(self.predictable):
             told = (
-                f"From rest the motion is told up to {self.foreseen:.3g} s only: beyond, a difference of 1e-4 in r "
+                f"From rest the motion is told up to {self.predictable:.3g} s only: beyond, a difference of 1e-4 in r "
                 "changes it by more than a tenth of its peak."
             )
         return (
-            f"Identified from {self.seen:.3g} s of half cycles out of {self.measured:.3g} s, begun anew in "
+            f"Identified from {self.used:.3g} s of half cycles out of {self.measured:.3g} s, begun anew in "
             f"{self.stretches} measured states. {told} {friction}"
         )
 
@@ -270,14 +285,13 @@ class Identification(Exported):
             raise InvalidValueError(f"there is no law of a measurement that was refused: {self.refused[0]}")
         return RandomRestitution(self._next, seed)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything as plain values.
+    def answer(self) -> Answer:
+        """Return what is shown of the measurement.
 
         Returns
         -------
-        dict
-            By the names of the attributes; NaN where something does not exist. Of a measurement that was refused there
-            is why, and no number.
+        Answer
+            Coefficients, impacts, models and designs; of a refused measurement the reasons alone.
         """
         messages = [doubt if isinstance(doubt, Message) else Message(doubt) for doubt in self.doubts]
         words = {
@@ -285,19 +299,27 @@ class Identification(Exported):
             "doubts": tuple(map(str, messages)), "messages": [message.data() for message in messages],
         }  # fmt: skip
         if self.refused:
-            return words
-        found = {name: value for name, value in vars(self).items() if not name.startswith("_")} | words
-        del found["measurement"]
-        for name in ("residuals", "residual_times", "quantiles"):
-            found[name] = found[name].tolist()
-        for name in ("mean", "scatter", "frequency_parameter", "tilt", "trend", "damping", "noise"):
-            found[name] = None if found[name] is None else asdict(found[name])
-        found["forced"] = None if self.forced is None else asdict(self.forced)
-        for name in ("coefficients", "impulse"):
-            found[name] = {foot: asdict(each) for foot, each in found[name].items()}
-        for name in ("impacts", "models", "designs"):
-            found[name] = [asdict(each) for each in found[name]]
-        return found
+            return Answer(words)
+        estimates = ("mean", "scatter", "frequency_parameter", "tilt", "trend", "noise")
+        numbers = ("no_scatter", "independent", "p_value", "advantage", "residuals", "residual_times", "quantiles")
+        unit = next(unit for name, unit in _NOISES.items() if getattr(self.measurement, name, None) is not None)
+        own = (
+            Quantity("mean", "1", "mean coefficient of restitution"),
+            Quantity("noise", unit, "standard deviation of the residuals"),
+            Quantity("residuals", unit, "measured less computed values"),
+            Quantity("quantiles", "1", "quantiles of the mean coefficient of restitution"),
+        )
+        return Answer({
+            **words, **{name: _ends(getattr(self, name)) for name in estimates},
+            "damping_ratio": _ends(self.damping), **{name: getattr(self, name) for name in numbers},
+            "coefficient": {foot: vars(each) for foot, each in self.coefficients.items()},
+            "impulse_ratio": {foot: vars(each) for foot, each in self.impulse.items()},
+            "converged": self.converged,
+            "impacts": [{**vars(each), "coefficient": vars(each.coefficient)} for each in self.impacts],
+            "models": [vars(each) for each in self.models],
+            "designs": [vars(each) for each in self.designs],
+            "forced": self.forced and self.forced.answer(),
+        }, {each.name: each for each in own})  # fmt: skip
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw what was measured, the fit, what is left over, and the coefficient with the models beside it.
@@ -398,7 +420,7 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
             continue
         value = math.sqrt(sides[0] * sides[1])
         found.append(ModelComparison(name, value, mean.low <= value <= mean.high, value - mean.value))
-    return tuple(sorted(found, key=lambda each: abs(each.error)))
+    return tuple(sorted(found, key=lambda each: abs(each.bias)))
 
 
 def next_impact(mean: Mixture, scatter: FloatArray | float) -> FloatArray:

@@ -201,8 +201,8 @@ def trials_picture(found: IdentifiedTrials) -> "Figure":
         if row["refused"]:
             axes.plot(0.01, k, "x", color=GREY, transform=axes.get_yaxis_transform())
             continue
-        axes.plot([row["r_low"], row["r_high"]], [k, k], color=COLORS[0], linewidth=0.8)
-        axes.plot(row["r"], k, "o", color=COLORS[0], markersize=2.5)
+        axes.plot([row["coefficient_low"], row["coefficient_high"]], [k, k], color=COLORS[0], linewidth=0.8)
+        axes.plot(row["coefficient"], k, "o", color=COLORS[0], markersize=2.5)
     axes.set_ylim(count - 0.5, -0.5)
     axes.set_xlabel(_R)
     if count <= _MOST_NAMES:

@@ -169,7 +169,13 @@ class Validation:
                 key: {name: {**vars(each), "resolved": each.resolved} for name, each in scores.items()}
                 for key, scores in self.differences.items()
             },
-            "reliability": [vars(each) for each in self.forecasts[PREDICTION].reliability()],
+            "reliability": [
+                {
+                    "count": each.count, "predicted": each.predicted, "observed": each.observed,
+                    "observed_low": each.low, "observed_high": each.high,
+                }
+                for each in self.forecasts[PREDICTION].reliability()
+            ],
         })  # fmt: skip
 
 

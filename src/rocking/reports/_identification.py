@@ -55,8 +55,8 @@ def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
 def trial_rows(found: IdentifiedTrials) -> list[tuple[str, ...]]:
     """Return what is shown of every trial that says something."""
     return [
-        (row["trial"], f"{row['r']:.4f}", f"{row['r_low']:.4f} to {row['r_high']:.4f}", f"{row['scatter']:.4f}",
-         str(row["impacts"]))
+        (row["trial"], f"{row['coefficient']:.4f}", f"{row['coefficient_low']:.4f} to {row['coefficient_high']:.4f}",
+         f"{row['scatter']:.4f}", str(row["impacts"]))
         for row in found.rows if not row["refused"]
     ]  # fmt: skip
 
@@ -115,7 +115,7 @@ def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
 
 def model_rows(models: Iterable[ModelComparison]) -> list[tuple[str, ...]]:
     """Return what models of restitution say beside what was measured."""
-    return [(m.model, f"{m.coefficient:.4f}", f"{m.error:+.4f}", "yes" if m.within else "no") for m in models]
+    return [(m.model, f"{m.coefficient:.4f}", f"{m.bias:+.4f}", "yes" if m.within else "no") for m in models]
 
 
 def impact_rows(found: Identification) -> list[tuple[str, ...]]:
@@ -134,7 +134,7 @@ def _impacts(found: Identification) -> ReportTable:
 
 def _designs(found: Identification) -> ReportTable:
     rows = [
-        (f"{each.peak:g}", each.impacts, f"{1e3 * each.noise:.2g}", f"{NORMAL_95 * each.deviation:.2g}")
+        (f"{each.release_ratio:g}", each.impacts, f"{1e3 * each.timing_noise:.2g}", f"{NORMAL_95 * each.deviation:.2g}")
         for each in found.designs
     ]
     head = ["let go from, over the slenderness angle [-]", "impacts", "times to [ms]", "r to +- [-]"]

@@ -1,9 +1,11 @@
 """The report of `rocking paper`: what is recomputed, and what stands in the report, section by section."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import repeat
+from typing import Any
 
+from rocking.answers import Answer
 from rocking.evidence._claims import claims
 from rocking.evidence._errata import Entry, Erratum, TableRow, agreement, errata, recomputed
 from rocking.evidence._league import LeagueRow, league, verdict
@@ -15,6 +17,7 @@ from rocking.evidence.hierarchy import (
     HierarchicalCalibration,
     LeftOut,
     calibrate_hierarchy,
+    hierarchy_answer,
     left_out_groups,
     sentence_of,
 )
@@ -80,6 +83,31 @@ class Reproduction:
     left_out: tuple[LeftOut, ...]  # groups beside what the others predict of them by it
     data: DataSet  # what league and calibrations are of
     verdict: tuple[str, ...]  # what the evidence says, in words
+
+    def answer(self) -> Answer:
+        """Return every number of the reproduction, and where it comes from."""
+        covered = {name: list(counts) for name, counts in self.coverage.by_group.items()}
+        return Answer({
+            "verdict": self.verdict,
+            "claims": [
+                {"section": c.section, "claim": c.quote, "verdict": c.verdict, "evidence": c.evidence, "test": c.test}
+                for c in self.claims
+            ],
+            "errata": [asdict(erratum) for erratum in self.errata],
+            "tables": {title: list(map(_row_answer, rows)) for title, rows in self.tables.items()},
+            "league": [row.answer() for row in self.league],
+            "model": self.calibration.model().label,
+            "calibration": self.calibration.summary,
+            "covered": {"one_by_one": [self.coverage.one_by_one, self.coverage.rows], "by_data_set": covered},
+            "hierarchy": hierarchy_answer(self.hierarchy, self.left_out),
+            "provenance": made_with(),
+        })  # fmt: skip
+
+
+def _row_answer(row: TableRow) -> dict[str, Any]:
+    sides = ("printed", "recomputed", "agrees")
+    values = {side: {key: getattr(entry, side) for key, entry in row.entries.items()} for side in sides}
+    return {"label": row.label, "slenderness_ratio": row.slenderness, "coefficient": row.measured, **values}
 
 
 def reproduce(measurements: DataSet | None = None) -> Reproduction:
@@ -233,9 +261,9 @@ def _calibration(result: Reproduction) -> list[Block]:
     groups = [
         (
             each.name,
-            each.rows,
+            each.measurements,
             each.inside,
-            f"{each.width:.3f}",
+            f"{each.interval_width:.3f}",
             f"{each.probability:.3f}",
             "yes" if each.within else "no",
         )

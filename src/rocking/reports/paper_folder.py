@@ -3,13 +3,10 @@
 import csv
 import json
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from rocking.errors import MissingExtraError
-from rocking.evidence._errata import TableRow
-from rocking.reports.document import Document, ReportTable, made_with, render_pdf, write_html
+from rocking.reports.document import ReportTable, render_pdf, write_html
 from rocking.reports.paper_document import Reproduction, paper_document
 from rocking.tables.table import writing
 
@@ -43,7 +40,7 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
         except MissingExtraError as error:
             left_out.append(f"no {name}: {error}")
     numbers = folder / "results.json"
-    numbers.write_text(json.dumps(as_plain(result, document), indent=2), encoding="utf-8")
+    numbers.write_text(json.dumps(result.answer().plain(), indent=2), encoding="utf-8")
     return [*written, numbers], left_out
 
 
@@ -52,42 +49,6 @@ def steps() -> int:
     from rocking.plots.paper_figures import paper_figures
 
     return len(paper_figures()) + 3
-
-
-def as_plain(result: Reproduction, document: Document | None = None) -> dict[str, Any]:
-    """Return every number as plain values, for JSON."""
-    return {
-        "verdict": list(result.verdict),
-        "claims": [
-            {"section": c.section, "claim": c.quote, "verdict": c.verdict, "evidence": c.evidence, "test": c.test}
-            for c in result.claims
-        ],
-        "errata": [asdict(erratum) for erratum in result.errata],
-        "tables": {title: [_row(row) for row in rows] for title, rows in result.tables.items()},
-        "league": [dict(row.answer().values) for row in result.league],
-        "calibration": {
-            "model": result.calibration.model().label,
-            **result.calibration.summary,
-            "covered_one_by_one": [result.coverage.one_by_one, result.coverage.rows],
-            "covered_by_data_set": {name: list(counts) for name, counts in result.coverage.by_group.items()},
-        },
-        "hierarchical_calibration": {
-            "model": result.hierarchy.model().label,
-            **result.hierarchy.summary,
-            "shares": result.hierarchy.shares,
-            "left_out_groups": [{**asdict(each), "within": each.within} for each in result.left_out],
-        },
-        "provenance": document.provenance if document else made_with(),
-    }
-
-
-def _row(row: TableRow) -> dict[str, Any]:
-    values = {
-        f"{key}_{which}": getattr(entry, which)
-        for key, entry in row.entries.items()
-        for which in ("printed", "recomputed", "agrees")
-    }
-    return {"label": row.label, "slenderness_ratio": row.slenderness, "r_experiment": row.measured, **values}
 
 
 def _draw(folder: Path, step: Step, result: Reproduction) -> None:

@@ -30,6 +30,7 @@ from rocking.identification import Identification, IntervalEstimate, ModelCompar
 from rocking.identification.readers.reader import ENDINGS, SOUNDS, TEXTS
 from rocking.identification.results import compared
 from rocking.messages import Message, by_key
+from rocking.quantities import Quantity
 from rocking.spec.bodies import body_of
 from rocking.spec.construction import motion_of
 from rocking.spec.reading import InputFiles
@@ -43,9 +44,9 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 
 _NUMBERS = {
-    "r": ("1", "coefficient of restitution, geometric mean of both sides"),
-    "r_left": ("1", "coefficient of restitution landing left"),
-    "r_right": ("1", "coefficient of restitution landing right"),
+    "coefficient": ("1", "coefficient of restitution, geometric mean of both sides"),
+    "coefficient_left": ("1", "coefficient of restitution landing left"),
+    "coefficient_right": ("1", "coefficient of restitution landing right"),
     "scatter": ("1", "standard deviation of ln r from impact to impact"),
     "frequency_parameter": ("rad/s", "p, mean of both sides"),
     "tilt": ("rad", "tilt of the floor, clockwise"),
@@ -166,7 +167,7 @@ class IdentificationProblem:
             return _row_of(_by_key(error.without_file(path.name)), ())
         if found.refused:
             return _row_of("; ".join(map(_by_key, found.refused)), found.doubts)
-        numbers = {"r": found.mean, **{f"r_{foot}": found.coefficients[foot] for foot in FEET}}
+        numbers = {"coefficient": found.mean, **{f"coefficient_{foot}": found.coefficients[foot] for foot in FEET}}
         numbers |= {name: getattr(found, name) for name in ("scatter", "frequency_parameter", "tilt")}
         return _row_of("", found.doubts, len(found.impacts), found._common, numbers)
 
@@ -204,8 +205,8 @@ class IdentifiedTrials(Exported):
         good = [row for row in self.rows if not row["refused"]]
         if len(good) < 2:
             return None
-        ln, common = np.log([row["r"] for row in good]), np.array([row["common"] for row in good])
-        within = np.log([row["r_high"] / row["r_low"] for row in good]) / (2.0 * NORMAL_95)
+        ln, common = np.log([row["coefficient"] for row in good]), np.array([row["common"] for row in good])
+        within = np.log([row["coefficient_high"] / row["coefficient_low"] for row in good]) / (2.0 * NORMAL_95)
         between = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1))
         own = NORMAL_95 * math.sqrt(float(np.mean(np.maximum(within**2 - common**2, 0.0))))
         reach = math.hypot(max(between, own) / math.sqrt(ln.size), NORMAL_95 * math.sqrt(float(np.mean(common**2))))
@@ -223,7 +224,10 @@ class IdentifiedTrials(Exported):
         seen: dict[tuple[Any, ...], list[str]] = {}
         for row in self.rows:
             if not row["refused"]:
-                same = (row["impacts"], *(f"{row[name]:.9g}" for name in ("r", "r_low", "r_high", "scatter")))
+                same = (
+                    row["impacts"],
+                    *(f"{row[name]:.9g}" for name in ("coefficient", "coefficient_low", "coefficient_high", "scatter")),
+                )
                 seen.setdefault(same, []).append(row["trial"])
         return tuple(
             f"{' and '.join(names)} say the same: perhaps they are of one event, which counts {len(names)} times."
@@ -243,7 +247,7 @@ class IdentifiedTrials(Exported):
         count = f"{self.good} of {len(self.rows)} trials"
         if self.mean is None:
             return f"{count} have a coefficient of restitution; the mean needs two or more."
-        spread = float(np.log([row["r"] for row in self.rows if not row["refused"]]).std(ddof=1))
+        spread = float(np.log([row["coefficient"] for row in self.rows if not row["refused"]]).std(ddof=1))
         return (
             f"The coefficient of restitution is {self.mean}, the mean of {count}; from trial to trial it scatters by "
             f"{100.0 * spread:.2g} %."
@@ -258,7 +262,7 @@ class IdentifiedTrials(Exported):
             "models": [vars(each) for each in self.models],
             "trials": self.rows,
             "passed_over": dict(self.passed_over),
-        })  # fmt: skip
+        }, {"mean": Quantity("mean", "1", "mean coefficient of restitution")})  # fmt: skip
 
     def exported(self) -> Table:
         """Return what files of it hold: one row a trial."""

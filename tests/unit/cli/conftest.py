@@ -11,17 +11,13 @@ def _no_lines(monkeypatch):
     monkeypatch.setattr("rocking.cli.page.SECONDS", 1e6)
 
 
-# modules of commands of whose answers some numbers are no quantities yet
-INCOMPLETE = {"test_identify_command", "test_validate_command", "test_evidence_command"}
-
-
 @pytest.fixture(autouse=True)
-def _quantities(monkeypatch, request):
+def _quantities(monkeypatch):
     """Let every answer that a test prints as JSON have a quantity, and so a unit, for each of its numbers."""
-    plain, incomplete = Answer.plain, request.module.__name__.rpartition(".")[2] in INCOMPLETE
+    plain = Answer.plain
 
     def checked(answer):
-        assert incomplete or answer.bare == []
+        assert answer.bare == []
         return plain(answer)
 
     monkeypatch.setattr(Answer, "plain", checked)

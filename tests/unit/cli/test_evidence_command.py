@@ -43,8 +43,8 @@ def test_paper_on_a_selection(answered, own):
     """League and calibration of the paper's report are of what is selected; tables, errata and claims stay."""
     found = answered("paper", "published", own)
     assert "me" in found["league"][0]["by_group"]
-    assert found["calibration"]["covered_one_by_one"][1] == 41
-    assert len(found["hierarchical_calibration"]["left_out_groups"]) == 10
+    assert found["covered"]["one_by_one"][1] == 41
+    assert len(found["hierarchy"]["left_out_groups"]) == 10
     whole = answered("paper")
     assert found["claims"] == whole["claims"]
     assert found["league"] != whole["league"]

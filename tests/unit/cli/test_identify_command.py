@@ -13,7 +13,6 @@ from rocking_sounds import RATE, wav
 from waiting import allowed
 
 import rocking as rk
-from rocking.cli.page import plain
 from rocking.identification import identify, read_measurement
 from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
 from rocking.spec import identification
@@ -75,11 +74,10 @@ def test_json_is_the_python_call(answered, rocked, tmp_path):
         '[measurement]\nfile = "times.csv"\n[identify]\ntilt = [0, 0.001]\n',
         "utf-8",
     )
-    found = plain(identify(read_measurement(times), BLOCK, tilt=(0.0, 0.001)).to_dict())
+    found = identify(read_measurement(times), BLOCK, tilt=(0.0, 0.001)).answer().plain()
     known = ("--set", "identify.tilt=[0,0.001]")
     for words in ((times, *SIZE, *known), (body, times, *known), (times, body, *known), (question,)):
         answer = answered(*words)
-        del answer["units"]
         assert answer == json.loads(json.dumps(found))
     assert answered(times)["models"] == []
     assert answered(question, "--set", "identify.tilt=0")["tilt"]["high"] == 0.0
@@ -144,8 +142,7 @@ def test_a_shaken_floor(answered, refuses, tmp_path):
     found = answered(tmp_path / "rotation.csv", *SIZE, "--motion", tmp_path / "floor.csv", *clock)
     record = rk.read_motion(tmp_path / "floor.csv")
     here = identify(read_measurement(tmp_path / "rotation.csv"), BLOCK, motion=record, clock=(0.0, 0.01))
-    del found["units"]
-    assert found == json.loads(json.dumps(plain(here.to_dict())))
+    assert found == json.loads(json.dumps(here.answer().plain()))
     assert found["forced"]["measured"] > 1.0
     assert found["mean"]["low"] < 0.9 < found["mean"]["high"]
     refuses((tmp_path / "rotation.csv", *SIZE, *clock), "identify.clock goes with [motion]")
@@ -174,9 +171,9 @@ def test_a_bad_file_touches_no_other(answered, printed, folder, rocked):
     assert list(by_name) == ["clapping.wav", "damaged.wav", "phone.wav", *(f"times_{k}.csv" for k in range(3))]
     assert "this is no sound of a rocking body" in by_name["clapping.wav"]["refused"]
     assert "its header states" in by_name["damaged.wav"]["refused"]
-    assert by_name["damaged.wav"]["r"] is None
+    assert by_name["damaged.wav"]["coefficient"] is None
     alone = identify(read_measurement(folder / "times_1.csv"), BLOCK)
-    assert by_name["times_1.csv"]["r_high"] == alone.mean.high
+    assert by_name["times_1.csv"]["coefficient_high"] == alone.mean.high
     assert found["mean"]["low"] < rocked[2] < found["mean"]["high"] < found["mean"]["low"] + 0.01
     assert found["verdict"].endswith("%.")
     page = printed(folder)
@@ -220,7 +217,7 @@ def test_a_folder_is_resumed(run, printed, folder, tmp_path, monkeypatch):
 
 def trials_of(*middles, common):
     """Trials whose own intervals are of +-0.001."""
-    numbers = [{"r": r, "r_low": r / 1.001, "r_high": r * 1.001} for r in middles]
+    numbers = [{"coefficient": r, "coefficient_low": r / 1.001, "coefficient_high": r * 1.001} for r in middles]
     rows = [{"trial": f"{k}.csv", "refused": "", "impacts": 9, "scatter": 0.01 + k} for k in range(len(middles))]
     rows = [row | more | {"common": common} for row, more in zip(rows, numbers, strict=True)]
     return identification.IdentifiedTrials("folder", BLOCK, tuple(rows), len(rows))
@@ -316,7 +313,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
     assert str(picture) in err
     assert picture.stat().st_size > 10_000
     found = identify(read_measurement(path), BLOCK)
-    assert set(found.to_dict()) == {"source", "verdict", "refused", "doubts", "messages"}
+    assert set(found.answer().values) == {"source", "verdict", "refused", "doubts", "messages"}
 
 
 @pytest.mark.speed

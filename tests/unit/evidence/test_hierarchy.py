@@ -89,7 +89,7 @@ def test_the_nine_published_groups():
     """Eight of nine means lie within, and 37 of 39 rows in intervals .08 wide: concrete on aluminium is above its."""
     groups = left_out_groups()
     assert len(groups) == 9
-    assert sum(each.rows for each in groups) == 39
+    assert sum(each.measurements for each in groups) == 39
     assert 7 <= sum(each.within for each in groups) <= 9  # binomial: 95 % of 9, less three standard deviations
     assert [each.name for each in groups if not each.within] == ["table1: aluminum/concrete"]
     assert 35 <= sum(each.inside for each in groups) <= 39
@@ -100,7 +100,10 @@ def test_the_page_of_theory_states_these_numbers():
     """The shares of the variance and the width of the intervals on the page of theory are those that are computed."""
     page = " ".join((Path(__file__).parents[3] / "docs" / "theory" / "evidence.md").read_text("utf-8").split())
     shares, groups = calibrate_hierarchy().shares, left_out_groups()
-    inside, width = sum(each.inside for each in groups), sum(each.rows * each.width for each in groups) / 39
+    inside, width = (
+        sum(each.inside for each in groups),
+        sum(each.measurements * each.interval_width for each in groups) / 39,
+    )
     assert (
         f"{100.0 * shares['laboratory']:.0f} % of the variance lies between laboratories, "
         f"{100.0 * shares['interface']:.0f} % between interfaces of one, {100.0 * shares['measurement']:.0f} % between"

@@ -91,7 +91,7 @@ def test_models_impulse_and_designs_stand_beside_it(found):
     assert {"housner", "ked"} <= {each.model for each in answer.models}
     assert answer.impulse["left"].low < answer.impulse["left"].value < answer.impulse["left"].high
     assert answer.designs[0].deviation <= answer.designs[-1].deviation
-    again = json.loads(json.dumps(answer.to_dict()))
+    again = json.loads(json.dumps(answer.answer().plain()))
     assert again["mean"]["value"] == answer.mean.value
     assert "0.9" in again["verdict"]
 

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rocking import Block
+from rocking.answers import Answer
 from rocking.evidence.bed_fit import explanation
 from rocking.plots import body_picture, paper_figure
 from rocking.reports import Document, paper_folder
@@ -76,7 +77,6 @@ def test_pdf_takes_any_words(folder):
 def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, monkeypatch):
     """Without an optional package the folder of `rocking paper` has everything else, and says what it has not."""
     monkeypatch.setattr(paper_folder, "paper_document", lambda _: document())
-    monkeypatch.setattr(paper_folder, "as_plain", lambda *_: {})
     monkeypatch.setattr(paper_folder, "write_html", lambda content, _, path: write_html(content, folder, path))
     monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
     figures = SimpleNamespace(paper_figures=lambda data: {})
@@ -84,7 +84,9 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
     monkeypatch.setitem(sys.modules, missing, None)
     if missing == "matplotlib":
         figures.paper_figures = lambda data: {"body": lambda: body_picture(Block(width=1.0, height=2.0))}
-    written, left_out = paper_folder.write_folder(SimpleNamespace(data=None), folder / "out", lambda _: None)
+    written, left_out = paper_folder.write_folder(
+        SimpleNamespace(data=None, answer=lambda: Answer({})), folder / "out", lambda _: None
+    )
     assert [path.name for path in written] == kept
     assert all(path.is_file() for path in written)
     assert len(left_out) == 1

@@ -101,7 +101,7 @@ const Published = ({ answer }) => html`
     rows=${answer.claims.map((/** @type {any} */ one) => [`${t(one.section)}: ${t(one.claim)}`, [one.verdict, MARK[one.verdict]]])} />`;
 
 /** @type {Words} */
-const HEADS = { within: "within the interval", error: "above what was measured" };
+const HEADS = { within: "within the interval", bias: "above what was measured" };
 /** @param {unknown} value */
 const shown = (value) => (typeof value === "number" ? number(value) : value === true ? "yes" : value === false ? "no" : String(value ?? ""));
 
