@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.house_citations import cited, text_of_comments
+from benchmarks.house_facts import keys_of_answers, last_name, modules_named, sentences_read, widths
 from benchmarks.house_paths import files_passed
 
 ROOT = Path(__file__).parents[1]
@@ -225,22 +226,34 @@ def choices_of_mechanics(folder: Path) -> dict[str, list[str]]:
         if CHOICE.fullmatch(name):
             continue
         for node in ast.walk(tree):
-            if isinstance(node, ast.Call) and _last_name(node.func) == "in_space":
+            if isinstance(node, ast.Call) and last_name(node.func) == "in_space":
                 found["in_space()"].append(f"{name}:{node.lineno}")
-            if isinstance(node, ast.Call) and _last_name(node.func) == "isinstance":
+            if isinstance(node, ast.Call) and last_name(node.func) == "isinstance":
                 kinds = node.args[1].elts if isinstance(node.args[1], ast.Tuple) else [node.args[1]]
-                if "Solid" in map(_last_name, kinds):
+                if "Solid" in map(last_name, kinds):
                     found["isinstance(..., Solid)"].append(f"{name}:{node.lineno}")
             if (
-                isinstance(node, ast.Compare) and _last_name(node.left) == "friction"
+                isinstance(node, ast.Compare) and last_name(node.left) == "friction"
                 and isinstance(node.comparators[0], ast.Constant) and node.comparators[0].value is None
             ):  # fmt: skip
                 found["friction is None"].append(f"{name}:{node.lineno}")
     return found
 
 
-def _last_name(node: ast.AST) -> str:
-    return str(getattr(node, "attr", getattr(node, "id", "")))
+def facts_stated_twice(folder: Path) -> dict[str, list[str]]:
+    """Return places where a fact is stated that has its place elsewhere, by what is counted."""
+    from rocking.quantities import is_named
+
+    scripts = [path for path in sorted(folder.rglob("*.js")) if "vendor" not in path.parts]
+    modules = trees(folder)
+    return {
+        "keys of answers that quantities.py does not name": [
+            f"{place} {key}" for key, place in keys_of_answers(modules).items() if not is_named(key)
+        ],
+        "modules and scripts that declare the width of a block": widths(modules, scripts),
+        "sentences of ours that are read back": sentences_read(modules),
+        "strings that name modules": modules_named(modules),
+    }
 
 
 def options() -> dict[str, list[str]]:
@@ -295,7 +308,7 @@ def measures() -> list[Measure]:
     arrows = imports(SOURCE)
     twice = sorted(name for name, count in kinds.items() if count > 1)
     loops, up = circles(arrows), upward(arrows)
-    spoken, asked = options(), choices_of_mechanics(SOURCE)
+    spoken, asked, stated = options(), choices_of_mechanics(SOURCE), facts_stated_twice(SOURCE)
     distinct = {option for each in spoken.values() for option in each}
     tests = lines(TESTS)[0]
     files, inner = deep_imports(TESTS)
@@ -310,6 +323,7 @@ def measures() -> list[Measure]:
         ("circles, lazy ones too", len(loops), 0),
         ("arrows upward", len(up), 0),
         *((f"outside the choice of mechanics: {what}", len(places), 0) for what, places in asked.items()),
+        *((what, len(places), 3 if "width" in what else 0) for what, places in stated.items()),
         ("names in rk", len(rocking.__all__), 32),
         ("options of rocking simulate", len(spoken["simulate"]), 22),
         ("distinct options", len(distinct), 55),
@@ -329,7 +343,7 @@ def measures() -> list[Measure]:
     )
     for loop in loops:
         print("circle:", " ".join(loop))
-    for what, places in asked.items():
+    for what, places in (asked | stated).items():
         print(*(f"{what}: {place}" for place in places), sep="\n", end="\n" if places else "")
     for one, other in up:
         print(f"upward: {one} -> {other}")

@@ -557,6 +557,30 @@ QUANTITIES: dict[str, Quantity] = {
     )
 }
 """All of them, by name."""
+# what answers have besides: parts, sentences, labels, and numbers whose quantity is of their answer alone
+_PARTS = """
+    adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body
+    by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
+    components concerns converged crossing crossings curves decides definition designs died directions doubts edges
+    ends envelope errata event evidence examples facets file file_unit files finding first_corner forced from growth
+    hazard hierarchy identities ignored inputs intensity interfaces intervals inventory islands judged_by label
+    laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest lowest_uplift
+    mean measure measure_words messages method methods mirrored models motion motions_apart new not_assessed
+    not_objects not_read not_sampled note notes number objects one_by_one outside overturning passed_over passes
+    plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies resolved
+    restitution_drawn results rigid rings scores section sensitivity sentence sentences sets sides slow software
+    solid source sources spacing spectrum stable stages standing starts_overturned stated stored tables target
+    target_spectrum test text threads title to too_sure traces unit uplift_threshold values varied verdict
+    vertical_component with_friction within words x y
+"""
+PARTS = frozenset(_PARTS.split())
+
+
+def is_named(key: str) -> bool:
+    """Return whether a key of an answer is a quantity or a part."""
+    return key in PARTS or quantity(key) is not None
+
+
 TIMES = tuple(each.name for each in _HISTORY if each.unit == "s")
 """Those of a history that are times, which a motion that is stretched stretches."""
 HISTORY = tuple(each.name for each in _HISTORY if not each.name.startswith("twin"))

@@ -40,6 +40,45 @@ def test_a_second_choice_of_mechanics_is_seen(name, count, tmp_path):
     assert [len(places) for places in house.choices_of_mechanics(tmp_path / "rocking").values()] == [count] * 3
 
 
+def test_facts_have_one_place():
+    """Every key of an answer is named in quantities.py; sentences are not read back, and no string names a module."""
+    stated = house.facts_stated_twice(house.SOURCE)
+    keys, widths, sentences, modules = stated.values()
+    assert keys == []
+    assert sentences == []
+    assert len(widths) <= WIDTHS, widths
+    assert len(modules) <= MODULES, modules
+
+
+WIDTHS, MODULES = 25, 11  # what is left of them
+STATES = """from importlib import import_module
+class BlockTable:
+    width: float
+    height: float
+class RockingError(Exception): ...
+def answer(found):
+    names = [each.partition(":") for each in found.assumed]
+    try:
+        import_module(f"rocking.{found}")
+    except RockingError as error:
+        return Answer({"peak_rotation": 0.1, "peak_rotation_rad": 0.1, "why": str(error).split(";")})
+    except ValueError as error:
+        return str(error).split(";")
+"""
+
+
+def test_facts_with_two_places_are_seen(tmp_path):
+    """Negative control: a key, a width, two sentences and a module; the sentence of another library is none."""
+    (tmp_path / "rocking").mkdir()
+    (tmp_path / "rocking" / "again.py").write_text(STATES, "utf-8")
+    (tmp_path / "rocking" / "again.js").write_text('const FIELDS = [["width", "Width"]];', "utf-8")
+    keys, widths, sentences, modules = house.facts_stated_twice(tmp_path / "rocking").values()
+    assert [key.partition(" ")[2] for key in keys] == ["peak_rotation_rad", "why"]
+    assert widths == ["rocking.again", "again.js"]
+    assert sorted(sentences) == ["rocking.again:11", "rocking.again:7"]
+    assert modules == ["rocking.again:9"]
+
+
 def test_no_class_name_stands_twice():
     """Content hashes and readers know a class of ours by its name alone."""
     assert [name for name, count in house.classes(house.SOURCE).items() if count > 1] == []

@@ -238,7 +238,8 @@ class Body(ABC):
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        return assumed_density(self.densities) + (() if self.known is None else self.known.assumed)
+        density = (f"density {each}" for each in assumed_density(self.densities))
+        return (*density, *(() if self.known is None else self.known.assumed))
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -335,10 +336,8 @@ def feet_of(feet: Any) -> Interval:
 
 def assumed_rows(body: Any) -> list[tuple[str, str]]:
     """Return what was assumed of a body, plane or in space, as label and text of lines of a table."""
-    return [
-        ("density", each.removeprefix("density ")) if each.startswith("density ") else ("assumed", each)
-        for each in body.assumed
-    ]
+    density = assumed_density(body.densities)
+    return [*(("density", each) for each in density), *(("assumed", each) for each in body.assumed[len(density) :])]
 
 
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
@@ -353,4 +352,4 @@ def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
         if not parts
         else "the centre of mass and rotations depend on it"
     )
-    return (f"density {DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete{scaled}; {effect}",)
+    return (f"{DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete{scaled}; {effect}",)

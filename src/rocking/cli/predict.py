@@ -148,9 +148,8 @@ class PredictionAnswer:
             ], head[:1])  # fmt: skip
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
-        assumed = {each.partition(":")[0] for each in found.assumed}
-        known = {each.partition(":")[0] for each in found.not_sampled}
-        page.facts([(name, words) for name, words in found.inputs.items() if name not in assumed | known])
+        told = found.assumptions.keys() | found.fixed.keys()
+        page.facts([(name, words) for name, words in found.inputs.items() if name not in told])
         page.facts([("assumed", each) for each in found.assumed])
         page.facts([("not sampled", each) for each in found.not_sampled])
         page.facts(source_lines(found.motions))
@@ -249,8 +248,8 @@ class AssessmentAnswer:
         page.line()
         page.facts(source_lines(found.prediction.motions))
         page.line(scale_words())
-        assumed = dict.fromkeys(each.partition(":")[0] for each in found.prediction.assumed)
-        page.line(f"Assumed: {'; '.join(assumed)}. Reasons and all references: --out report.pdf, or --json.")
+        assumed = "; ".join(found.prediction.assumptions)
+        page.line(f"Assumed: {assumed}. Reasons and all references: --out report.pdf, or --json.")
         page.warn(found.prediction.repairs)
 
 

@@ -167,12 +167,12 @@ def provenance() -> dict[str, object]:
     >>> provenance()["doi"]
     '10.3390/buildings14072119'
     """
-    text = files("rocking.evidence").joinpath("data", "provenance.toml").read_text(encoding="utf-8")
+    text = files(__package__).joinpath("data", "provenance.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
 def _read(name: str) -> list[dict[str, str]]:
-    with files("rocking.evidence").joinpath("data", name).open(encoding="utf-8") as file:
+    with files(__package__).joinpath("data", name).open(encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 

@@ -89,10 +89,10 @@ class Prediction(Exported):
         Name, intensity, source and processing of each motion: what every probability is conditional on.
     inputs : dict of str to str
         What was drawn from what, in words, by input; also what is known.
-    assumed : tuple of str
-        What nobody said and was assumed, and why.
-    not_sampled : tuple of str
-        What is one value in all histories, and why.
+    assumptions : dict of str to str
+        What nobody said and was assumed, and why, by input; a sentence about no single input has no reason.
+    fixed : dict of str to str
+        What is one value in all histories, and why, by input.
     sliding_beyond : float
         How far it slides at least where it is said to slide [m].
     chances : dict of str to Chance
@@ -119,8 +119,8 @@ class Prediction(Exported):
     body: "Body | Solid"
     motions: tuple[MotionSummary, ...]
     inputs: Mapping[str, str]
-    assumed: tuple[str, ...]
-    not_sampled: tuple[str, ...]
+    assumptions: Mapping[str, str]
+    fixed: Mapping[str, str]
     sliding_beyond: float
     chances: Mapping[str, Chance]
     shares: Mapping[str, VarianceShare]
@@ -133,6 +133,16 @@ class Prediction(Exported):
     seed: int
     gravity: float
     beside: Mapping[str, Chance] = field(default_factory=dict)
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What nobody said and was assumed, and why, in a sentence each."""
+        return tuple(f"{name}: {reason}" if reason else name for name, reason in self.assumptions.items())
+
+    @property
+    def not_sampled(self) -> tuple[str, ...]:
+        """What is one value in all histories, and why, in a sentence each."""
+        return tuple(f"{name}: {reason}" for name, reason in self.fixed.items())
 
     @property
     def condition(self) -> str:

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -146,7 +147,7 @@ class SampledBodies(ABC):
 
     widths_of: Mapping[str, int] = {}  # how many numbers an input takes, if not one
     why: Mapping[str, str] = {}  # why inputs are what they are where nobody says otherwise
-    never_sampled: tuple[str, ...] = ()  # what is one value in all histories, and why
+    never_sampled: Mapping[str, str] = MappingProxyType({})  # by name what is one value in all histories, and why
 
     def __init__(self, motions: Any, given: Mapping[str, Any]) -> None:
         self.motions, self.names, self._turns = several(motions), [], False
@@ -154,7 +155,8 @@ class SampledBodies(ABC):
             along, across, _ = parts(self.motions[k])
             self.names.append(along.name)
             self._turns |= across is not None
-        self.given, self.inputs, self.assumed = given, dict[str, Uncertain](), list[str]()
+        self.given, self.inputs = given, dict[str, Uncertain]()
+        self.assumed: dict[str, str] = {}  # by the name of an input the reason, or by a sentence nothing
 
     def _take(self, usual: Mapping[str, Usual]) -> None:
         """Take what is given of inputs, and say what was assumed of the others."""
@@ -162,7 +164,7 @@ class SampledBodies(ABC):
             told = self.given.get(name)
             self.inputs[name] = Uncertain.of(name, otherwise if told is None else told, low, high, unit)
             if told is None:
-                self.assumed.append(f"{name}: {self.inputs[name].words} ({self.why[name]})")
+                self.assumed[name] = f"{self.inputs[name].words} ({self.why[name]})"
         plausibility.warn(plausibility.of_friction(self.inputs["friction"].median))
 
     @property
@@ -171,10 +173,10 @@ class SampledBodies(ABC):
         return {name: self.widths_of.get(name, 1) for name, each in self.inputs.items() if not each.fixed}
 
     @property
-    def not_sampled(self) -> tuple[str, ...]:
+    def not_sampled(self) -> dict[str, str]:
         """What is one value in all histories: inputs that are known, and what has no distribution."""
-        known = (f"{name}: {each.words} (given)" for name, each in self.inputs.items() if each.fixed)
-        return (*known, *self.never_sampled)
+        known = {name: f"{each.words} (given)" for name, each in self.inputs.items() if each.fixed}
+        return {**known, **self.never_sampled}
 
     def probabilities(self, draws: FloatArray) -> dict[str, FloatArray]:
         """Return the columns of each input; one half of what is fixed, whatever it then means."""

@@ -39,10 +39,10 @@ BASE = 0.02  # share of the base within which feet lie where nobody says otherwi
 DIRECTIONS = 36
 """Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""
 
-NOT_SAMPLED = (
-    "placement: the ground is level and the body stands flat on both feet",
-    "density: a factor on it changes no rotation; the factor centre stands for density that differs by place",
-)
+NOT_SAMPLED = {
+    "placement": "the ground is level and the body stands flat on both feet",
+    "density": "a factor on it changes no rotation; the factor centre stands for density that differs by place",
+}
 
 _WHY = {
     "friction": FRICTION_WHY,
@@ -67,7 +67,7 @@ class SampledInPlane(SampledBodies):
         self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
         self._spread = body.moment_of_inertia / body.mass
         most, turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
-        self.assumed += body.assumed
+        self.assumed |= dict.fromkeys(body.assumed, "")
         self._take({
             "friction": FRICTION,
             "base": ((0.0, min(BASE * float(self._levers.sum()), most)), 0.0, most, "m"),
@@ -88,7 +88,7 @@ class SampledInPlane(SampledBodies):
             words = f"{self._tables[1][25]:.3f} to {self._tables[1][-26]:.3f} onto the right foot in 95 % of draws"
             words += ", outside of the slendernesses that were measured" if found.extrapolated else ""
             self._follows, fixed = True, False
-            self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
+            self.assumed["restitution"] = f"{words} (the published measurements, with the scatter of single bodies)"
         elif word == COMPLEMENTARITY:
             words, self._follows, fixed = "by complementarity alone", False, True
             self._tables = [np.full(2, np.nan)] * 2
@@ -105,9 +105,7 @@ class SampledInPlane(SampledBodies):
             levels[[0, -1]] = 0.25 / 1025, 1.0 - 0.25 / 1025
             self._tables, self._follows, fixed, words = [one.quantile(levels)] * 2, False, one.fixed, one.words
         if self._follows:
-            self.assumed.append(
-                "restitution follows base and centre as the shifted impulse of the calibrated model does"
-            )
+            self.assumed["restitution follows base and centre as the shifted impulse of the calibrated model does"] = ""
         at = np.linspace(0.0, 1.0, self._tables[1].size)
         right = self._tables[1]
         self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}

@@ -44,10 +44,10 @@ ANOTHER = math.cos(math.radians(10.0))
 _UPRIGHT = -1.0 + 1e-12
 _SETTINGS = HullSettings(tolerance=1e-8)
 
-NOT_SAMPLED = (
-    "placement: the ground is level and the body stands by itself",
-    "density: a factor on it changes no rotation; the factor centre stands for density that differs by place",
-)
+NOT_SAMPLED = {
+    "placement": "the ground is level and the body stands by itself",
+    "density": "a factor on it changes no rotation; the factor centre stands for density that differs by place",
+}
 
 _WHY = {
     "friction": FRICTION_WHY,
@@ -81,7 +81,7 @@ class SampledInSpace(SampledBodies):
         self._shapes: dict[tuple[float, float], _Shape] = {}
         radius, height = float(np.linalg.norm(self.pose.support, axis=1).mean()), self.pose.height
         turn_round = 2.0 * math.pi
-        self.assumed += solid.assumed
+        self.assumed |= dict.fromkeys(solid.assumed, "")
         self._take({
             "friction": FRICTION,
             "base": ((-INSIDE * radius, min(ABOVE * height, THICK)), -0.5 * radius, 0.5 * height, "m"),
@@ -94,7 +94,7 @@ class SampledInSpace(SampledBodies):
         """Return the same with other impacts."""
         other = copy(self)
         other.inputs = {name: each for name, each in self.inputs.items() if name != "restitution"}
-        other.assumed = [*self.assumed]
+        other.assumed = dict(self.assumed)
         other._set_restitution(told)
         return other
 
@@ -111,7 +111,7 @@ class SampledInSpace(SampledBodies):
             self._law, (found, words) = histories.POSITION, self._measured()
             at = np.linspace(0.0, 1.0, found.size)
             one = Uncertain(words, lambda u: np.interp(u, at, found))
-            self.assumed.append(f"restitution: {words} (the published measurements, with the scatter of single bodies)")
+            self.assumed["restitution"] = f"{words} (the published measurements, with the scatter of single bodies)"
         elif word:
             if word not in _LAWS:
                 names = ", ".join([*MEASURED, *_LAWS])

@@ -72,19 +72,12 @@ def validation_content(found: FolderValidation, *, name: str, date: str) -> Cont
 
 
 def _assumed(found: Prediction) -> ReportSection:
-    known = {each.partition(":")[0] for each in found.not_sampled}
-    inputs = table(
-        "Sampled", ["input", "distribution"], [pair for pair in found.inputs.items() if pair[0] not in known]
-    )
-    left = table("Not sampled", ["input", "value in all histories"], [_pair(each) for each in found.not_sampled])
+    sampled = [(name, words) for name, words in found.inputs.items() if name not in found.fixed]
+    inputs = table("Sampled", ["input", "distribution"], sampled)
+    left = table("Not sampled", ["input", "value in all histories"], found.fixed.items())
     return ReportSection("Inputs: sampled, not sampled, assumed", [
         *([inputs] if inputs.rows else []), left, *(Paragraph(each, "Assumed:") for each in found.assumed),
     ])  # fmt: skip
-
-
-def _pair(words: str) -> tuple[str, str]:
-    name, _, rest = words.partition(": ")
-    return name, rest
 
 
 def _count(found: Prediction) -> str:

@@ -1,23 +1,33 @@
 """One call for the report of every answer; what stands in it is the matter of the module of its kind."""
 
+from collections.abc import Callable
 from datetime import UTC, datetime
-from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
 from rocking import checks
+from rocking.assessment import BodyAssessment
+from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
-from rocking.reports.document import write_report
+from rocking.identification import Identification
+from rocking.prediction import Prediction
+from rocking.reports._assessment import assessment_content
+from rocking.reports._identification import identification_content, trials_content
+from rocking.reports._predictions import prediction_content, validation_content
+from rocking.reports.document import Content, write_report
+from rocking.reports.response_document import response_content
+from rocking.spec.identification import IdentifiedTrials
+from rocking.spec.validation import FolderValidation
 from rocking.tables import target_of
 
-_CONTENTS = {
-    "Response": "response_document:response_content",
-    "BodyAssessment": "_assessment:assessment_content",
-    "Prediction": "_predictions:prediction_content",
-    "FolderValidation": "_predictions:validation_content",
-    "Identification": "_identification:identification_content",
-    "IdentifiedTrials": "_identification:trials_content",
+_CONTENTS: dict[type, Callable[..., Content]] = {
+    Response: response_content,
+    BodyAssessment: assessment_content,
+    Prediction: prediction_content,
+    FolderValidation: validation_content,
+    Identification: identification_content,
+    IdentifiedTrials: trials_content,
 }
 """What makes the document and its pictures, by the class of an answer."""
 
@@ -63,12 +73,11 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     ...     page.name, "Column 4" in page.read_text(encoding="utf-8")
     ('response.html', True)
     """
-    homes = [_CONTENTS[each.__name__] for each in type(found).__mro__ if each.__name__ in _CONTENTS]
-    if not homes:
-        raise InvalidValueError(f"found must be one of {', '.join(_CONTENTS)}, got {found!r:.60}")
+    made = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
+    if made is None:
+        names = ", ".join(kind.__name__ for kind in _CONTENTS)
+        raise InvalidValueError(f"found must be one of {names}, got {found!r:.60}")
     target = target_of(path)
-    module, _, content = homes[0].partition(":")
-    made = getattr(import_module(f"{__package__}.{module}"), content)
     known = [each for each in signature(made).parameters.values() if each.kind is Parameter.KEYWORD_ONLY]
     names = [each.name for each in known]
     if odd := next((each for each in options if each not in names), None):

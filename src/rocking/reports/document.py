@@ -186,9 +186,10 @@ def made_with() -> dict[str, str]:
     """Return what made a result: versions, and the fingerprints of the data."""
     import scipy
 
+    from rocking import evidence
     from rocking.evidence.measurements import provenance
 
-    source, data = provenance(), files("rocking.evidence").joinpath("data")
+    source, data = provenance(), files(evidence).joinpath("data")
     prints = [
         f"{name} {hashlib.sha256(data.joinpath(name).read_bytes()).hexdigest()[:12]}"
         for name in (f"mao2024_table{i}.csv" for i in (1, 2, 3))

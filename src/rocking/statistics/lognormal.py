@@ -139,7 +139,7 @@ class LognormalFit:
         """What can be claimed, in plain words; levels are numbers without a unit, since a fit knows none."""
         return self.verdict_in("")
 
-    def verdict_in(self, unit: str, size: float = 1.0) -> str:
+    def verdict_in(self, unit: str, size: float = 1.0, *, clusters: bool = True) -> str:
         """Return the verdict with levels in a unit.
 
         Parameters
@@ -148,6 +148,8 @@ class LognormalFit:
             Name of the unit, as the text shows it; empty for none.
         size : float
             The unit of the levels in this unit [-].
+        clusters : bool
+            Whether the sentence about outcomes of one cluster is included.
 
         Returns
         -------
@@ -161,7 +163,7 @@ class LognormalFit:
         def level(value: float, digits: int = 6) -> str:
             return f"{value * size:.{digits}g} {unit}".rstrip()
 
-        return verdict_of(self.counts, self.separation, self.curve, rise, level)
+        return verdict_of(self.counts, self.separation, self.curve, rise, level, clusters=clusters)
 
     @property
     def interval_method(self) -> IntervalMethod:

@@ -92,7 +92,7 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
 
 def verdict_of(
     counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None,
-    level: Callable[..., str],
+    level: Callable[..., str], *, clusters: bool,
 ) -> str:  # fmt: skip
     """Return what the outcomes allow to be said, in a sentence or two, and what the likelihood does not know."""
     # The curve is median and dispersion; `rise` its likelihood ratio against a line that does not depend on the level,
@@ -100,7 +100,7 @@ def verdict_of(
     parts = [_finding(counts, separation, curve, level, penalised=rise is None)]
     if rise is not None and rise < 3.841:
         parts.append("Chance alone explains the growth with the level (5 % test): intervals may be open.")
-    if curve is not None and counts.is_clustered:
+    if clusters and curve is not None and counts.is_clustered:
         parts.append(_clustered(counts))
     return " ".join(parts)
 

@@ -133,8 +133,10 @@ def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
     with located(name, "file"):
         try:
             table = parsed_toml(content.decode("utf-8-sig"))
-        except (UnicodeDecodeError, Refused) as error:
-            raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+        except UnicodeDecodeError as error:
+            raise BodyFileError(f"is not TOML that can be read: {error.reason}") from error
+        except Refused as error:
+            raise BodyFileError(f"is not TOML that can be read: {error.message}") from error
         if "body" in table and isinstance(table["body"], dict):
             table = table["body"]
         if units is not None and table.get("units", units) != units:

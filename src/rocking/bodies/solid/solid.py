@@ -123,7 +123,7 @@ class Solid:
         check_possible(self.local_parts)
         check_disjoint(self.local_parts)
         if mass is not None:
-            self.local_parts = _weighing(self.local_parts, density_of(mass, self.volume, self._densities))
+            self.local_parts = _weighing(self.local_parts, density_of(mass, self.volume, self.densities))
         self.known: SolidMoments | None = None
         self._assumed: tuple[str, ...] = ()
         if centre is not None or inertia is not None:
@@ -223,10 +223,11 @@ class Solid:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        return assumed_density(self._densities) + self._assumed
+        return (*(f"density {each}" for each in assumed_density(self.densities)), *self._assumed)
 
     @property
-    def _densities(self) -> tuple[float, ...]:
+    def densities(self) -> tuple[float, ...]:
+        """Density of each part [kg/m3]."""
         return tuple(part.density for part in self.local_parts)
 
     @property
@@ -234,7 +235,7 @@ class Solid:
         """What can be computed with but was hardly meant, in words."""
         centre = self.local_moments.centre
         slenderness = float(centre[2]) / self.local_base.margin(centre[:2])
-        return plausibility.of_body(float(centre[2]), slenderness, self._densities)
+        return plausibility.of_body(float(centre[2]), slenderness, self.densities)
 
     @property
     def box(self) -> FloatArray:

@@ -395,8 +395,7 @@ class FragilityAnalysis(ABC):
         states: dict[str, list[str]] = {}
         for name, fit in self.fits.items():
             if fit.separation is not Separation.OVERLAP or not fit.exists:
-                text = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
-                states.setdefault(text, []).append(name)
+                states.setdefault(fit.verdict_in("", clusters=False), []).append(name)
         return states
 
     @cached_property

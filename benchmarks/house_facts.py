@@ -1,0 +1,159 @@
+"""Facts that are stated more than once: keys of answers, widths of a body, sentences that are read, names of modules.
+
+All counts are of syntax trees; those of scripts are of their text.
+"""
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+_ANSWERS = {"Answer", "AnswerRows"}
+_METHODS = {"answer", "outcome_answer", "_values", "_last_state", "_tables"}
+# what takes a sentence apart, and results and errors that are sentences
+_SPLITS = {
+    "partition", "rpartition", "split", "rsplit", "startswith", "endswith", "removeprefix", "removesuffix", "match",
+    "search", "fullmatch", "findall", "sub",
+}  # fmt: skip
+_SENTENCES = {
+    "assumed", "not_sampled", "warnings", "doubts", "sentences", "verdict", "summary", "message", "advice", "notes",
+}  # fmt: skip
+_SIZES = {"width", "height"}
+
+
+def last_name(node: ast.AST) -> str:
+    """Return the last name of an expression such as ``a.b``."""
+    return str(getattr(node, "attr", getattr(node, "id", "")))
+
+
+def keys_of_answers(trees: Mapping[str, ast.Module]) -> dict[str, str]:
+    """Return the keys that are typed in answers, each with one place: module and line."""
+    found = {}
+    for name, tree in trees.items():
+        for node in ast.walk(tree):
+            is_call = isinstance(node, ast.Call) and last_name(node.func) in _ANSWERS
+            if is_call or (isinstance(node, ast.FunctionDef) and node.name in _METHODS):
+                found |= {key.value: f"{name}:{key.lineno}" for key in _keys(node)}
+    return found
+
+
+def _keys(node: ast.AST) -> Iterator[ast.Constant]:
+    for part in ast.walk(node):
+        if isinstance(part, ast.Dict):
+            yield from (key for key in part.keys if isinstance(key, ast.Constant) and isinstance(key.value, str))
+
+
+def sentences_read(trees: Mapping[str, ast.Module]) -> list[str]:
+    """Return where a sentence of a result or an error is taken apart, or searched by a regular expression.
+
+    Sentences of errors of other libraries, as far as a handler names them, are none of ours.
+    """
+    own = {node.name for tree in trees.values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    return [
+        f"{name}:{call.lineno}"
+        for name, tree in trees.items()
+        for foreign in [_foreign(tree, own)]
+        for spoken, part in _spoken(tree)
+        for call in ast.walk(part)
+        if isinstance(call, ast.Call) and id(call) not in foreign
+        and last_name(call.func) in _SPLITS and _reads(call, spoken)
+    ]  # fmt: skip
+
+
+def _foreign(tree: ast.AST, own: set[str]) -> set[int]:
+    """Return the nodes in which an error is handled, or taken, that is not stated to be of a class of ours."""
+    kinds = [(node, node.type) for node in ast.walk(tree) if isinstance(node, ast.ExceptHandler)]
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    kinds += [(node, each.annotation) for node in functions for each in node.args.args if each.arg == "error"]
+    return {
+        id(part)
+        for node, kind in kinds if kind is not None and not own & {last_name(each) for each in ast.walk(kind)}
+        for part in ast.walk(node)
+    }  # fmt: skip
+
+
+def _spoken(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
+    """Yield the names of sentences, and what is done with each: variables over lists of them, errors that are caught.
+
+    An empty name stands for what is written in full, such as ``result.verdict`` or ``str(error)``.
+    """
+    yield "", tree
+    for node in ast.walk(tree):
+        loops = (
+            node.generators if isinstance(node, ast.GeneratorExp | ast.ListComp | ast.SetComp | ast.DictComp) else ()
+        )
+        for loop in (*loops, *([node] if isinstance(node, ast.For) else [])):
+            if isinstance(loop.iter, ast.Attribute) and loop.iter.attr in _SENTENCES:
+                yield last_name(loop.target), node
+
+
+def _reads(call: ast.Call, spoken: str) -> bool:
+    texts = [call.func.value, *call.args] if isinstance(call.func, ast.Attribute) else call.args
+    return any(_is_sentence(text, spoken) for text in texts)
+
+
+def _is_sentence(text: ast.AST, spoken: str) -> bool:
+    if spoken:
+        return last_name(text) == spoken
+    if isinstance(text, ast.Call) and last_name(text.func) == "str" and text.args:
+        return "error" in last_name(text.args[0])
+    return isinstance(text, ast.Attribute) and text.attr in _SENTENCES
+
+
+def modules_named(trees: Mapping[str, ast.Module]) -> list[str]:
+    """Return strings that name a module of ours, or from which such a name is made and imported.
+
+    A name after ``-m`` starts a process, and one of ``getLogger`` is that of a log.
+    """
+    found = []
+    for name, tree in trees.items():
+        started = {
+            id(after) for node in ast.walk(tree) if isinstance(node, ast.List)
+            for before, after in zip(node.elts, node.elts[1:], strict=False)
+            if isinstance(before, ast.Constant) and before.value == "-m"
+        }  # fmt: skip
+        logs = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and last_name(node.func) == "getLogger"]
+        started |= {id(each) for node in logs for each in node.args}
+        for node in ast.walk(tree):
+            whole = isinstance(node, ast.Constant) and "." in str(node.value) and node.value in trees
+            made = isinstance(node, ast.Call) and last_name(node.func) == "import_module" and _is_ours(node.args[0])
+            if (whole and id(node) not in started) or made:
+                found.append(f"{name}:{node.lineno}")
+    return found
+
+
+def _is_ours(argument: ast.AST) -> bool:
+    """Return whether the name of a module is put together from a package of ours."""
+    parts = argument.values if isinstance(argument, ast.JoinedStr) else []
+    return any("rocking." in str(getattr(part, "value", "")) or "__package__" in ast.dump(part) for part in parts)
+
+
+def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str]:
+    """Return the modules and scripts that declare the width of a block.
+
+    That is a class with the fields, a table or list with the keys, or an option of a command, of width and height;
+    the tables of the page list names with labels or units. Values of a block are no declarations.
+    """
+    found = [name for name, tree in trees.items() if any(map(_declares, ast.walk(tree)))]
+    listed = re.compile(r"""\["width", "|"width", "height",|^\s*width: \[""", re.MULTILINE)
+    return found + [path.name for path in scripts if listed.search(path.read_text("utf-8"))]
+
+
+def _declares(node: ast.AST) -> bool:
+    if isinstance(node, ast.ClassDef):
+        return {last_name(each.target) for each in node.body if isinstance(each, ast.AnnAssign)} >= _SIZES
+    if isinstance(node, ast.arguments):
+        options = {each.arg for each in (*node.args, *node.kwonlyargs) if "Option" in ast.dump(each.annotation or each)}
+        return options >= _SIZES
+    if isinstance(node, ast.Dict):
+        pairs = zip(node.keys, node.values, strict=True)
+        described = {getattr(key, "value", None) for key, value in pairs if not _is_number(value)}
+        return described >= _SIZES
+    if isinstance(node, ast.Tuple | ast.Set | ast.List):
+        names = [getattr(each, "value", None) for each in node.elts]
+        return set(names) >= _SIZES and len(names) > 2
+    return False
+
+
+def _is_number(value: ast.AST) -> bool:
+    return isinstance(value, ast.Constant) and isinstance(value.value, int | float)
