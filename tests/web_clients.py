@@ -31,6 +31,13 @@ def script_of(app, **options):
     return TestClient(app, base_url=origin, headers=head, **options)
 
 
+def refusal(answer, status=422):
+    """Return the sentence of an answer that is a refusal with this status, without a trace of the program."""
+    assert answer.status_code == status, answer.text
+    assert "Traceback" not in answer.text
+    return answer.json()["error"]["message"]
+
+
 @contextlib.contextmanager
 def serving(folder, *words):
     """Run `rocking serve` in a process of its own: the process, its address, and what a script sends as head."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser_pages import DECISIVE, GENTLE, MODELS, PHONE, card, link, pasted, response, saved
+from browser_pages import DECISIVE, GENTLE, MODELS, card, link, pasted, response, saved
 from playwright.sync_api import expect
 
 from rocking.bodies import Block
@@ -183,15 +183,6 @@ def test_files_are_saved(answered: Callable[..., Any], name: str) -> None:
     with page.expect_download() as waiting:
         page.get_by_role("button", name=name).click()
     assert Path(waiting.value.path()).stat().st_size > 1000
-
-
-def test_dark_and_phone(answered: Callable[..., Any], shot: Callable[..., Path]) -> None:
-    """In the dark, and at 360 px, everything is there and nothing is wider than the screen."""
-    for name, options in (("dark", {"color_scheme": "dark"}), ("phone", {"viewport": PHONE})):
-        page = answered(link(DECISIVE), **options)
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        page.get_by_test_id("scene-ground").select_option("magnified")
-        shot(page, f"response-{name}")
 
 
 def test_many_impacts_scroll_in_a_box(answered: Callable[..., Any]) -> None:

@@ -110,7 +110,6 @@ def test_interruptions_do_not_matter(tmp_path, work, bare):
 
 
 WORKERS, CHUNKS, METHODS = (1, 2, 4, 8), (1, 7, 64, 1000), ("fork", "spawn")
-Case = tuple[str, int, int, bool, bool]
 PRODUCT = list(itertools.product(METHODS, WORKERS, CHUNKS, (False, True), (False, True)))
 SELECTION = [
     (method, workers, CHUNKS[(k + shift) % 4], bool((k + shift) % 2), bool(k // 2 ^ shift))

@@ -27,7 +27,6 @@ pytestmark = [
 
 CASES, FOLLOWED = (1000, 12) if os.environ.get("ROCKING_CAMPAIGN") == "1" else (12, 8)
 STEP, LENGTH = 0.02, 8.0
-G = 9.81
 TOWER = SpatialBody.box(1.0, 1.3, 4.0)
 LAWS = ("housner-3d", "horizontal-momentum-3d", 0.9)
 BAND = 1e-6

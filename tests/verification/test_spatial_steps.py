@@ -22,7 +22,6 @@ pytestmark = pytest.mark.verifies(room="restitution in space")
 
 # random steps of each body
 STEPS = 4000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1000
-UP = np.array([0.0, 0.0, 1.0])
 BENT = rk.Section.from_points([(0, 0), (1.0, 0), (0.9, 2.2), (0.5, 2.6), (0.2, 1.4)])
 BODIES = {
     "bent": Solid([Part(box(0.6, 0.4, 0.3), 2400.0), Part(box(0.2, 0.3, 1.5), 2400.0).moved(0.12, 0.02, 0.3)]),

@@ -154,24 +154,6 @@ def _same_as_alone(folder: Path, table: bytes) -> None:
 
 @pytest.mark.verifies("behaviour")
 @linux
-def test_cancel_leaves_no_process(tmp_path: Path) -> None:
-    """A cancelled study can be resumed, and a deleted study is gone."""
-    with _serving(tmp_path / "data") as server:
-        study = server.launch(LONG)
-        for _ in range(ROUNDS):
-            server.until(study, "running", done=server.facts(study)["histories_done"] + 1)
-            answer = server.ask("POST", f"/{study}/cancel")
-            assert answer.json()["state"] == "cancelled"
-            assert not _children(study)
-            assert server.ask("POST", f"/{study}/resume").json()["state"] in {"waiting", "running"}
-            server.until(study, "running")
-        assert server.ask("DELETE", f"/{study}").status_code == 200
-        assert not _children(study)
-        assert not list((tmp_path / "data" / "studies").iterdir())
-
-
-@pytest.mark.verifies("behaviour")
-@linux
 def test_a_process_that_does_not_listen_is_cancelled(tmp_path: Path) -> None:
     """A process that is stopped hears no signal; it is killed, and the study can be resumed."""
     with _serving(tmp_path / "data") as server:
@@ -195,16 +177,6 @@ def test_a_server_that_is_ended_leaves_studies_to_resume(tmp_path: Path) -> None
     told = json.loads((tmp_path / "data" / "studies" / study / "meta.json").read_text())
     assert told["state"] == "interrupted"
     assert "goes on when the server starts again" in told["message"]
-
-
-@pytest.mark.verifies("behaviour")
-def test_two_servers_do_not_share_a_folder(tmp_path: Path) -> None:
-    """The second one is refused while the first has the folder, so that no study runs twice."""
-    with _serving(tmp_path / "data"):
-        command = [sys.executable, "-m", "rocking", "serve", "--json", "--data", str(tmp_path / "data")]
-        second = subprocess.run(command, capture_output=True, text=True, timeout=HANG, check=False)
-    assert second.returncode != 0
-    assert not second.stdout
 
 
 @pytest.mark.speed

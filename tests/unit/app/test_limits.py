@@ -209,10 +209,6 @@ def test_an_ordinary_record_is_far_from_the_cap():
     check_record("\n".join("0.005 1.0 -2.0 3.0" for _ in np.arange(120_000)).encode())
 
 
-AT_MOST = 3.0
-"""Seconds for an answer; one of an idle core takes less than one."""
-
-
 def sheets(count):
     """Return a pile of thin slabs."""
     outlines = ([[0, k], [50, k], [50, k + 1], [0, k + 1]] for k in range(count))

@@ -19,15 +19,9 @@ pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
 BLOCK = rk.Block(width=1.0, height=3.0, depth=2.0, density=1000.0)
 MASS, RADIUS, ALPHA = 6000.0, math.hypot(0.5, 1.5), math.atan(1.0 / 3.0)
-P = math.sqrt(0.75 * g / RADIUS)
 START, R = 0.15, 0.85
 PSI = ALPHA - START
 WHOLE = MASS * g * RADIUS * (math.cos(PSI) - math.cos(ALPHA))
-SHARE = np.linspace(0.0, 1.0, 301)
-RECORD = rk.GroundMotion(
-    7.0 * np.sin(15.0 * math.pi * SHARE) * (1.0 - SHARE), 0.02,
-    vertical=2.0 * np.sin(34.0 * math.pi * SHARE) * (1.0 - SHARE),
-)  # fmt: skip
 
 
 @pytest.mark.verifies("closed form", "m g R (cos(alpha - theta_0) - cos(alpha)), and r^2n of it", within="1e-11")

@@ -13,7 +13,6 @@ from rocking.motions.pipeline import STEPS, steps_of
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 
-RNG = np.random.default_rng(5)
 X, Y, Z = (
     GroundMotion(np.sin(np.arange(800) * rate) * np.hanning(800) + 0.02, 0.01, name=name)
     for rate, name in ((0.3, "x"), (0.2, "y"), (0.5, "z"))

@@ -12,7 +12,6 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 
 BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
-ALPHA = math.atan(0.25)
 
 
 def test_under_little_gravity_it_rocks_slower():

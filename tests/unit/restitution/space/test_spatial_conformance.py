@@ -14,7 +14,6 @@ from rocking.restitution.space import SpatialImpact, SpatialModel, spatial_model
 pytestmark = pytest.mark.verifies(room="restitution in space")
 
 MODELS = sorted(spatial_models())
-UP = np.array([0.0, 0.0, 1.0])
 BODIES = {
     "prism": Solid(box(1.0, 1.3, 4.0)),
     "column": Solid([Part(box(1.0, 1.2, 0.3), 2400.0), Part(frustum(0.8, 0.5, 2.0), 2700.0).moved(0.05, 0.0, 0.3)]),
