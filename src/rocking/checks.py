@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking.conventions import FEET, LENGTH_UNITS, UNITS, Assumed, FloatArray, Foot
 from rocking.errors import InvalidValueError
-from rocking.messages import Range
+from rocking.messages import Message, Range
 
 Word = TypeVar("Word", bound=str)
 SMALLEST, LARGEST = 1e-9, 1e9
@@ -21,15 +21,17 @@ SMALLEST, LARGEST = 1e-9, 1e9
 def number(name: str, value: Any, unit: str = "-") -> float:
     """Return `value` as a finite float."""
     if isinstance(value, (bool, np.bool_, str, bytes, complex)) or value is None:
-        raise InvalidValueError(parameter=name, allowed=f"a number [{unit}]", value=value)
+        raise InvalidValueError(parameter=name, allowed=Message("a number [{unit}]", {"unit": unit}), value=value)
     try:
         if getattr(value, "ndim", 0):
             raise TypeError  # numpy before 2.4 takes an array of one number for it
         result = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidValueError(parameter=name, allowed=f"one number [{unit}]", value=value) from error
+        raise InvalidValueError(
+            parameter=name, allowed=Message("one number [{unit}]", {"unit": unit}), value=value
+        ) from error
     if not math.isfinite(result):
-        raise InvalidValueError(parameter=name, allowed=f"finite [{unit}]", value=result)
+        raise InvalidValueError(parameter=name, allowed=Message("finite [{unit}]", {"unit": unit}), value=result)
     return result
 
 
@@ -68,8 +70,9 @@ def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
     if not is_whole or not low <= int(value) <= high:
         top = f"{high}]" if high < 2**53 else f"2^{high.bit_length()})"
         beyond = high != 2**63 - 1 or (is_whole and int(value) > high)
-        allowed = f"in [{low}, {top}" if beyond else f">= {low}"
-        raise InvalidValueError(parameter=name, allowed=f"a whole number {allowed}", value=value)
+        in_range = Message("a whole number in {limits}", {"limits": f"[{low}, {top}"})
+        above = Message("a whole number >= {low}", {"low": low})
+        raise InvalidValueError(parameter=name, allowed=in_range if beyond else above, value=value)
     return int(value)
 
 

@@ -3,7 +3,7 @@
 import reprlib
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib import import_module
@@ -12,7 +12,7 @@ from pathlib import PurePath
 from types import ModuleType
 from typing import Any, Literal, Self, TypeVar
 
-from rocking.messages import Message, Parameter, Place, Spelling
+from rocking.messages import Amount, Message, Parameter, Place, Spelling, as_message
 
 _EXTRAS = {
     "jinja2": "report",
@@ -107,6 +107,21 @@ class RockingError(Exception):
         stated = {"parameter": parameter, "allowed": self.allowed, "value": _shown(self.value), **self.facts}
         return Message(self.text or "{parameter} must be {allowed}, got {value}", stated)
 
+    @property
+    def sentence(self) -> Message:
+        """Places, fault and hint as one message."""
+        return self._sentence(self.places)
+
+    def _sentence(self, places: Sequence[Place]) -> Message:
+        sentence = self.message
+        if isinstance(self.value, float) and self._name:  # with the decimal mark of its reader
+            sentence = replace(sentence, facts={**sentence.facts, "value": Amount(self.value)} | self.facts)
+        for place in reversed(places):
+            sentence = Message("{place}: {fault}", {"place": str(place), "fault": sentence})
+        if self.hint:
+            sentence = Message("{fault}; {hint}", {"fault": sentence, "hint": as_message(self.hint)})
+        return Message("{fault} (and {count} more)", {"fault": sentence, "count": self.more}) if self.more else sentence
+
     def data(self) -> dict[str, Any]:
         """Return the error as plain values.
 
@@ -119,7 +134,7 @@ class RockingError(Exception):
             "message": str(self),
             "parameter": self.parameter,
             **self.message.data(),
-            "hint": (self.hint if isinstance(self.hint, Message) else Message(self.hint)).data(),
+            "hint": as_message(self.hint).data(),
             "places": [asdict(place) for place in self.places],
             "more": self.more,
         }
@@ -142,9 +157,7 @@ class RockingError(Exception):
         places = list(self.places)
         while places and not within and places[0].kind == "table":
             places.pop(0)
-        hint = self.hint.spelt(spelling) if isinstance(self.hint, Message) else self.hint
-        sentence = ": ".join([*map(str, places), self.message.spelt(spelling)]) + (f"; {hint}" if hint else "")
-        return f"{sentence} (and {self.more} more)" if self.more else sentence
+        return self._sentence(places).spelt(spelling)
 
     def __str__(self) -> str:
         return self.spelt()

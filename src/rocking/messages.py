@@ -90,7 +90,13 @@ class Range(Fact):
         low = value > self.low if self.low_open else value >= self.low
         return low and (value < self.high if self.high_open else value <= self.high)
 
-    def __str__(self) -> str:
+    @property
+    def bounded(self) -> bool:
+        """Whether both ends are finite."""
+        return math.isfinite(self.low) and math.isfinite(self.high)
+
+    def limits(self, separator: str = ", ") -> str:
+        """Return both ends in brackets, or the finite one after its sign."""
         unit = f" {self.unit}" if self.unit else ""
         if self.high == math.inf:
             return f"{'>' if self.low_open else '>='} {self.low:g}{unit}"
@@ -98,7 +104,10 @@ class Range(Fact):
             return f"{'<' if self.high_open else '<='} {self.high:g}{unit}"
         brackets = "(" if self.low_open else "[", ")" if self.high_open else "]"
         high = "pi/2" if self.high == 0.5 * math.pi else f"{self.high:g}"
-        return f"in {brackets[0]}{self.low:g}, {high}{brackets[1]}{unit}"
+        return f"{brackets[0]}{self.low:g}{separator}{high}{brackets[1]}{unit}"
+
+    def __str__(self) -> str:
+        return f"in {self.limits()}" if self.bounded else self.limits()
 
 
 @dataclass(frozen=True)
@@ -169,6 +178,8 @@ class Message:
 
     text: str  # the English text; its translations are found by it
     facts: Mapping[str, Any] = field(default_factory=dict)
+    many: str = ""  # the text where the fact `count` is not 1; empty if there is no such form
+    context: str = ""  # what tells it from a message of the same text that is translated otherwise
 
     def __str__(self) -> str:
         return self.spelt(str)
@@ -178,13 +189,20 @@ class Message:
 
     def data(self) -> dict[str, Any]:
         """Return the text and its facts as plain values; a fact of a class has the name of the class as its kind."""
-        return {"text": self.text, "facts": {name: _data(fact) for name, fact in self.facts.items()}}
+        more = {name: text for name, text in (("many", self.many), ("context", self.context)) if text}
+        return {"text": self.text, "facts": {name: _data(fact) for name, fact in self.facts.items()}, **more}
 
     def spelt(self, spelling: Spelling) -> str:
         """Return the sentence with its facts as a door spells them."""
         if not self.facts:
             return self.text
-        return self.text.format_map({name: _spelt(fact, spelling) for name, fact in self.facts.items()})
+        text = self.many if self.many and self.facts["count"] != 1 else self.text
+        return text.format_map({name: _spelt(fact, spelling) for name, fact in self.facts.items()})
+
+
+def as_message(text: str | Message) -> Message:
+    """Return a text as a message; a message as it is."""
+    return text if isinstance(text, Message) else Message(text)
 
 
 def _spelt(fact: Any, spelling: Spelling) -> Any:

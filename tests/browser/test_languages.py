@@ -188,7 +188,7 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     made += [one["title"] for one in info["formats"]] + [one["summary"] for one in info["families"]]
     steps = [*info["steps"].values(), *info["targets"].values()]
     made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
-    made += [one.reason for one in parse_inventory(LIST).not_assessed]
+    made += [str(one.reason) for one in parse_inventory(LIST).not_assessed]
     made += ["Choose files", "a.csv: column 'b' states no unit: say it under \u201cUnit\u201d.", "from a file"]
     made += ["How it can stand: a.stl", "At 0.10 s: tilted 2.00°, on 4 points, 2 sliding; it has overturned."]
     made += ["3 records for eurocode8:"]

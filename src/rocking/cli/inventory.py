@@ -168,37 +168,40 @@ class InventoryAnswer:
         from rocking.cli.study import source_lines
         from rocking.motions.summary import summaries_of
         from rocking.studies.inventory import table
+        from rocking.studies.inventory.lights import LIGHT_MARKS, LIGHT_NAMES
 
         assessment = self.assessment
         say, hazard = table.words_of(assessment), assessment.hazard
-        page.line(f"{assessment.source}: {hazard.words(say.code)}, {say.translated(hazard.source)}")
+        page.line(f"{assessment.source}: {hazard.words(say.code)}, {say(hazard.source)}")
         page.facts([] if hazard.synthetic else source_lines(summaries_of(hazard.motions)))
         for rank, verdict in enumerate(assessment.verdicts, start=1):
             line = Text(f"{rank:3}  ")
-            line.append(f"{say(f'mark.{verdict.light.word}'):<7}", style=_STYLES[verdict.light.name])
+            line.append(f"{say(LIGHT_MARKS[verdict.light]):<7}", style=_STYLES[verdict.light.name])
             line.append(f"  {table.named(verdict, say)}: {table.sentence(verdict, assessment)}")
             page.rich(line)
             notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "noted")]
             page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
         for refused in assessment.not_assessed:
-            reason, name = say.translated(refused.reason), refused.label or say("sheet.no_name")
-            page.line(f"     {say('sheet.terminal_refused', name=name, row=refused.row, reason=reason)}")
+            reason, name = say(refused.reason), refused.label or say("no name")
+            page.line(
+                f"     {say('not assessed: {name}, line {row}: {reason}', name=name, row=refused.row, reason=reason)}"
+            )
         if plan := assessment.plan:
-            page.line(f"\n{say('plan.heading')}")
+            page.line(f"\n{say('What to do first, any one of:')}")
             for k, entry in enumerate(plan[:_MOST_PLANNED], start=1):
                 page.line(f"{k:3}  {table.plan_words(entry, say)}")
             if (left := len(plan) - _MOST_PLANNED) > 0:
-                page.line(f"     {say('plan.more', count=left)}")
+                page.line(f"     {say('and {count} object more', 'and {count} objects more', count=left)}")
         lights = assessment.thresholds.sentences(say.code).items()
-        page.line("\n" + "\n".join(f"{say(f'light.{light.word}').upper()}: {text}" for light, text in lights))
+        page.line("\n" + "\n".join(f"{say(LIGHT_NAMES[light]).upper()}: {text}" for light, text in lights))
         page.line(assessment.thresholds.conventions(say.code)[0])
         if others := table.passed_over(assessment):
             lines = "; ".join(f"{', '.join(map(str, rows))} ({why})" for why, rows in others)
-            page.line(say("sheet.terminal_others", lines=lines))
+            page.line(say("Lines that are not objects: {lines}", lines=lines))
         if words := table.stated(assessment):
             page.line(words)
         if assessment.ignored:
-            page.line(say("sheet.terminal_ignored", columns=", ".join(assessment.ignored)))
-        if say.asked != say.code:
-            page.line(say("no_words", code=say.asked))
+            page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))
+        if words := table.untranslated(assessment):
+            page.line(words)
         page.line(table.sliding(assessment))

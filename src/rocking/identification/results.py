@@ -16,7 +16,7 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
-from rocking.messages import Message
+from rocking.messages import Message, as_message
 from rocking.quantities import Quantity
 from rocking.restitution import RestitutionModel, implied, models
 
@@ -293,7 +293,7 @@ class Identification(Exported):
         Answer
             Coefficients, impacts, models and designs; of a refused measurement the reasons alone.
         """
-        messages = [doubt if isinstance(doubt, Message) else Message(doubt) for doubt in self.doubts]
+        messages = [as_message(doubt) for doubt in self.doubts]
         words = {
             "source": self.source, "verdict": self.verdict, "refused": tuple(map(str, self.refused)),
             "doubts": tuple(map(str, messages)), "messages": [message.data() for message in messages],

@@ -1,61 +1,69 @@
-"""Words of reports: one file of sentences a language, which say the same with the same numbers, as each writes them."""
+"""Languages of reports and of the page: gettext catalogues of the English messages, and how numbers are written."""
 
 import gettext
-import re
 import string
-import tomllib
-from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-LANGUAGES = {"en": ".", "de": ",", "it": ","}
-"""Languages that there are words in, by their ISO 639-1 codes, with their decimal marks."""
+from rocking.messages import Amount, Fact, Message, Parameter, Range
 
-_NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")
-_FIELD = re.compile(r"\\\{(\w+)\\\}")
+LANGUAGES = {"en": ".", "de": ",", "it": ","}
+"""Languages of reports by their ISO 639-1 codes, with their decimal marks."""
 
 
 class Language(string.Formatter):
-    """The words of one language, by its code; those of English where there are none.
+    """The messages of one language, by its code; English where it has no catalogue.
 
-    >>> Language("de")("interval", low=0.5, high=2.0)
+    >>> Language("de")("{low:.1f} to {high:.1f}", low=0.5, high=2.0)
     '0,5 bis 2,0'
     """
 
     def __init__(self, code: str) -> None:
-        self.asked, self.code = code, code if code in LANGUAGES else "en"
-        self.mark, self.entries = LANGUAGES[self.code], catalogue(self.code)
+        self.requested, self.code = code, code if code in LANGUAGES else "en"
+        self.mark, self.catalogue = LANGUAGES[self.code], _catalogue(self.code)
 
-    def __call__(self, key: str, /, **values: Any) -> str:
-        """Return a sentence by its name, or the form of it that fits a count."""
-        if key not in self.entries:
-            key = f"{key}.{'one' if values.get('count') == 1 else 'many'}"
-        return self.vformat(self.entries[key], (), values)
+    def __call__(self, text: str | Message, many: str = "", /, **facts: Any) -> str:
+        """Return a message with its facts; many: the text where the fact `count` is not 1."""
+        message = text if isinstance(text, Message) else Message(text, facts, many)
+        if message.many:
+            translated = self.ngettext(message.text, message.many, message.facts["count"])
+        else:
+            translated = self.gettext(message.text, message.context)
+        return self.vformat(translated, (), message.facts) if message.facts else translated
+
+    def gettext(self, text: str, context: str = "") -> str:
+        """Return the translation of a text; the text itself where there is none."""
+        if context:
+            return self.catalogue.pgettext(context, text)
+        return self.catalogue.gettext(text) if text else ""
+
+    def ngettext(self, one: str, many: str, count: int) -> str:
+        """Return the translation of the form that fits a count."""
+        return self.catalogue.ngettext(one, many, count)
 
     def format_field(self, value: Any, format_spec: str) -> str:
-        """Return a value as the language writes it."""
+        """Return a fact as the language writes it."""
+        if isinstance(value, Message):
+            return self(value)
+        if isinstance(value, tuple):
+            return "; ".join(self.format_field(fact, "") for fact in value)
+        if isinstance(value, Fact):
+            return self._fact(value)
         text = format(value, format_spec)
         return self.number(text) if isinstance(value, float) else text
+
+    def _fact(self, fact: Fact) -> str:
+        if isinstance(fact, Parameter):
+            return self.gettext(fact.shown.replace("_", " "))
+        if isinstance(fact, Range):
+            limits = self.number(fact.limits(", " if self.mark == "." else "; "))
+            return self("in {limits}", limits=limits) if fact.bounded else limits
+        return self.number(str(fact)) if isinstance(fact, Amount) else str(fact)
 
     def number(self, text: str) -> str:
         """Return a number with the decimal mark of the language."""
         return text.replace(".", self.mark)
-
-    def translated(self, text: str) -> str:
-        """Return a sentence that was made in English, if it is among the phrases; else as it is.
-
-        >>> Language("de").translated("3 records, as recorded")
-        '3 Aufzeichnungen, wie aufgezeichnet'
-        """
-        if self.code == "en":
-            return text
-        if _NUMBER.fullmatch(text):
-            return self.number(text)
-        for key, pattern in _phrases():
-            if match := pattern.fullmatch(text):
-                return self(key, **{name: self.translated(value) for name, value in match.groupdict().items()})
-        return text
 
 
 @lru_cache(maxsize=8)
@@ -65,21 +73,10 @@ def language(code: str) -> Language:
 
 
 @lru_cache(maxsize=8)
-def catalogue(code: str) -> dict[str, str]:
-    """Return the sentences of a language by their names."""
-    return dict(_flat(tomllib.loads(Path(__file__).with_name(f"{code}.toml").read_text(encoding="utf-8"))))
-
-
-@lru_cache(maxsize=8)
 def page_words(code: str) -> dict[str, str | list[str]]:
-    """Return the messages of the page by their English texts, forms by a count as a list; none in English."""
-    path = Path(__file__).with_name(f"{code}.mo")
-    if not path.exists():
-        return {}
-    with path.open("rb") as file:
-        catalog = gettext.GNUTranslations(file)._catalog  # type: ignore[attr-defined]  # as Django reads it
+    """Return the messages of a language by their English texts, forms by a count as a list; none of English."""
     messages: dict[str, str | list[str]] = {}
-    for key, text in catalog.items():
+    for key, text in vars(_catalogue(code)).get("_catalog", {}).items():
         if isinstance(key, tuple):  # the English text, and the number of the form
             forms = messages.setdefault(key[0], [])
             assert isinstance(forms, list)
@@ -89,18 +86,9 @@ def page_words(code: str) -> dict[str, str | list[str]]:
     return messages
 
 
-def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
-    for key, value in table.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{before}{key}.")
-        else:
-            yield f"{before}{key}", value
-
-
-@lru_cache(maxsize=1)
-def _phrases() -> list[tuple[str, re.Pattern[str]]]:
-    """Return what English phrases look like with anything in their places."""
-    return [
-        (key, re.compile(_FIELD.sub(r"(?P<\1>.+?)", re.escape(text)), re.DOTALL))
-        for key, text in catalogue("en").items() if key.startswith("phrase.")
-    ]  # fmt: skip
+def _catalogue(code: str) -> gettext.NullTranslations:
+    path = Path(__file__).with_name(f"{code}.mo")
+    if not path.exists():
+        return gettext.NullTranslations()
+    with path.open("rb") as file:
+        return gettext.GNUTranslations(file)

@@ -9,7 +9,7 @@ from rocking.language import Language
 from rocking.plots.labels import plain, wrapped
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, in_journal_style, legend_below, new_figure, stroke
 from rocking.studies.inventory.assessment import Assessment, Verdict
-from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.lights import LIGHT_LETTERS, LIGHT_NAMES, Light
 from rocking.studies.inventory.table import words_of
 
 if TYPE_CHECKING:
@@ -77,10 +77,10 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
         right.hlines(row, 0.0, verdict.uplift_acceleration / g, color=GREY, linewidth=1.0)
     left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.label), 34, 1) for each in verdicts])
     left.set(xlim=(-0.1, 1.03), ylim=(len(verdicts) - 0.5, -0.5), xticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-    left.set_xlabel(say("picture.share"))
+    left.set_xlabel(say("share of motions that overturn it [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
     right.set_xlim(left=0.0)
-    right.set_xlabel(say("picture.still"))
+    right.set_xlabel(say("stays still up to [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 
@@ -124,10 +124,10 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
         colors = [color for color, _ in _LIGHTS.values()]
         panel.hist(groups, bins=_BINS, range=(0.0, most), stacked=True, color=colors, edgecolor="white", linewidth=0.4)
         panel.locator_params(axis="y", integer=True)
-        panel.set_ylabel(say("picture.objects"))
-    left.set_xlabel(say("picture.share"))
+        panel.set_ylabel(say("number of objects [-]"))
+    left.set_xlabel(say("share of motions that overturn it [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
-    right.set_xlabel(say("picture.still"))
+    right.set_xlabel(say("stays still up to [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 
@@ -144,9 +144,9 @@ def _finish(figure: "Figure", right: "Axes", assessment: Assessment, shown: int)
     if level is not None and level.kind == "PGA":
         right.axvline(level.value / g, **_PEAK)
         right.set_xlim(right=max(right.get_xlim()[1], 1.05 * level.value / g))
-    shaking = f"{assessment.hazard.words(say.code)}; {say.translated(assessment.hazard.source)}"
+    shaking = f"{assessment.hazard.words(say.code)}; {say(assessment.hazard.source)}"
     of_all = len(assessment.verdicts)
-    shaking += f"\n{say('picture.shown', shown=shown, count=of_all)}" if shown < of_all else ""
+    shaking += f"\n{say('the worst {shown} of {count} objects', shown=shown, count=of_all)}" if shown < of_all else ""
     figure.suptitle(plain(shaking), x=0.01, ha="left", fontsize=7)
     _legend(figure, assessment)
 
@@ -155,19 +155,19 @@ def _share(axes: "Axes", row: int, verdict: Verdict, say: Language) -> None:
     color, shape = _LIGHTS[verdict.light]
     axes.hlines(row, *verdict.interval, color=color, linewidth=1.4, zorder=2)
     axes.plot(verdict.worse.overturned_share, row, shape, color=color, markersize=4.6, zorder=3, clip_on=False)
-    letter = say(f"letter.{verdict.light.word}")
+    letter = say(LIGHT_LETTERS[verdict.light])
     axes.text(-0.06, row, letter, ha="center", va="center", fontsize=7, color=INK, fontweight="bold")
 
 
 def _legend(figure: "Figure", assessment: Assessment) -> None:
     counts, level, say = assessment.counts(), assessment.hazard.level, words_of(assessment)
-    said = {each: {"letter": say(f"letter.{each.word}"), "light": say(f"light.{each.word}")} for each in Light}
+    said = {light: {"letter": say(LIGHT_LETTERS[light]), "light": say(LIGHT_NAMES[light])} for light in Light}
     mark: dict[str, Any] = {"linestyle": "none", "markersize": 4.6}
     handles = [
-        stroke(say("picture.light", count=counts[light], **said[light]), marker=shape, color=color, **mark)
+        stroke(say("{letter}: {light}, {count}", count=counts[light], **said[light]), marker=shape, color=color, **mark)
         for light, (color, shape) in _LIGHTS.items()
     ]
-    handles.append(stroke(say("picture.red"), **_RED))
+    handles.append(stroke(say("red from here"), **_RED))
     if level is not None and level.kind == "PGA":
-        handles.append(stroke(say("picture.peak"), **_PEAK))
+        handles.append(stroke(say("peak of the shaking"), **_PEAK))
     legend_below(figure, handles, 5, handlelength=1.6)

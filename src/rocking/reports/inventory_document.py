@@ -18,8 +18,10 @@ from rocking.reports.document import (
 )
 from rocking.statistics.counts import share_interval
 from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
-from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.lights import LIGHT_MARKS, Light
 from rocking.studies.inventory.table import (
+    DIRECTION_NAMES,
+    PLAN_NOTE,
     advice,
     limits,
     model_note,
@@ -32,6 +34,7 @@ from rocking.studies.inventory.table import (
     sentence,
     sliding,
     stated,
+    untranslated,
     words_of,
 )
 
@@ -58,20 +61,26 @@ def inventory_document(
     every = [
         sections.glance(pictures), sections.ranking(), sections.plan(), sections.refused(), sections.others(),
         sections.numbers(), sections.meaning(),
-        sections.shaking(), ReportSection(say("report.limits"), [Paragraph(each) for each in limits(assessment)]),
+        sections.shaking(), ReportSection(say("What is not covered"), [Paragraph(each) for each in limits(assessment)]),
     ]  # fmt: skip
     return Document(
-        say("report.title"),
-        say("report.subtitle", source=assessment.source, count=len(assessment.verdicts), level=level),
+        say("Which objects stay standing"),
+        say(
+            "{source}: {count} object assessed at {level}",
+            "{source}: {count} objects assessed at {level}",
+            source=assessment.source,
+            count=len(assessment.verdicts),
+            level=level,
+        ),
         [section for section in every if section.blocks],
         look_at=look_at(assessment),
         provenance={
-            say("report.made_with"): made_with()["Made with"],
-            say("report.restitution"): assessment.restitution,
+            say("Made with"): made_with()["Made with"],
+            say("Restitution"): assessment.restitution,
         },
         language=say.code,
-        look_at_title=say("report.look_at"),
-        sections_title=say("report.sections"),
+        look_at_title=say("What to look at"),
+        sections_title=say("Sections"),
     )
 
 
@@ -82,29 +91,40 @@ def light_mark(light: Light, say: Language) -> str:
     >>> light_mark(Light.RED, language("en"))
     'RED'
     """
-    return say(f"mark.{light.word}")
+    return say(LIGHT_MARKS[light])
 
 
 def look_at(assessment: Assessment) -> list[tuple[str, str]]:
     """Return what to look at first: a short name and a sentence each."""
     say, rows = words_of(assessment), {light.word: number for light, number in assessment.counts().items()}
-    lights, refused = say("report.counts", **rows), len(assessment.not_assessed)
+    lights, refused = say("{red} red, {amber} amber, {green} green", **rows), len(assessment.not_assessed)
     pieces = {light.word: number for light, number in assessment.pieces().items()}
     if pieces != rows:
-        lights = say("report.pieces", counts=lights, pieces=sum(pieces.values()), **pieces)
+        lights = say(
+            "{counts} ({pieces} pieces: {red} red, {amber} amber, {green} green)",
+            counts=lights,
+            pieces=sum(pieces.values()),
+            **pieces,
+        )
     if refused:
-        lights = say("report.counts_refused", counts=lights, count=refused)
-    lines = [(say("report.lights"), lights)]
+        lights = say("{counts}, {count} not assessed", counts=lights, count=refused)
+    lines = [(say("The lights"), lights)]
     red = [verdict.item.label for verdict in assessment.verdicts if verdict.light is Light.RED]
     if red:
         names, more = ", ".join(red[:_MOST_NAMED]), len(red) - _MOST_NAMED
-        lines.append((say("report.first"), say("report.names_more", names=names, count=more) if more > 0 else names))
+        names = say("{names} and {count} more", names=names, count=more) if more > 0 else names
+        lines.append((say("First of all"), names))
     undecided = sum(verdict.model_decides for verdict in assessment.verdicts)
     if undecided:
-        lines.append((say("report.decides"), say("report.undecided", count=undecided)))
-    if say.asked != say.code:
-        lines.append((say("report.language"), say("no_words", code=say.asked)))
-    return [*lines, (say("report.not_covered"), sliding(assessment))]
+        sentence_on_models = say(
+            "for {count} object the other model of impact shows another light",
+            "for {count} objects the other model of impact shows another light",
+            count=undecided,
+        )
+        lines.append((say("The model decides"), sentence_on_models))
+    if words := untranslated(assessment):
+        lines.append((say("Language"), words))
+    return [*lines, (say("Not covered"), sliding(assessment))]
 
 
 class _Sections:
@@ -113,30 +133,46 @@ class _Sections:
     def __init__(self, assessment: Assessment, photos: Mapping[int, str]) -> None:
         self.assessment, self.photos, self.say = assessment, photos, words_of(assessment)
 
-    def _header(self, *names: str) -> list[str]:
-        return [self.say(f"report.columns.{name}") for name in names]
-
     def glance(self, pictures: Sequence[str]) -> ReportSection:
         """Return the pictures of all objects, or of the worst and of how all are distributed."""
         say, count, level = self.say, len(self.assessment.verdicts), 100.0 * self.assessment.thresholds.level
-        worst = say("report.glance_all", level=level)
+        worst = say(
+            "Each object, the worst on top: the fraction of motions that overturn it with its "
+            "{level:.10g}% interval (left), and the acceleration up to which it stays still "
+            "(right).",
+            level=level,
+        )
         if count > MOST_DRAWN:
-            worst = say("report.glance_worst", shown=MOST_DRAWN, count=count, level=level)
-        captions = {GLANCE: worst, SHARES: say("report.glance_shares", count=count)}
-        return ReportSection(say("report.glance"), [Picture(stem, captions[stem]) for stem in pictures])
+            worst = say(
+                "The worst {shown} of {count} objects: the fraction of motions that overturn each with "
+                "its {level:.10g}% interval (left), and the acceleration up to which it stays still "
+                "(right).",
+                shown=MOST_DRAWN,
+                count=count,
+                level=level,
+            )
+        captions = {
+            GLANCE: worst,
+            SHARES: say(
+                "All {count} objects: how many of them are overturned by which fraction of the motions "
+                "(left), and how many stay still up to which acceleration (right), by light.",
+                count=count,
+            ),
+        }
+        return ReportSection(say("At a glance"), [Picture(stem, captions[stem]) for stem in pictures])
 
     def ranking(self) -> ReportSection:
         say, rows = self.say, [self._ranked(*each) for each in enumerate(self.assessment.verdicts)]
-        header = ["", *self._header("light", "object", "does", "do")]
-        nothing = Paragraph(say("report.nothing"), mark="bad")
-        ranked = table(say("report.worst"), header, rows, stem="ranking")
-        return ReportSection(say("report.objects"), [ranked if rows else nothing])
+        header = ["", say("light"), say("object"), say("what it does"), say("what to do")]
+        nothing = Paragraph(say("No row could be assessed."), mark="bad")
+        ranked = table(say("The worst first"), header, rows, stem="ranking")
+        return ReportSection(say("The objects"), [ranked if rows else nothing])
 
     def _ranked(self, place: int, verdict: Verdict) -> list[object]:
         say, item = self.say, verdict.item
         words = [sentence(verdict, self.assessment), noted(verdict, self.assessment)]
         if item.photo is not None and not self.photos.get(place):
-            words.append(say("report.no_photo", file=item.photo.name))
+            words.append(say("Its photo {file} cannot be shown.", file=item.photo.name))
         what_to_do = f"{advice(verdict, self.assessment)} {model_note(verdict, self.assessment)}"
         shown = Cell(named(verdict, say), picture=self.photos.get(place, ""))
         return [place + 1, self._light(verdict.light), shown, " ".join(filter(None, words)), what_to_do.strip()]
@@ -146,91 +182,148 @@ class _Sections:
 
     def plan(self) -> ReportSection:
         say, assessment = self.say, self.assessment
-        header = [*self._header("object"), *plan_header(say)]
+        header = [say("object"), *plan_header(say)]
         rows = [[each.item.label, *map(self._figure, plan_row(each, say))] for each in assessment.plan]
         weights = {name: 1.0 / assessment.thresholds.factor(name) for name in ("low", "high")}
-        lead = Paragraph(say("plan.lead", **weights))
-        plan = table(say("plan.caption"), header, rows, say("plan.note"), "plan")
-        return ReportSection(say("plan.title"), [lead, plan])
+        lead = Paragraph(
+            say(
+                "Sorted by gain: the number of pieces that fall less, as expected, times the weight of "
+                "a fall (of low consequence {low:g}, of medium 1, of high {high:g}: a convention of "
+                "this report). Any one of the measures makes the object green: changed so, it was "
+                "computed again under the same motions.",
+                **weights,
+            )
+        )
+        plan = table(
+            say("Measures by gain"),
+            header,
+            rows,
+            say(PLAN_NOTE),
+            "plan",
+        )
+        return ReportSection(say("What to do first"), [lead, plan])
 
     def _figure(self, value: str | float) -> str:
         return value if isinstance(value, str) else self.say.number(f"{value:.6g}")
 
     def refused(self) -> ReportSection:
         say = self.say
-        rows = [(each.row or "", each.label, say.translated(each.reason)) for each in self.assessment.not_assessed]
-        lead = Paragraph(say("report.refused_lead", count=len(rows)), mark="bad")
-        reasons = table(say("report.reasons"), self._header("line", "object", "why"), rows, stem="not_assessed")
-        return ReportSection(say("report.refused"), [lead, reasons] if rows else [])
+        rows = [(each.row or "", each.label, say(each.reason)) for each in self.assessment.not_assessed]
+        lead = Paragraph(
+            say(
+                "{count} row of the list could not be assessed; the others are not affected.",
+                "{count} rows of the list could not be assessed; the others are not affected.",
+                count=len(rows),
+            ),
+            mark="bad",
+        )
+        reasons = table(say("Rows and reasons"), [say("line"), say("object"), say("why")], rows, stem="not_assessed")
+        return ReportSection(say("Not assessed"), [lead, reasons] if rows else [])
 
     def others(self) -> ReportSection:
         """Return the lines of the list that are no objects, and why."""
         say, others = self.say, self.assessment.not_objects
-        rows = [(each.row, each.name, say.translated(each.reason)) for each in others]
-        reasons = table(say("report.others_reasons"), self._header("line", "text", "why"), rows, stem="not_objects")
-        return ReportSection(say("report.others"), [Paragraph(say("report.others_lead")), reasons] if rows else [])
+        rows = [(each.row, each.name, say(each.reason)) for each in others]
+        reasons = table(
+            say("Lines and reasons"), [say("line"), say("what it says"), say("why")], rows, stem="not_objects"
+        )
+        return ReportSection(
+            say("Lines that are not objects"),
+            [Paragraph(say("These lines of the list are not objects. Check that none of them should be.")), reasons]
+            if rows
+            else [],
+        )
 
     def numbers(self) -> ReportSection:
         say, assessment = self.say, self.assessment
         header = [
-            *self._header("object", "along", "light", "still", "lifted", "overturned"),
-            say("report.columns.interval", level=100.0 * assessment.thresholds.level),
-            *self._header("median", "high"),
-            *(say("report.columns.other", name=name) for name in assessment.comparisons),
+            say("object"),
+            say("along"),
+            say("light"),
+            say("stays still up to [g]"),
+            say("lifted [%]"),
+            say("overturned"),
+            say("{level:.10g}% interval [%]", level=100.0 * assessment.thresholds.level),
+            say("median"),
+            say("84 %"),
+            *(say("light by {name}", name=name) for name in assessment.comparisons),
         ]
         rows = [
             self._numbered(each, one, others)
             for each in assessment.verdicts
             for one, *others in zip(each.results, *each.compared, strict=True)
         ]
-        note = say("report.numbers_note", restitution=assessment.restitution)
-        numbers = table(say("report.both"), header, rows, note, "numbers")
-        return ReportSection(say("report.numbers"), [numbers] if rows else [])
+        note = say(
+            "Stays still: horizontal acceleration g b/h below which nothing moves. Median, 84 %: "
+            "quantiles of the peak rotation over the slenderness angle; beyond 1 the centre of mass"
+            " has passed the foot. Interval: Clopper and Pearson's, of the probability that it "
+            "overturns. Impacts by {restitution}; both directions are given.",
+            restitution=assessment.restitution,
+        )
+        numbers = table(say("Every object in both directions"), header, rows, note, "numbers")
+        return ReportSection(say("The numbers"), [numbers] if rows else [])
 
     def _numbered(self, verdict: Verdict, one: DirectionResult, others: Sequence[DirectionResult]) -> list[object]:
         say, level = self.say, self.assessment.thresholds.level
         low, high = share_interval(one.overturned, one.count, level)
-        along = say(f"direction.{one.direction}")
+        along = say(DIRECTION_NAMES[one.direction])
         still, lifted = say.number(rounded_down(one.uplift_acceleration / g, 3)), f"{100.0 * one.lifted_share:.0f}"
         shares = (
-            say("report.overturned", overturned=one.overturned, count=one.count),
-            say("interval", low=100.0 * low, high=100.0 * high),
+            say("{overturned} of {count}", overturned=one.overturned, count=one.count),
+            say("{low:.1f} to {high:.1f}", low=100.0 * low, high=100.0 * high),
         )
         rotations = rotation_words(one.median_rotation, say), rotation_words(one.high_rotation, say)
         beside = [self._light(each.light, "plain" if each.light is one.light else None) for each in others]
-        along = say("report.worse", way=along) if one is verdict.worse else along
+        along = say("{way} (worse)", way=along) if one is verdict.worse else along
         return [verdict.item.label, along, self._light(one.light), still, lifted, *shares, *rotations, *beside]
 
     def meaning(self) -> ReportSection:
         say, thresholds = self.say, self.assessment.thresholds
         sentences = thresholds.sentences(say.code).items()
         lights = [Paragraph(words, f"{light_mark(light, say)}.", MARKS[light]) for light, words in sentences]
-        return ReportSection(say("report.meaning"), [*lights, *map(Paragraph, thresholds.conventions(say.code))])
+        return ReportSection(say("What the lights mean"), [*lights, *map(Paragraph, thresholds.conventions(say.code))])
 
     def shaking(self) -> ReportSection:
         say, assessment, hazard = self.say, self.assessment, self.assessment.hazard
         low, high = hazard.velocity()
-        source, (first, *rest) = say.translated(hazard.source), assessment.comparisons
-        others = say("report.and", one=first, other=rest[0]) if rest else first
-        impacts = "report.impacts_drawn" if assessment.drawn else "report.impacts"
+        source, (first, *rest) = say(hazard.source), assessment.comparisons
+        others = say("{one} and {other}", one=first, other=rest[0]) if rest else first
+        facts = {"restitution": assessment.restitution, "others": others}
+        impacts = say(
+            "Impacts by {restitution}; beside it {others}. Where they show different lights, the loss of energy at an "
+            "impact decides, and the most careful is the prudent choice.",
+            **facts,
+        )
+        if assessment.drawn:
+            impacts = say(
+                "Impacts by {restitution}, drawn for every motion; beside it {others}. Where they show different "
+                "lights, the loss of energy at an impact decides, and the most careful is the prudent choice.",
+                **facts,
+            )
         source, level = f"{source[:1].upper()}{source[1:]}", hazard.words(say.code)
-        motions = say("report.hazard", source=source, level=level, low=low, high=high)
+        motions = say(
+            "{source}; {level}, PGV {low:.3g} to {high:.3g} m/s.", source=source, level=level, low=low, high=high
+        )
         blocks: list[Block] = [
             Paragraph(motions),
-            Paragraph(say(impacts, restitution=assessment.restitution, others=others)),
+            Paragraph(impacts),
         ]
         if hazard.synthetic:
-            origin = {name: say.translated(hazard.description[name]) for name in ("generator", "origin")}
-            blocks.insert(1, Paragraph(say("report.origin", **origin)))
+            origin = {name: say(hazard.description[name]) for name in ("generator", "origin")}
+            words = (
+                "Generator: {generator}. Parameters: {origin}. The same family, count and seed give the same motions."
+            )
+            blocks.insert(1, Paragraph(say(words, **origin)))
         if not hazard.synthetic:
             blocks.append(self._sources())
         if assessment.ignored:
-            blocks.append(Paragraph(", ".join(assessment.ignored), say("report.ignored")))
+            blocks.append(Paragraph(", ".join(assessment.ignored), say("Columns of the list that were not read:")))
         if words := stated(assessment):
             blocks.append(Paragraph(words))
-        return ReportSection(say("report.shaking"), blocks)
+        return ReportSection(say("The shaking"), blocks)
 
     def _sources(self) -> ReportTable:
         """Return the source and the processing steps of the records."""
-        rows = provenance_rows(summaries_of(self.assessment.hazard.motions))
-        return table(self.say("report.sources"), self._header("motion", "source"), rows)
+        say, rows = self.say, provenance_rows(summaries_of(self.assessment.hazard.motions))
+        header = [say("motion"), say("source and processing steps, in order")]
+        return table(say("Source and processing of the records"), header, rows)

@@ -13,9 +13,10 @@ from rocking.motions.summary import provenance_rows, summaries_of
 from rocking.reports.document import render_pdf, write_html
 from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inventory_document
 from rocking.studies.inventory.assessment import Assessment
-from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.lights import LIGHT_NAMES, Light
 from rocking.studies.inventory.table import (
     COLUMNS,
+    PLAN_NOTE,
     answer_of,
     as_csv,
     header,
@@ -146,35 +147,35 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     """Write the table as an Excel workbook: the ranking, the plan of measures, and the assumptions."""
     book, say = extra("openpyxl", "the spreadsheet").Workbook(), words_of(assessment)
     sheet = book.active
-    sheet.title = say("sheet.ranking")
+    sheet.title = say("Ranking")
     titles = header(say)[: len(COLUMNS)]
     _fill(sheet, [titles, *(each[: len(COLUMNS)] for each in rows(assessment, say.code))])
     lights = [each.light for each in assessment.verdicts]
     _dress(sheet, [_WIDTHS.get(name, 12) for name in COLUMNS])
     _colour(sheet, [*lights, *[None] * (len(assessment.not_assessed) + len(assessment.not_objects))])
-    plan = book.create_sheet(say("sheet.plan"))
+    plan = book.create_sheet(say("Measures"))
     _fill(plan, [
-        [say("column.number"), say("column.name"), *plan_header(say)],
+        [say("inventory number"), say("name"), *plan_header(say)],
         *([escaped(each.item.number), escaped(each.item.name), *plan_row(each, say)] for each in assessment.plan),
     ])  # fmt: skip
     _dress(plan, [18, 28, *[16] * len(plan_header(say))])
-    about = book.create_sheet(say("sheet.meaning"))
+    about = book.create_sheet(say("What it means"))
     meaning = assessment.thresholds.sentences(say.code).items()
     hazard = assessment.hazard
-    shaking = f"{hazard.words(say.code)}; {say.translated(hazard.source)}"
-    facts = [[say("sheet.shaking"), shaking], [say("sheet.impacts"), assessment.restitution]]
+    shaking = f"{hazard.words(say.code)}; {say(hazard.source)}"
+    facts = [[say("shaking"), shaking], [say("impacts"), assessment.restitution]]
     sources = [] if hazard.synthetic else provenance_rows(summaries_of(hazard.motions))
-    facts += [[escaped(f"{say('sheet.shaking')}: {name}"), escaped(words)] for name, words in sources]
+    facts += [[escaped(f"{say('shaking')}: {name}"), escaped(words)] for name, words in sources]
     if assessment.ignored:
-        facts.append([say("sheet.not_read"), say("sheet.ignored", columns=", ".join(assessment.ignored))])
+        facts.append([say("not read"), say("columns of the list: {columns}", columns=", ".join(assessment.ignored))])
     if words := stated(assessment):
         facts.append(["", words])
     _fill(about, [
-        *([say(f"light.{light.word}"), words] for light, words in meaning),
+        *([say(LIGHT_NAMES[light]), words] for light, words in meaning),
         *(["", each] for each in assessment.thresholds.conventions(say.code)),
         *facts,
-        [say("sheet.plan"), say("plan.note")],
-        *([say("sheet.not_covered"), each] for each in limits(assessment)),
+        [say("Measures"), say(PLAN_NOTE)],
+        *([say("not covered"), each] for each in limits(assessment)),
     ])  # fmt: skip
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
     whole = BytesIO()  # a workbook that a full disk cuts off complains for long after it was closed

@@ -1,7 +1,7 @@
 """A study of many histories: its tables, what they describe, and its answer."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -206,9 +206,8 @@ def inventory_of(
             table.encoding,
             lambda name: problem.inputs.file((folder / name).as_posix()),
             table.columns,
+            table.language,
         )
-        if table.language is not None:
-            objects = replace(objects, language=table.language)
         texts = {"PGA": table.pga, "PGV": table.pgv}
         level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)
 

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from rocking.language import page_words
-
 pytest.importorskip("babel", reason="Babel compiles the catalogues: pip install babel")
 SCRIPT = runpy.run_path(str(Path(__file__).parents[3] / "packaging/messages.py"))
 CATALOGUES = SCRIPT["catalogues"]()
@@ -62,9 +60,3 @@ def test_compiled_catalogues_are_current(code):
     """The compiled catalogue says what its source says: make messages."""
     kept = GNUTranslations(io.BytesIO((SCRIPT["FOLDER"] / f"{code}.mo").read_bytes()))._catalog
     assert kept == GNUTranslations(io.BytesIO(SCRIPT["compiled"](CATALOGUES[code])))._catalog
-
-
-def test_the_page_reads_the_catalogue():
-    """English texts by their translations; none in English and in languages that there is no catalogue of."""
-    assert page_words("de")["Body"] == "Körper"
-    assert page_words("en") == page_words("fr") == {}

@@ -52,7 +52,7 @@ def test_json(found, tmp_path):
         "Vase",
         "fehlt zur Zeit",
     )
-    assert plain["not_objects"] == [{"row": 5, "text": "Summe: 3", "reason": "a sum or an average"}]
+    assert plain["not_objects"] == [{"row": 5, "text": "Summe: 3", "reason": "eine Summe oder ein Mittelwert"}]
     assert plain["plan"][0]["number"] == "A-17"
     assert plain["header_lines"] == [1]
     assert plain["plan"][0]["in_words"].startswith("A-17 Vase: ")

@@ -171,8 +171,8 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
         "measures": ("object", [plan_words(plan[k], say) if (k := id(each.item)) in plan else "" for each in verdicts]),
         "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
-        "reason": ("not_assessed", [each.reason for each in assessment.not_assessed]),
-        "not_object_reason": ("not_object", [each.reason for each in assessment.not_objects]),
+        "reason": ("not_assessed", [say(each.reason) for each in assessment.not_assessed]),
+        "not_object_reason": ("not_object", [say(each.reason) for each in assessment.not_objects]),
     }  # fmt: skip
     coordinates = {
         "object": [each.item.name for each in verdicts],
@@ -190,6 +190,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
         "not_assessed_note": ("not_assessed", [each.note for each in assessment.not_assessed]),
         "not_object": [each.row for each in assessment.not_objects],
     }
-    about = {"inventory": assessment.source, "shaking": assessment.hazard.words(), "motions": assessment.hazard.source}
+    hazard = assessment.hazard
+    about = {"inventory": assessment.source, "shaking": hazard.words(say.code), "motions": say(hazard.source)}
     labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=about)
     return labelled

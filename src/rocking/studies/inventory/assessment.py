@@ -16,6 +16,7 @@ from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.errors import InvalidValueError, RockingError
+from rocking.messages import Message
 from rocking.outcome import Outcome, lost_contact
 from rocking.statistics.counts import share_interval
 from rocking.statistics.quantiles import quantiles
@@ -121,7 +122,7 @@ class Assessment:
     drawn: bool = False  # whether the coefficient of restitution is drawn for every motion
     language: str = "en"  # of the report
     not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are no objects
-    stated: tuple[str, ...] = ()  # what the list states beside its table and was used
+    stated: tuple[str | Message, ...] = ()  # what the list states beside its table and was used
     header_lines: tuple[int, ...] = ()  # lines of the header of the list
 
     def pieces(self) -> dict[Light, int]:
@@ -134,6 +135,8 @@ class Assessment:
         """Return how many rows, not pieces, show each light, the worst first."""
         return {light: sum(each.light is light for each in self.verdicts) for light in reversed(Light)}
 
+
+_ROLLS = Message("its friction was not used: a round object rocks in a plane")
 
 PIECE = 1 << 18
 """Histories held in memory at once unless one object has more."""
@@ -294,7 +297,7 @@ class _Assessor:
             try:
                 columns += [self._column(item, way) for way in DIRECTIONS]
             except RockingError as error:
-                refused.append(NotAssessed.of(item, str(error)))
+                refused.append(NotAssessed.of(item, error.sentence))
             else:
                 items.append(item)
         if not items:
@@ -348,7 +351,7 @@ class _Assessor:
             parts = {id(part): part for part in row.parts}  # a model that stands twice is computed once
             found = {key: results_of(part, threads=threads, progress=progress) for key, part in parts.items()}
         except RockingError as error:
-            return NotAssessed.of(item, str(error))
+            return NotAssessed.of(item, error.sentence)
         names = ("outcome", "peak_rotation")
         return row.rule({name: np.concatenate([found[id(part)][name] for part in row.parts]) for name in names})
 
@@ -361,7 +364,7 @@ class _Assessor:
             try:
                 return self._histories_in_space(item)
             except RockingError as error:
-                return NotAssessed.of(item, str(error))
+                return NotAssessed.of(item, error.sentence)
         product, _, refused = self.product([item])
         if product is None:
             return refused[0]
@@ -412,7 +415,7 @@ class _Assessor:
         friction: float = math.inf,
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
-            return NotAssessed.of(item, "no motion could be computed in one of its directions")
+            return NotAssessed.of(item, Message("no motion could be computed in one of its directions"))
         limits = self.thresholds.of(item.consequence)
         of_model, *of_others = (
             tuple(
@@ -424,7 +427,7 @@ class _Assessor:
         worse = max(of_model, key=lambda each: each.severity)
         interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
         if not self.moves_in_space(item) and self._friction(item) is not None:
-            item = replace(item, remarks=(*item.remarks, "its friction was not used: a round object rocks in a plane"))
+            item = replace(item, remarks=(*item.remarks, _ROLLS))
         return Verdict(item, of_model, tuple(of_others), interval, friction)
 
     def _direction(

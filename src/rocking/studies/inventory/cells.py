@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from rocking import checks
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.studies.inventory.columns import FACTORS, UNITS, WORDS, order_of, plain, side_of, words_of
 from rocking.studies.inventory.sheets import Cell, Shown
 
@@ -75,17 +76,16 @@ class DecimalMark:
         match = _NUMBER.fullmatch(text)
         if not match:
             raise InvalidValueError(
-                f"{name} must be one number such as 12.5, without unit and without separators of thousands, "
-                f"got {text[:40]!r}"
+                "{title} must be one number such as 12.5, without unit and without separators of thousands, got {cell}",
+                title=name,
+                cell=f"{text[:40]!r}",
             )
         if _THOUSANDS.fullmatch(text) and not self._separates_decimals(match[1]):
             if match[1] in self.groups or self._settles(name, text):
                 return checks.number(name, float(text.replace(match[1], "")))
             digits = text.replace(match[1], "")
             decimal = text.replace(",", ".")
-            raise InvalidValueError(
-                f"{name} is ambiguous: {text!r} could be {decimal} or {digits}; write {decimal}0 or {digits}"
-            )
+            raise _ambiguous(name, text, (decimal, digits), f"{decimal}0")
         return checks.number(name, float(text.replace(",", ".")))
 
     def is_settled_by_column(self, name: str, cell: str) -> bool:
@@ -113,6 +113,17 @@ class DecimalMark:
         )
 
 
+def _ambiguous(title: str, text: str, readings: tuple[str, str], first: str = "") -> InvalidValueError:
+    return InvalidValueError(
+        "{title} is ambiguous: {cell} could be {one} or {other}; write {clear} or {other}",
+        title=title,
+        cell=repr(text),
+        one=readings[0],
+        other=readings[1],
+        clear=first or readings[0],
+    )
+
+
 _ENOUGH, _NEAR = 3, 30.0  # numbers of a column that settle another, and how far they may be from it [-]
 _LONGEST = 200
 _SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
@@ -134,6 +145,7 @@ _DOUBT = re.compile(rf"\s*(?:\?+|[(\[][^\d()\[\]]*[)\]]|\b(?:ca|circa|approx)\.?
 _GIVE_OR_TAKE = re.compile(rf"({_QUANTITY})\s*(?:±|\+ ?/ ?-|\+-)\s*({_QUANTITY})")
 _PAIR = re.compile(rf"({_ONE})\s*([^\W\d]{{1,15}}|['\"])?\.?\s*")
 _MARKS = {"'": "ft", '"': "in"}
+_TWO_SIZES = "{title} says two sizes, got {cell}"
 _DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}.*|[0-9]{2}:[0-9]{2}.*")
 
 
@@ -187,12 +199,14 @@ def _two(title: str, text: str, quantity: Callable[[str, str], float]) -> tuple[
         if match[2] == "/" and low > high > 0.0:  # in front and behind, of which neither is the first
             low, high = high, low
         if not low < high:
-            raise InvalidValueError(f"{title} must go from the smaller to the larger, got {text!r:.40}")
+            raise InvalidValueError(
+                "{title} must go from the smaller to the larger, got {cell}", title=title, cell=f"{text!r:.40}"
+            )
         return low, high
     if match := _BESIDE.fullmatch(text):  # the same in another unit, or what else it might be
         value, other = quantity(match[1], ""), quantity(match[2], match[1])
         if abs(value - other) > _OTHERWISE * value:
-            raise InvalidValueError(f"{title} says two sizes, got {text!r:.40}")
+            raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text!r:.40}")
         return (value, value) if abs(value - other) <= _SAME * value else (min(value, other), max(value, other))
     return None
 
@@ -228,14 +242,20 @@ def _quantity(
     if not pairs or (
         len(pairs) > 1 and (sorted(set(factors), reverse=True) != factors or len(pairs) > 2 or 0.0 in factors)
     ):
-        hint = "; a date, which a spreadsheet made of a number?" if _DATE.fullmatch(text) else ""
+        date = Message("a date, which a spreadsheet made of a number?")
         raise InvalidValueError(
-            f"{title} must be one number such as 12.5, 120 cm, ca. 120 or 120-130, without separators of thousands, "
-            f"got {text[:40]!r}{hint}"
+            "{title} must be one number such as 12.5, 120 cm, ca. 120 or 120-130, without separators of thousands, "
+            "got {cell}",
+            title=title,
+            cell=f"{text[:40]!r}",
+            hint=date if _DATE.fullmatch(text) else "",
         )
     if odd := next((word for (_, word), one in zip(pairs, factors, strict=True) if word and not one), ""):
         raise InvalidValueError(
-            f"{title} must be one number with a unit of {', '.join(units) or 'none'}, got {odd[:20]!r}"
+            "{title} must be one number with a unit of {units}, got {cell}",
+            title=title,
+            units=", ".join(units) or Message("none"),
+            cell=f"{odd[:20]!r}",
         )
     if not factors[0]:
         other = next((word for _, word in _PAIR.findall(beside) if word), "")
@@ -249,8 +269,7 @@ def _number(title: str, text: str, mark: DecimalMark, by: float) -> float:
         return mark.number(title, text)
     above, below = map(int, part.split("/"))
     if not whole and by in {FACTORS["cm"], FACTORS["mm"]}:
-        one, other = f"{above / below:.4g}", f"{above}-{below}"
-        raise InvalidValueError(f"{title} is ambiguous: {text!r} could be {one} or {other}; write {one} or {other}")
+        raise _ambiguous(title, text, (f"{above / below:.4g}", f"{above}-{below}"))
     return (mark.number(title, whole) if whole else 0.0) + above / below
 
 
@@ -260,7 +279,11 @@ def _unit(word: str) -> str:
 
 def _named(title: str, cell: Cell, factor: float | None) -> float:
     if factor is None:
-        raise InvalidValueError(f"{title} must name its unit, in its header or beside the number, got {cell!r:.40}")
+        raise InvalidValueError(
+            "{title} must name its unit, in its header or beside the number, got {cell}",
+            title=title,
+            cell=f"{cell!r:.40}",
+        )
     return factor
 
 
@@ -288,7 +311,7 @@ def parts(
     if match := _TWICE.fullmatch(text):
         found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
         if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):
-            raise InvalidValueError(f"{title} says two sizes, got {text[:60]!r}")
+            raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text[:60]!r}")
         return found
     apart = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", " x ", text) if text.count("/") + 1 == len(order) == 3 else text
     pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", apart)) if piece]
@@ -304,17 +327,22 @@ def parts(
         if not labels[k] and left:
             labels[k] = left.pop(0)
     if not pieces or "" in labels or len(set(labels)) < len(labels) or (left and "diameter" not in labels):
-        why = (
-            f"its header names {len(order)} parts" if order
-            else "which is the height? Write the order into the header, or say it: columns "
-            f'"{title}=height x width x depth cm"'
-        )  # fmt: skip
-        raise InvalidValueError(f"{title} must have its parts in a known order, got {text[:40]!r}; {why}")
+        hint = (
+            Message("its header names {count} parts", {"count": len(order)})
+            if order
+            else Message(
+                "which is the height? Write the order into the header, or say it: columns {example}",
+                {"example": f'"{title}=height x width x depth cm"'},
+            )
+        )
+        raise InvalidValueError(
+            "{title} must have its parts in a known order, got {cell}", title=title, cell=f"{text[:40]!r}", hint=hint
+        )
     units = [[by for _, word in _PAIR.findall(piece) if (by := LENGTH_UNITS.get(_unit(word)))] for piece in pieces]
     found = {}
     for side, piece, own in zip(labels, pieces, units, strict=True):
         if is_missing(piece):
-            raise InvalidValueError(f"{title} is {text[:40]!r}")
+            raise InvalidValueError("{title} is {cell}", title=title, cell=f"{text[:40]!r}")
         one = ("~" if about and not piece.startswith("~") else "") + piece
         found[side] = measure(title, one, None if own else next(iter(units[-1]), factor), mark)
     if "length" in found:

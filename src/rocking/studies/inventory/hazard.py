@@ -9,6 +9,7 @@ from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
 from rocking.language import language
+from rocking.messages import Message
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.components import Components, in_plane, together
 from rocking.motions.motion import GroundMotion, checked_motion
@@ -48,8 +49,14 @@ class IntensityLevel:
 
     def words(self, code: str = "en") -> str:
         """Return the level in a language."""
-        unit = g if self.kind == "PGA" else 1.0
-        return language(code)(f"level.{self.kind.lower()}", value=self.value / unit)
+        return language(code)(self.message)
+
+    @property
+    def message(self) -> Message:
+        """The level with its unit."""
+        if self.kind == "PGA":
+            return Message("PGA {value:.4g} g", {"value": self.value / g})
+        return Message("PGV {value:.4g} m/s", {"value": self.value})
 
     @classmethod
     def of(cls, kind: str, words: str) -> "IntensityLevel":
@@ -78,7 +85,7 @@ class Hazard:
 
     motions: tuple[GroundMotion, ...]  # the motions, scaled
     level: IntensityLevel | None  # to what they are scaled; None for records as they are
-    source: str  # where they come from, in words
+    source: Message  # where they come from
     description: dict[str, Any]  # the same as plain values
     # horizontal components at right angles to the motions, which objects in space feel too; None where there is none
     across: tuple[GroundMotion | None, ...] = ()
@@ -102,9 +109,12 @@ class Hazard:
             if progress is not None:
                 progress(1)
         name = motions.family.name
-        many = "motion" if count == 1 else "motions"
-        words = f"{count} synthetic {many} of the family {name} ({motions.family.title}), seed {seed}"
-        return cls(tuple(shaken), level, words, motions.description())
+        source = Message(
+            "{count} synthetic motion of the family {family} ({title}), seed {seed}",
+            {"count": count, "family": name, "title": Message(motions.family.title), "seed": seed},
+            "{count} synthetic motions of the family {family} ({title}), seed {seed}",
+        )
+        return cls(tuple(shaken), level, source, motions.description())
 
     @classmethod
     def of_records(cls, records: Sequence[Any], level: IntensityLevel | None = None) -> "Hazard":
@@ -118,11 +128,13 @@ class Hazard:
             other if other is None or new is old else other.scaled(new.peak / old.peak)
             for (_, other), old, new in zip(pairs, checked, scaled, strict=True)
         )
-        how = "as recorded" if level is None else f"each scaled to {level}"
+        source = Message("{count} record, as recorded", {"count": len(checked)}, "{count} records, as recorded")
+        if level is not None:
+            facts = {"count": len(checked), "level": level.message}
+            source = Message("{count} record, each scaled to {level}", facts, "{count} records, each scaled to {level}")
         names = [record.name for record in checked]
-        words = f"{len(checked)} record{'s' if len(checked) > 1 else ''}, {how}"
         plain = {"kind": "records", "names": names, "provenance": [list(one.provenance) for one in scaled]}
-        return cls(tuple(scaled), level, words, plain, across if any(each is not None for each in across) else ())
+        return cls(tuple(scaled), level, source, plain, across if any(each is not None for each in across) else ())
 
     @property
     def synthetic(self) -> bool:
@@ -141,8 +153,8 @@ class Hazard:
             return self.level.words(code)
         peaks = [peak_ground_acceleration(motion) / g for motion in self.motions]
         if max(peaks) - min(peaks) <= 1e-9 * max(peaks):
-            return say("level.peak", value=max(peaks))
-        return say("level.range", low=min(peaks), high=max(peaks))
+            return say("PGA {value:.3g} g", value=max(peaks))
+        return say("PGA {low:.3g} to {high:.3g} g", low=min(peaks), high=max(peaks))
 
     def peak(self) -> float:
         """Return the largest peak ground acceleration of all motions [m/s2]."""

@@ -6,6 +6,7 @@ from enum import Enum
 
 from rocking import checks
 from rocking.language import language
+from rocking.messages import Message
 from rocking.statistics.counts import share_interval
 
 # 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
@@ -29,6 +30,29 @@ class Light(Enum):
     def severity(self) -> int:
         """0 for green, 1 for amber, 2 for red [-]."""
         return list(Light).index(self)
+
+
+LIGHT_NAMES = {Light.GREEN: Message("green"), Light.AMBER: Message("amber"), Light.RED: Message("red")}
+LIGHT_MARKS = {Light.GREEN: Message("GREEN"), Light.AMBER: Message("AMBER"), Light.RED: Message("RED")}
+LIGHT_LETTERS = {
+    Light.GREEN: Message("G", context="light"),
+    Light.AMBER: Message("A", context="light"),
+    Light.RED: Message("R", context="light"),
+}
+"""Names, marks and letters of the lights: they are for eyes that do not see colours."""
+
+_MEANINGS = {
+    Light.RED: Message("At least {red:.10g}% of the motions overturn the object."),
+    Light.AMBER: Message(
+        "Neither red nor green: it rocks notably, overturns now and then, slides often, or there are too few motions "
+        "to rule overturning out."
+    ),
+    Light.GREEN: Message(
+        "No motion lifts it; or none overturns it, the upper end of the {level:.10g}% interval of the overturning "
+        "share is at most {green:.10g}% (which takes at least {needed} motions), and 84 % of the motions turn it by "
+        "less than {rocking:g} of its slenderness angle. Nor do {red:.10g}% of the motions make it slide."
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -169,7 +193,7 @@ class Thresholds:
             "red": 100.0 * self.overturning_red, "green": 100.0 * self.overturning_green, "level": 100.0 * self.level,
             "needed": self.needed, "rocking": self.rocking,
         }  # fmt: skip
-        return {light: say(f"meaning.{light.word}", **numbers) for light in reversed(Light)}
+        return {light: say(meaning.text, **numbers) for light, meaning in _MEANINGS.items()}
 
     def conventions(self, code: str = "en") -> list[str]:
         """Return how the shares depend on the consequence of a fall, and that all of this is a convention.
@@ -189,7 +213,16 @@ class Thresholds:
             f"{colour}_{name}": 100.0 * getattr(each, f"overturning_{colour}")
             for name, each in (("low", low), ("high", high)) for colour in ("green", "red")
         }  # fmt: skip
-        return [say("meaning.consequence", needed_high=high.needed, **shares), say("meaning.convention")]
+        return [
+            say(
+                "The shares are those of a fall of medium consequence. Of low consequence they are "
+                "{green_low:.10g}% and {red_low:.10g}%, of high consequence {green_high:.10g}% and "
+                "{red_high:.10g}%; that takes at least {needed_high} motions.",
+                needed_high=high.needed,
+                **shares,
+            ),
+            say("These thresholds are a convention of this report, not of a code of practice."),
+        ]
 
     @property
     def needed(self) -> int:

@@ -15,6 +15,7 @@ from rocking.bodies.solid import Part, box, cylinder, frustum
 from rocking.conventions import g
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.errors import InvalidValueError
+from rocking.messages import Amount, Message
 
 Direction = Literal["width", "depth"]
 
@@ -70,7 +71,7 @@ class InventoryObject:
         Where a picture of it is.
     approximate : mapping of str to float, optional
         Half the width of the interval of a size that is not known well, by the name of the field [m].
-    remarks : tuple of str
+    remarks : tuple of str or Message
         What was assumed of it, or left aside, in one sentence each.
     number : str
         Its inventory number, possibly nothing.
@@ -104,7 +105,7 @@ class InventoryObject:
     consequence: Literal["low", "medium", "high"] = "medium"
     photo: Path | None = None
     approximate: Mapping[str, float] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[str | Message, ...] = ()
     number: str = ""
 
     def __post_init__(self) -> None:
@@ -121,7 +122,9 @@ class InventoryObject:
             centre = _length("centre_of_mass_height", self.centre_of_mass_height)
             if not centre < self.height:
                 raise InvalidValueError(
-                    f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {centre:g} m"
+                    "centre_of_mass_height must be below the height of the body, {height}, got {centre}",
+                    height=Amount(self.height, "m"),
+                    centre=Amount(centre, "m"),
                 )
             object.__setattr__(self, "centre_of_mass_height", centre)
         if self.mass is not None:
@@ -271,8 +274,13 @@ class InventoryObject:
         size = _length(name, value)
         if size > most * (1.0 + 1e-9):
             raise InvalidValueError(
-                f"{name} must be at most the {name.removeprefix('base_')} of the body, {most:g} m, got {size:g} m; "
-                "an object fixed to a wider plinth is measured together with it"
+                "{parameter} must be at most the {side} of the body, {most}, got {size}; "
+                "an object fixed to a wider plinth is measured together with it",
+                parameter=name,
+                value=size,
+                side=Message(name.removeprefix("base_")),
+                most=Amount(most, "m"),
+                size=Amount(size, "m"),
             )
         return most if size > most * (1.0 - 1e-9) else size
 
@@ -281,8 +289,12 @@ class InventoryObject:
         density = mass / (self.width * self.depth * self.height)
         if not LIGHTEST <= density <= DENSEST:
             raise InvalidValueError(
-                f"weight must give between {LIGHTEST:g} and {DENSEST:g} kg/m3 over the box of the object, got "
-                f"{mass:g} kg, that is {density:.3g} kg/m3; wrong unit of the weight or of a length?"
+                "weight must give between {low} and {high} over the box of the object, got {mass}, that is {density}; "
+                "wrong unit of the weight or of a length?",
+                low=Amount(LIGHTEST),
+                high=Amount(DENSEST, "kg/m3"),
+                mass=Amount(mass, "kg"),
+                density=Amount(density, "kg/m3", ".3g"),
             )
         return mass
 
@@ -293,7 +305,7 @@ class NotAssessed:
 
     row: int  # line of the file [-]
     name: str  # what the row says the object is called, possibly nothing; all that it says where it is no object
-    reason: str  # why not, in one sentence
+    reason: str | Message  # why not, in one sentence
     number: str = ""  # its inventory number, possibly nothing
     note: str = ""  # what the list notes about it
 
@@ -303,7 +315,7 @@ class NotAssessed:
         return labelled(self.number, self.name)
 
     @classmethod
-    def of(cls, item: InventoryObject, reason: str) -> "NotAssessed":
+    def of(cls, item: InventoryObject, reason: str | Message) -> "NotAssessed":
         """Return an object as one that could not be assessed."""
         return cls(item.row, item.name, reason, item.number, item.note)
 

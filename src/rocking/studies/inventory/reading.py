@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rocking import language as languages
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError, RockingError
-from rocking.language import language
+from rocking.messages import Message
 from rocking.studies.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
 from rocking.studies.inventory.columns import (
     FACTORS,
@@ -28,7 +29,7 @@ from rocking.studies.inventory.columns import (
 )  # fmt: skip
 from rocking.studies.inventory.headers import FoundHeader, find_header, text_of
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
-from rocking.studies.inventory.rows import RowKinds, RowValues, body_of
+from rocking.studies.inventory.rows import FIELD_NAMES, RowKinds, RowValues, body_of, left_aside
 from rocking.studies.inventory.sheets import (
     ENCODINGS,
     MOST_BYTES,
@@ -60,10 +61,10 @@ class Inventory:
     source : str
         Name of the file, with its table if it has several, or its encoding if that was assumed.
     language : str
-        In which its header is written, and its report is: ``en``, ``de``, ``it`` and more.
+        Language of its report: ``en``, ``de``, ``it`` and more.
     not_objects : tuple of NotAssessed
         Rows that are no objects: titles, headings, sums, remarks, and the header again.
-    stated : tuple of str
+    stated : tuple of str or Message
         What the list states beside its table and was used: a unit, or the order of measures.
     header_lines : tuple of int
         Lines of its header [-].
@@ -75,7 +76,7 @@ class Inventory:
     source: str = "objects"
     language: str = "en"
     not_objects: tuple[NotAssessed, ...] = ()
-    stated: tuple[str, ...] = ()
+    stated: tuple[str | Message, ...] = ()
     header_lines: tuple[int, ...] = ()
 
 
@@ -84,6 +85,7 @@ def read_inventory(
     encoding: str | None = None,
     find: Callable[[str], Path] | None = None,
     columns: str | Mapping[str, str] | None = None,
+    language: str | None = None,
 ) -> Inventory:
     """Return the inventory in a workbook or a CSV file.
 
@@ -99,6 +101,8 @@ def read_inventory(
     columns : str or mapping of str to str, optional
         What columns are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm, Rahmenbreite="``; one
         that is nothing is not read.
+    language : str, optional
+        Language of the report, as of ISO 639-1; that of the header if not given.
 
     Returns
     -------
@@ -122,7 +126,7 @@ def read_inventory(
     sheets = sheets_in(content, path.name)
     if sheets is None:
         texts = [(text, name) for text, name in texts_in(content, path.name, encoding)]
-        return _of_texts(texts, path.name, mapped, find)
+        return _of_texts(texts, path.name, mapped, find, language)
     lists = [(find_header(sheet, mapped), sheet) for sheet in sheets]
     whole = [(found, sheet) for found, sheet in lists if found and not found.header.missing]
     if len(whole) > 1:
@@ -133,7 +137,7 @@ def read_inventory(
     if not whole:
         raise _no_header(path.name, [(found, sheet.rows) for found, sheet in lists])
     found, sheet = whole[0]
-    return _Reader(sheet, found, mapped, find).inventory()
+    return _Reader(sheet, found, mapped, find, language).inventory()
 
 
 def parse_inventory(
@@ -141,6 +145,7 @@ def parse_inventory(
     source: str = "objects",
     find: Callable[[str], Path] | None = None,
     columns: str | Mapping[str, str] | None = None,
+    language: str | None = None,
 ) -> Inventory:
     r"""Return the inventory in a text.
 
@@ -155,6 +160,8 @@ def parse_inventory(
         Where a body file or a photo is that a row names; without it none may be named.
     columns : str or mapping of str to str, optional
         As for `read_inventory`.
+    language : str, optional
+        Language of the report, as of ISO 639-1; that of the header if not given.
 
     Returns
     -------
@@ -173,12 +180,13 @@ def parse_inventory(
     >>> found.objects[0].width, found.objects[0].approximate, found.not_assessed[0].row, found.language
     (0.125, {'depth': 0.006}, 3, 'de')
     """
-    return _of_texts([(text, "")], source, mapping_of(columns), find)
+    return _of_texts([(text, "")], source, mapping_of(columns), find, language)
 
 
 def _of_texts(
-    texts: Sequence[tuple[str, str]], source: str, mapped: Mapping[str, str], find: Callable[[str], Path] | None
-) -> Inventory:
+    texts: Sequence[tuple[str, str]], source: str, mapped: Mapping[str, str], find: Callable[[str], Path] | None,
+    language: str | None,
+) -> Inventory:  # fmt: skip
     """Return the inventory of a text that may be read in several ways: that of which most columns are understood."""
     ways = []
     for text, name in texts:
@@ -194,7 +202,7 @@ def _of_texts(
     sheet = Sheet(called, [row for row in rows if any(map(text_of, row[1]))], delimiter)
     found = find_header(sheet, mapped)
     assert found is not None
-    return _Reader(sheet, found, mapped, find).inventory()
+    return _Reader(sheet, found, mapped, find, language).inventory()
 
 
 def _no_header(source: str, tried: Sequence[tuple[FoundHeader | None, Sequence[Row]]]) -> InvalidValueError:
@@ -220,6 +228,7 @@ class _Reader:
     found: FoundHeader
     mapped: Mapping[str, str]
     find: Callable[[str], Path] | None
+    language: str | None  # of the report; that of the header if None
 
     def inventory(self) -> Inventory:
         self.header, source, titles = self.found.header, self.sheet.source, self.found.header.titles
@@ -232,7 +241,7 @@ class _Reader:
         kinds = RowKinds(self.sheet, self.found, below)
         reasons = [kinds.reason(*row) for row in below]
         self.rows = [row for row, reason in zip(below, reasons, strict=True) if not reason]
-        above = [(*row, "above the header") for row in self.sheet.rows[: self.found.first]]
+        above = [(*row, Message("above the header")) for row in self.sheet.rows[: self.found.first]]
         others = [(*row, reason) for row, reason in zip(below, reasons, strict=True) if reason]
         passed = tuple(NotAssessed(line, _said(cells), reason) for line, cells, reason in [*above, *others])
         stated = self._take_stated(passed)
@@ -250,12 +259,13 @@ class _Reader:
                 objects.append(self._object(line, row))
             except RockingError as error:
                 number, name, note = (self._text(row, stem) for stem in ("number", "name", "note"))
-                refused.append(NotAssessed(line, name or number, str(error), number, note))
+                refused.append(NotAssessed(line, name or number, error.sentence, number, note))
         if not objects and not refused:
             raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
         ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
         lines = tuple(line for line, _ in self.sheet.rows[self.found.first : self.found.end])
-        return Inventory(tuple(objects), tuple(refused), ignored, source, self.header.language, passed, stated, lines)
+        language = self.language or self.header.language
+        return Inventory(tuple(objects), tuple(refused), ignored, source, language, passed, stated, lines)
 
     def _column(self, place: int) -> Iterator[str]:
         """Yield the texts of a column; numbers of spreadsheets have no mark."""
@@ -268,7 +278,7 @@ class _Reader:
         pairs = zip(self.header.columns, row, strict=False)
         return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
 
-    def _take_stated(self, lines: Sequence[NotAssessed]) -> tuple[str, ...]:
+    def _take_stated(self, lines: Sequence[NotAssessed]) -> tuple[Message, ...]:
         """Take units and an order that lines beside the table state, such as ``Alle Maße in cm (H x B x T)``."""
         columns, said = list(self.header.columns), []
         unit_of, order = _stated(lines, self.header.language)
@@ -277,13 +287,14 @@ class _Reader:
             stated = {unit: line for unit, line in unit_of.items() if unit in kind}
             if len(stated) == 1 and bare and "units" not in self.header.known:
                 ((unit, line),) = stated.items()
-                said.append(f"line {line} of the list states the unit {unit}")
+                said.append(Message("line {line} of the list states the unit {unit}", {"line": line, "unit": unit}))
                 for k in bare:
                     columns[k] = replace(_known(columns[k]), factor=FACTORS[unit])
         for k, each in enumerate(columns):
             if each and each.stem == "size" and not each.fields and len(order) == 1:
                 ((sides, line),) = order.items()
-                said.append(f"line {line} of the list states the order {' x '.join(sides)}")
+                facts = {"line": line, "order": " x ".join(sides)}
+                said.append(Message("line {line} of the list states the order {order}", facts))
                 columns[k] = replace(each, fields=sides)
         self.header = replace(self.header, columns=tuple(columns))
         return tuple(said)
@@ -308,8 +319,13 @@ class _Reader:
         columns = self.header.columns
         row = row[: len(columns)] if not any(map(text_of, row[len(columns) :])) else row
         if len(row) != len(columns):
-            hint = "a decimal comma between commas?" if len(row) > len(columns) else "a separator missing?"
-            raise InvalidValueError(f"it has {len(row)} fields, the header {len(columns)}; {hint}")
+            comma, separator = Message("a decimal comma between commas?"), Message("a separator missing?")
+            raise InvalidValueError(
+                "it has {fields} fields, the header {titles}",
+                fields=len(row),
+                titles=len(columns),
+                hint=comma if len(row) > len(columns) else separator,
+            )
         found = RowValues(row=line)
         unit = UNITS.get(plain(self._text(row, "units")), "")
         for column, cell in zip(columns, row, strict=True):
@@ -320,14 +336,16 @@ class _Reader:
 
     def _read(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         stem, title, fields = column.stem, column.title, column.fields
+        facts = {"title": title, "cell": f"{cell!r:.40}"}
         if stem in TEXTS:
             found.fields[stem] = text_of(cell)
         elif stem == "count":
-            found.optional("count", count_of(cell), f"{title} {cell!r:.40} is no number of pieces: one is taken")
+            remark = Message("{title} {cell} is no number of pieces: one is taken", facts)
+            found.optional("count", count_of(cell), remark)
         elif is_missing(cell):
-            found.unknown |= dict.fromkeys(fields or SIZES, f"{title} is {cell!r:.40}")
+            found.unknown |= dict.fromkeys(fields or SIZES, Message("{title} is {cell}", facts))
             if stem in {"base", "base_width", "base_depth", "base_diameter", "centre_of_mass_height"}:
-                found.remarks.append(f"{title} is {cell!r:.40}: as if none were given")
+                found.remarks.append(Message("{title} is {cell}: as if none were given", facts))
         elif stem == "size":
             self._read_size(found, column, cell, factor)
         elif stem in LENGTHS and stem != "pedestal":
@@ -340,12 +358,14 @@ class _Reader:
                     scale, units = (1.0, {}) if stem == "friction" else (column.factor, WEIGHTS)
                     found.fields[fields[0]] = measure(title, cell, scale, self.mark, units).value
             except InvalidValueError as error:
-                found.remarks.append(f"{stem} was left aside: {error}")
+                found.remarks.append(left_aside(FIELD_NAMES[stem,], error.sentence))
 
     def _read_length(self, found: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         title, stem, one = column.title, column.stem, measure(column.title, cell, factor, self.mark)
         if isinstance(cell, str) and self.mark.is_settled_by_column(title, cell):
-            found.remarks.append(f"{title} {cell!r:.40}: the mark is read as one of thousands, as its column has it")
+            facts = {"title": title, "cell": f"{cell!r:.40}"}
+            remark = Message("{title} {cell}: the mark is read as one of thousands, as its column has it", facts)
+            found.remarks.append(remark)
         is_diameter = one.across and stem in {"width", "depth"}
         found.take(("diameter",) if is_diameter else column.fields, one, title, cell)
 
@@ -353,8 +373,8 @@ class _Reader:
         try:
             sizes = parts(column.title, cell, column.fields, factor, self.mark, self.header.language)
         except InvalidValueError as error:  # it counts where no other column says it
-            found.unknown |= dict.fromkeys(SIZES, str(error))
-            found.remarks.append(f"{column.title} was left aside: {error}")
+            found.unknown |= dict.fromkeys(SIZES, error.sentence)
+            found.remarks.append(left_aside(column.title, error.sentence))
             return
         for side, one in sizes.items():
             found.take((side,), one, column.title, cell)
@@ -365,20 +385,20 @@ class _Reader:
         name, units = fields.pop("body_file", None), fields.pop("units", None)
         if name:
             if stated := [each for each in (*LENGTHS, "mass") if each in fields]:
-                raise InvalidValueError(
-                    f"its body file says what it is: leave {found.titles.get(stated[0], stated[0])} empty"
-                )
+                title = found.titles.get(stated[0], stated[0])
+                raise InvalidValueError("its body file says what it is: leave {title} empty", title=title)
             fields |= body_of(str(name), units, self.find)
         found.settle_shape()
         for each in ("width", "depth", "height"):
             if each not in fields:
                 ways = [each, *(["diameter"] if each != "height" else [])]
                 title = next((c.title for c in self.header.columns if c and each in c.fields), each)
-                raise InvalidValueError(next(filter(None, map(found.unknown.get, ways)), f"{title} is empty"))
-        line = language(self.header.language)("report.columns.line")
+                empty = Message("{title} is empty", {"title": title})
+                raise InvalidValueError("{reason}", reason=next(filter(None, map(found.unknown.get, ways)), empty))
+        line = languages.language(self.language or self.header.language)("line")
         if not fields.get("name"):
             fields["name"] = fields.get("number") or f"{line} {fields['row']}"
-            remarks.append("it has no name")
+            remarks.append(Message("it has no name"))
         found.settle_words(self.find)
         size = {each: fields[each] for each in ("width", "depth", "height")}
         for each in {"mass", "count", "friction"} & fields.keys():
@@ -386,7 +406,7 @@ class _Reader:
                 InventoryObject(name="thing", **size, **{each: fields[each]})
             except InvalidValueError as error:
                 del fields[each]
-                remarks.append(f"{each.replace('mass', 'weight')} was left aside: {error}")
+                remarks.append(left_aside(FIELD_NAMES[each.replace("mass", "weight"),], error.sentence))
 
 
 def _said(cells: Sequence[Cell]) -> str:

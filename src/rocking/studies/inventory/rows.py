@@ -10,6 +10,7 @@ from typing import Any
 from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
+from rocking.messages import Amount, Message
 from rocking.studies.inventory.cells import CellMeasure, is_missing
 from rocking.studies.inventory.columns import SIZES, WORDS, plain, stem_of, words_of
 from rocking.studies.inventory.headers import FoundHeader, text_of
@@ -19,7 +20,19 @@ _SHAPES = {word: shape for shape, text in WORDS["shapes"].items() for word in wo
 _CONSEQUENCES = {word: level for level, text in WORDS["consequences"].items() for word in words_of(text)}
 _TOTALS, _FOOTERS, _HEADINGS = (words_of(WORDS[name]) for name in ("totals", "footers", "headings"))
 _LONGEST_NAME = 80
-_REMARK = "a remark or a signature"
+_REMARK = Message("a remark or a signature")
+_HEADING = Message("a heading")
+
+
+FIELD_NAMES = {
+    ("width",): Message("width"), ("depth",): Message("depth"), ("height",): Message("height"),
+    ("diameter",): Message("diameter"), ("pedestal",): Message("pedestal"), ("length",): Message("length"),
+    ("base_width",): Message("base width"), ("base_depth",): Message("base depth"),
+    ("centre_of_mass_height",): Message("centre of mass height"), ("width", "depth"): Message("width and depth"),
+    ("base_width", "base_depth"): Message("base width and base depth"), ("weight",): Message("weight"),
+    ("count",): Message("count"), ("friction",): Message("friction"),
+}  # fmt: skip
+"""Names of the fields that a column gives."""
 
 
 class RowKinds:
@@ -38,42 +51,43 @@ class RowKinds:
         lines = [sheet.rows[found.end - 1][0], *(line for line, _ in rows)]
         self.after_gap = {line for before, line in itertools.pairwise(lines) if line > before + 1}
 
-    def reason(self, line: int, cells: Sequence[Cell]) -> str:
-        """Return why a row is no object; nothing of one that may be."""
+    def reason(self, line: int, cells: Sequence[Cell]) -> Message | None:
+        """Return why a row is no object; None of one that may be."""
         texts = _texts(cells)
         first, measured = next(iter(texts.values())), self._is_measured(cells)
         if self._is_title_row(cells):
-            return "the header again"
+            return Message("the header again")
         if first in _TOTALS or (not measured and _begins_with(first, _TOTALS)):
-            return "a sum or an average"
+            return Message("a sum or an average")
         if measured:
-            return ""
+            return None
         if len(texts) == 1 and _begins_with(first, _HEADINGS) and line < self.last:
-            return "a heading"
+            return _HEADING
         number = self._text(cells, "number")
         if (
             number
             and _number_pattern(number) in self.number_patterns
             and (len(texts) > 1 or any(map(str.isalpha, number)))
         ):
-            return ""
+            return None
         return self._reason_unmeasured(line, cells, texts)
 
-    def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> str:
+    def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> Message | None:
         """Return why a row without measures, and without a number like the others, is no object."""
         first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
         stems, alone = {self._stem(k) for k in texts}, len(texts) == 1
         if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in _row_text(cells):
             return _REMARK
         if not stems & {"name", "number"}:
-            return "neither name nor number nor measure"
+            return Message("neither name nor number nor measure")
         if alone and stems == {"number"} and first.replace(" ", "").isdigit():
-            return "nothing but a number"
+            return Message("nothing but a number")
         apart = self.numbered or line in self.after_gap
         merged = any((line, k) in self.sheet.spans for k in texts)
         if line > self.last:
-            return _REMARK if apart or merged or own.endswith(":") or _begins_with(first, _HEADINGS) else ""
-        return "a heading" if alone and (apart or merged or "name" not in stems or len(own) > _LONGEST_NAME) else ""
+            return _REMARK if apart or merged or own.endswith(":") or _begins_with(first, _HEADINGS) else None
+        long = len(own) > _LONGEST_NAME
+        return _HEADING if alone and (apart or merged or "name" not in stems or long) else None
 
     def _is_sum_or_title(self, cells: Sequence[Cell]) -> bool:
         return next(iter(_texts(cells).values())) in _TOTALS or self._is_title_row(cells)
@@ -131,26 +145,30 @@ class RowValues:
     def __init__(self, row: int) -> None:
         self.fields: dict[str, Any] = {"row": row}
         self.titles: dict[str, str] = {}
-        self.unknown: dict[str, str] = {}
+        self.unknown: dict[str, Message] = {}
         self.approximate: dict[str, float] = {}
-        self.remarks: list[str] = []
+        self.remarks: list[Message] = []
 
     def take(self, fields: Sequence[str], one: CellMeasure, title: str, cell: Cell) -> None:
         for each in fields:
             if abs(self.fields.get(each, one.value) - one.value) > 1e-9 * abs(one.value):
                 raise InvalidValueError(
-                    f"{self.titles[each]} and {title} say another {each.replace('_', ' ')}; leave one out"
+                    "{title} and {other} say another {side}; leave one out",
+                    title=self.titles[each],
+                    other=title,
+                    side=FIELD_NAMES[each,],
                 )
         self.fields |= dict.fromkeys(fields, one.value)
         self.titles |= dict.fromkeys(fields, title)
         if one.half_width:
             self.approximate |= dict.fromkeys(fields, one.half_width)
-            what = " and ".join(fields).replace("_", " ")
-            self.remarks.append(
-                f"{title} {cell!r:.60}: {what} taken as {one.value:.4g} m, give or take {one.half_width:.2g} m"
-            )
+            facts = {
+                "title": title, "cell": f"{cell!r:.60}", "size": FIELD_NAMES[tuple(fields)],
+                "value": Amount(one.value, "m", ".4g"), "half": Amount(one.half_width, "m", ".2g"),
+            }  # fmt: skip
+            self.remarks.append(Message("{title} {cell}: {size} taken as {value}, give or take {half}", facts))
 
-    def optional(self, field: str, value: Any, remark: str) -> None:
+    def optional(self, field: str, value: Any, remark: Message) -> None:
         if value is None:
             self.remarks.append(remark)
         else:
@@ -164,9 +182,12 @@ class RowValues:
             other = next(
                 (way for way in ("width", "depth") if abs(fields.get(way, across) - across) > 1e-9 * across), None
             )
-            if shape == "box" or other:
-                against = f"the shape {word!r:.40}" if shape == "box" else f"another {other}"
-                raise InvalidValueError(f"it has a {self.titles['diameter']} and {against}: leave one out")
+            title, cell = self.titles["diameter"], f"{word!r:.40}"
+            if shape == "box":
+                raise InvalidValueError("it has a {title} and the shape {cell}: leave one out", title=title, cell=cell)
+            if other:
+                side = FIELD_NAMES[other,]
+                raise InvalidValueError("it has a {title} and another {side}: leave one out", title=title, side=side)
             fields |= {"width": across, "depth": across}
             if half := self.approximate.pop("diameter", 0.0):
                 self.approximate |= {"width": half, "depth": half}
@@ -176,8 +197,9 @@ class RowValues:
             return
         if shape == "unknown":
             raise InvalidValueError(
-                f"shape {word!r:.40} is not known, and a box of its size might stand better; known are round, oval, "
-                "rectangular, triangular and polygonal; left empty, a box is taken"
+                "shape {cell} is not known, and a box of its size might stand better; known are round, oval, "
+                "rectangular, triangular and polygonal; left empty, a box is taken",
+                cell=f"{word!r:.40}",
             )
         sides = [way for way in ("width", "depth") if way in fields]
         if len(sides) == 1 and shape != "triangle":
@@ -208,7 +230,8 @@ class RowValues:
             self.approximate |= {"width": half * across, "depth": half * across}
         for base in {"base_width", "base_depth"} & fields.keys():
             fields[base] = min(fields[base], across)
-        self.remarks.append(f"shape {word!r:.40}: the round body within it is taken, {across:.3g} m across")
+        facts = {"cell": f"{word!r:.40}", "across": Amount(across, "m", ".3g")}
+        self.remarks.append(Message("shape {cell}: the round body within it is taken, {across} across", facts))
 
     def _settle_pedestal(self) -> None:
         fields, title = self.fields, self.titles.get("pedestal", "")
@@ -217,32 +240,39 @@ class RowValues:
             return
         size = min((fields[way] for way in ("width", "depth") if way in fields), default=0.0)
         if {"base_width", "base_depth", "solid"} & fields.keys() or pedestal > size:
-            self.remarks.append(f"{title} was left aside: it is no base within the object")
+            self.remarks.append(left_aside(title, Message("it is no base within the object")))
         else:
             both = ("base_width", "base_depth")
             fields |= dict.fromkeys(both, pedestal)
             self.approximate |= dict.fromkeys(both, half) if half else {}
-            self.remarks.append(f"{title} is taken as its base")
+            self.remarks.append(Message("{title} is taken as its base", {"title": title}))
 
     def settle_words(self, find: Callable[[str], Path] | None) -> None:
         """Bring consequence and photo to what they mean."""
         if (word := self.fields.pop("consequence", None)) and not is_missing(word):
             self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # the careful side
             if plain(word) not in _CONSEQUENCES:
-                self.remarks.append(f"consequence {word!r:.40} is not low, medium or high: high is taken")
+                facts = {"cell": f"{word!r:.40}"}
+                self.remarks.append(Message("consequence {cell} is not low, medium or high: high is taken", facts))
         if photo := self.fields.pop("photo", None):
-            self.optional("photo", photo_of(photo, find), f"photo {photo!r:.80} is no picture beside the list")
+            remark = Message("photo {cell} is no picture beside the list", {"cell": f"{photo!r:.80}"})
+            self.optional("photo", photo_of(photo, find), remark)
+
+
+def left_aside(title: str | Message, reason: Message) -> Message:
+    """Return the remark on a value that is not used."""
+    return Message("{title} was left aside: {reason}", {"title": title, "reason": reason})
 
 
 def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str, object]:
     """Return the body of a file, and its size."""
     if find is None:
-        raise InvalidValueError(f"names the body file {name!r:.60}, but no file can be named here")
+        raise InvalidValueError("names the body file {cell}, but no file can be named here", cell=f"{name!r:.60}")
     body = read_body(find(name), units=units)
     if isinstance(body, (Block, Section)):
         body = Solid.from_section(body)
     if isinstance(body, Body):
-        raise InvalidValueError(f"{name}: mass points have no shape to stand on in three dimensions")
+        raise InvalidValueError("{file}: mass points have no shape to stand on in three dimensions", file=name)
     size = body.box[1] - body.box[0]
     return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
 

@@ -189,7 +189,7 @@ def test_failed_motions_are_said_and_forbid_green(monkeypatch, quakes):
     (verdict,) = found.verdicts
     assert (verdict.light, verdict.worse.failed, verdict.worse.count) == (Light.AMBER, 1, 59)
     assert "1 of 60 motions could not be computed" in table.sentence(verdict, found)
-    assert "no motion could be computed" in found.not_assessed[0].reason
+    assert "no motion could be computed" in str(found.not_assessed[0].reason)
     json.dumps(answer_of(found).plain(), allow_nan=False)
 
 
@@ -324,7 +324,9 @@ def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
     by_name = {each.item.name: each for each in found.verdicts}
     assert by_name["drum"].results == alone.results
     assert by_name["drum"].friction == math.inf
-    assert by_name["drum"].item.remarks == ("its friction was not used: a round object rocks in a plane",)
+    assert tuple(map(str, by_name["drum"].item.remarks)) == (
+        "its friction was not used: a round object rocks in a plane",
+    )
     assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
 
 

@@ -113,7 +113,7 @@ def inventory_study(problem: StudyProblem) -> Study:
         "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
         "restitution": labels_along("restitution", names, "model of impact"),
     }
-    attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
+    attributes = {"shaking": hazard.words(), "hazard": str(hazard.source), "objects": objects.source}
     return Study(histories, dims, coordinates, attributes, assess=finish)
 
 
