@@ -32,6 +32,21 @@ def axes(x: tuple[float, float, int] = (1, 7, 9), y: tuple[float, float, int] = 
     return f'[map]\nx = {{ axis = "frequency_ratio", {ends[0]} }}\ny = {{ axis = "amplitude_ratio", {ends[1]} }}\n'
 
 
+def map_tables(
+    count: int, name: str = "a small map", x: tuple[float, float] = (1, 6), y: tuple[float, float] = (1, 8), **more: Any
+) -> dict[str, Any]:
+    """Tables of a square map of a block under a pulse with two models, some of them replaced, as a page sends them."""
+    ends = {"frequency_ratio": x, "amplitude_ratio": y}
+    lines = [{"axis": axis, "from": low, "to": high, "count": count} for axis, (low, high) in ends.items()]
+    return {
+        "campaign": {"name": name, "kind": "overturning-map"},
+        "body": {"units": "m", "width": 0.5, "height": 2.0},
+        "motions": {"pulse": "sine:amplitude=3,period=0.6"},
+        "restitution": {"models": ["ked", "housner"]},
+        "map": dict(zip("xy", lines, strict=True)),
+    } | more
+
+
 def search(points: int, tolerance: float) -> str:
     """Tables of minimum accelerations of two bodies under two motions with two restitutions."""
     motions = '[motions]\nsynthetic = "pulse-like"\ncount = 2\nseed = 3\n'

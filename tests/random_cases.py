@@ -168,3 +168,10 @@ def lognormal_failures(
     levels = np.asarray(levels)
     shape = levels.shape if studies is None else (studies, *levels.shape)
     return np.random.default_rng(random).binomial(trials, ndtr(np.log(levels / median) / dispersion), shape)
+
+
+def smooth_noises(count, seed, samples):
+    """Yield samples of noise in a window, smoothed."""
+    random, window = np.random.default_rng(seed), np.sin(np.linspace(0.0, np.pi, samples)) ** 2
+    for _ in range(count):
+        yield np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window

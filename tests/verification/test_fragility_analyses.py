@@ -7,6 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from pulse_boundaries import HALF_SINE, SINE_NO_IMPACT, SINE_ONE_IMPACT
+from random_cases import smooth_noises
 
 import rocking as rk
 from rocking import conventions
@@ -27,12 +28,7 @@ def pulse(make, omega, body):
 
 def records(count, seed=5, samples=500, step=0.02):
     """Noise in a window, smoothed."""
-    random = np.random.default_rng(seed)
-    window = np.sin(np.linspace(0.0, math.pi, samples)) ** 2
-    return [
-        rk.GroundMotion(np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window, step)
-        for _ in range(count)
-    ]
+    return [rk.GroundMotion(noise, step) for noise in smooth_noises(count, seed, samples)]
 
 
 @pytest.mark.verifies(

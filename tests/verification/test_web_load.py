@@ -9,6 +9,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from campaign_jobs import map_tables
 from waiting import HANG, allowed
 from web_clients import serving
 
@@ -21,16 +22,7 @@ LIGHT = ("info", "body", "studies", "session")
 
 BODY = {"body": {"units": "cm", "width": 50, "height": 200}}
 INPUTS = {**BODY, "motion": {"pulse": "sine:amplitude=3.2,period=0.8"}, "restitution": {"models": ["ked", "housner"]}}
-JOB = {
-    "campaign": {"name": "beside the users", "kind": "overturning-map"},
-    "body": BODY["body"],
-    "motions": [{"pulse": ["sine:amplitude=3,period=0.6"]}],
-    "restitution": INPUTS["restitution"],
-    "map": {
-        "x": {"axis": "frequency_ratio", "from": 0.5, "to": 8.0, "count": 1000},
-        "y": {"axis": "amplitude_ratio", "from": 1.0, "to": 10.0, "count": 900},
-    },
-}
+JOB = map_tables(1000, "beside the users", x=(0.5, 8.0), y=(1.0, 10.0), body=BODY["body"])
 
 
 @pytest.fixture(scope="module")

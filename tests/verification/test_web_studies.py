@@ -19,6 +19,7 @@ import httpx
 import numpy as np
 import pytest
 import websockets
+from campaign_jobs import map_tables
 from waiting import HANG, allowed, wait_for
 from web_clients import serving
 
@@ -28,23 +29,13 @@ Tables = dict[str, Any]
 
 pytestmark = pytest.mark.verifies(room="doors")
 
-JOB: Tables = {
-    "campaign": {"name": "killed in the middle", "kind": "overturning-map", "chunk": 4096},
-    "body": {"units": "m", "width": 0.5, "height": 2.0},
-    "motions": {"pulse": "sine:amplitude=3,period=0.6"},
-    "restitution": {"models": ["ked", "housner"]},
-    "map": {
-        "x": {"axis": "frequency_ratio", "from": 0.5, "to": 8.0, "count": 300},
-        "y": {"axis": "amplitude_ratio", "from": 1.0, "to": 10.0, "count": 300},
-    },
-    "settings": {"longest_step": 0.01},
-}
+FINE = {"x": (0.5, 8.0), "y": (1.0, 10.0)}
+JOB = map_tables(300, "killed in the middle", **FINE, settings={"longest_step": 0.01})
+JOB["campaign"]["chunk"] = 4096
 ROUNDS = 3
 """Times are taken that often: a machine that does something else in one of them is no reason to fail."""
 
-LONG = json.loads(json.dumps(JOB))
-LONG["map"]["x"]["count"] = LONG["map"]["y"]["count"] = 1000
-LONG["settings"]["longest_step"] = 0.002
+LONG = JOB | {"map": map_tables(1000, **FINE)["map"], "settings": {"longest_step": 0.002}}
 
 
 @dataclass

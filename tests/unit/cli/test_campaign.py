@@ -8,27 +8,13 @@ import sys
 import time
 
 import pytest
+from campaign_jobs import BODY, PULSE, axes
+from campaign_jobs import job as job_text
 from waiting import HANG
 
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.jobs import status_of
 from rocking.cli.campaign_output import _span, executor_of
-
-JOB = """
-[campaign]
-name = "sines"
-kind = "overturning-map"
-chunk = {chunk}
-[body]
-units = "m"
-width = 0.5
-height = 2.0
-[motions]
-pulse = "sine:amplitude=3,period=0.6"
-[map]
-x = {{ axis = "frequency_ratio", from = 0.5, to = 7, count = {columns} }}
-y = {{ axis = "amplitude_ratio", from = 1, to = 9, count = 20 }}
-"""
 
 PROGRAM = """
 import sys
@@ -42,13 +28,12 @@ COMMAND = "campaign"
 
 
 @pytest.fixture
-def job(tmp_path):
+def job(file):
     """Write a job file: 20 rows of as many columns as wanted."""
 
     def write(columns=30, chunk=100, more=""):
-        path = tmp_path / "job.toml"
-        path.write_text(JOB.format(columns=columns, chunk=chunk) + more, encoding="utf-8")
-        return path
+        tables = BODY, PULSE, axes((0.5, 7, columns), (1, 9, 20))
+        return file(job_text("overturning-map", *tables, name="sines", chunk=chunk) + more, "job.toml")
 
     return write
 

@@ -6,22 +6,10 @@ import os
 import pathlib
 
 import pytest
+from campaign_jobs import BODY, PULSE, axes, job
 
-MAP = """[campaign]
-name = "refined"
-kind = "overturning-map"
-[body]
-units = "m"
-width = 0.5
-height = 2.0
-[motions]
-pulse = "sine:amplitude=3,period=0.6"
-[map]
-x = { axis = "frequency_ratio", values = [1.5, 3.0, 4.5] }
-y = { axis = "amplitude_ratio", values = [1.5, 4.0, 6.5] }
-refine = 1
-tolerance = 0.01
-"""
+REFINED = "refine = 1\ntolerance = 0.01\n"
+MAP = job("overturning-map", BODY, PULSE, axes((1.5, 4.5, 3), (1.5, 6.5, 3)), REFINED, name="refined")
 INVENTORY = """[campaign]
 name = "objects"
 kind = "inventory"

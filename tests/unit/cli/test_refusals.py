@@ -5,6 +5,7 @@ import shlex
 
 import numpy as np
 import pytest
+from campaign_jobs import PULSES, job
 
 import rocking as rk
 from rocking.bodies.solid import box
@@ -19,18 +20,6 @@ SHORT = {
     "LONG": "x" * 5000,
     "SEVEN": " ".join(f"--restitution 0.{tenth}" for tenth in range(3, 10)),
 }
-JOB = """[campaign]
-name = "a"
-kind = "stripes"
-[body]
-units = "m"
-width = 0.5
-height = 2
-[motions]
-pulse = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=0.5"]
-[fragility]
-levels = [1.0, 4.0]
-"""
 PRISM = 'units = "m"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'
 PEER = "A DATABASE\nSOMEWHERE, CELLAR, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {} SEC\n 0.0 0.1 -0.2\n"
 MODEL = """from rocking.restitution import RestitutionModel
@@ -58,7 +47,7 @@ FILES = {
     "points.toml": "units = 'm'\n[mass_points]\npoints = [[0.1, 0.4], [0.5, 2]]\nmasses = [30, 55]\nfeet = [0, 0.6]\n",
     "prism.toml": PRISM,
     "bad.toml": PRISM.replace("width = 0.5", "width = -1.0"),
-    "job.toml": JOB,
+    "job.toml": job("stripes", f"[body]\n{BODY}", PULSES, "[fragility]\nlevels = [1.0, 4.0]\n"),
     "odd.toml": "body = 3\n[response]\nfree = 0.5\n[[settings]]\ngravity = 9.81\n",
     "free.toml": f"[response]\nfree = 30\n[body]\n{BODY}",
     "m.csv": "".join(f"{0.01 * k},{k % 3}\n" for k in range(50)),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaign_jobs import BODY, job
 
 import rocking as rk
 from rocking import examples
@@ -13,18 +14,8 @@ SIZE = "--width 0.5 --height 2"
 PULSE = "sine:amplitude=3.2,period=0.8"
 FAMILY = "--synthetic firm-ground --count 8"
 PRISM = 'units = "m"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'
-STRIPES = f"""[campaign]
-name = "a"
-kind = "stripes"
-[body]
-units = "m"
-width = 0.5
-height = 2
-[motions]
-pulse = ["{PULSE}", "sine:amplitude=3,period=0.5"]
-[fragility]
-levels = [1.0, 4.0]
-"""
+PULSES = f'[motions]\npulse = ["{PULSE}", "sine:amplitude=3,period=0.5"]\n'
+STRIPES = job("stripes", BODY, PULSES, "[fragility]\nlevels = [1.0, 4.0]\n")
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from campaign_jobs import map_tables
 from waiting import HANG
 
 from rocking.app.records import RecordStore
@@ -23,20 +24,7 @@ Tables = dict[str, Any]
 @pytest.fixture(scope="module")
 def map_job() -> Callable[..., Tables]:
     """Return a function that makes the job of a small map, with some tables replaced."""
-
-    def make(count: int = 6, **tables: Any) -> Tables:
-        return {
-            "campaign": {"name": "a small map", "kind": "overturning-map"},
-            "body": {"units": "m", "width": 0.5, "height": 2.0},
-            "motions": {"pulse": "sine:amplitude=3,period=0.6"},
-            "restitution": {"models": ["ked", "housner"]},
-            "map": {
-                "x": {"axis": "frequency_ratio", "from": 1, "to": 6, "count": count},
-                "y": {"axis": "amplitude_ratio", "from": 1, "to": 8, "count": count},
-            },
-        } | tables
-
-    return make
+    return lambda count=6, **tables: map_tables(count, **tables)
 
 
 @pytest.fixture

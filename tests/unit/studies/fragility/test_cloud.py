@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from random_cases import smooth_noises
 from scipy import stats
 
 import rocking as rk
@@ -25,13 +26,8 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 
 def records(count, seed=3, samples=500):
     """Noise in a window, smoothed, of peaks from 1.5 to 9 m/s2."""
-    random = np.random.default_rng(seed)
-    window = np.sin(np.linspace(0.0, math.pi, samples)) ** 2
-    made = []
-    for peak in np.geomspace(1.5, 9.0, count):
-        noise = np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window
-        made.append(rk.GroundMotion(noise * peak / np.abs(noise).max(), 0.02))
-    return made
+    noises = zip(np.geomspace(1.5, 9.0, count), smooth_noises(count, seed, samples), strict=True)
+    return [rk.GroundMotion(noise * peak / np.abs(noise).max(), 0.02) for peak, noise in noises]
 
 
 MOTIONS = records(80)

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from random_cases import smooth_noises
 
 import rocking as rk
 from rocking import conventions
@@ -20,13 +21,8 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 
 def records(count, seed=7, samples=600):
     """Noise in a window, smoothed: long enough to rock a block of 2 m."""
-    random = np.random.default_rng(seed)
-    window = np.sin(np.linspace(0.0, math.pi, samples)) ** 2
-    made = []
-    for k in range(count):
-        noise = np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window
-        made.append(rk.GroundMotion(noise, 0.02, name=f"noise {k}"))
-    return made
+    noises = enumerate(smooth_noises(count, seed, samples))
+    return [rk.GroundMotion(noise, 0.02, name=f"noise {k}") for k, noise in noises]
 
 
 MOTIONS, LEVELS = records(12), np.array([1.5, 3.0, 4.5, 6.0, 8.0, 10.0])
