@@ -1,7 +1,7 @@
 """Answers: every result that is shown, by the names of its quantities, and its numbers as a reader sees them."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,6 +21,13 @@ class AnswerRows:
     """
 
     columns: Mapping[str, Sequence[Any]]  # columns of one length by the names of their quantities
+
+    @classmethod
+    def of_records(cls, records: Iterable[Mapping[str, Any]]) -> "AnswerRows":
+        """Return values by the names of their quantities as a table; what a record lacks does not exist."""
+        listed = list(records)
+        names = dict.fromkeys(name for record in listed for name in record)
+        return cls({name: [record.get(name) for record in listed] for name in names})
 
     @classmethod
     def of(cls, records: np.ndarray, *, without: Sequence[str] = ()) -> "AnswerRows":
@@ -139,45 +146,74 @@ class Display:
     acceleration: str = "m/s2"
     angle: str = "deg"
 
-    def unit(self, quantity: Quantity) -> str:
+    def unit(self, entry: Quantity) -> str:
         """Return the unit of a quantity for the reader; empty for numbers without one."""
         own = {"m": self.length, "m/s2": self.acceleration, "rad": self.angle, "1": ""}
-        return own.get(quantity.unit, quantity.unit)
+        return own.get(entry.unit, entry.unit)
 
     def heading(self, name: str) -> str:
         """Return the heading of a column: label and unit."""
-        unit = self.unit(QUANTITIES[name])
-        return f"{QUANTITIES[name].heading} [{unit}]" if unit else QUANTITIES[name].heading
+        entry = _entry(name)
+        return f"{entry.heading} [{unit}]" if (unit := self.unit(entry)) else entry.heading
 
-    def cell(self, name: str, value: Any) -> str:
+    def cell(self, name: str, value: Any) -> str:  # noqa: PLR0911 - one a kind
         """Return a value in the unit of the reader, without the unit; what does not exist is a dash."""
         if value is None or (isinstance(value, float) and math.isnan(value)):
             return "-"
+        entry = _entry(name)
         if isinstance(value, bool):
             return "yes" if value else "no"
-        if isinstance(value, (list, tuple)):
-            return "-".join(map(str, value))
         if isinstance(value, str):
-            return QUANTITIES[name].spelled.get(value, value.replace("_", " "))
+            return entry.spelled.get(value, value.replace("_", " "))
+        if isinstance(value, (list, tuple)):
+            return ("-" if entry.is_text else ", ").join(self.cell(name, each) for each in value)
         if math.isinf(value):
             return "infinite"
-        quantity = QUANTITIES[name]
-        size = UNITS.get(quantity.unit, {}).get(self.unit(quantity), 1.0)
-        return str(value) if isinstance(value, int) and size == 1.0 else format(value / size, quantity.digits)
+        size = UNITS.get(entry.unit, {}).get(self.unit(entry), 1.0)
+        if isinstance(value, int) and size == 1.0:
+            return str(value)
+        return format(value / size + 0.0, entry.digits).replace("%", " %")
 
     def text(self, name: str, value: Any) -> str:
         """Return a value with its unit."""
-        cell, unit = self.cell(name, value), self.unit(QUANTITIES[name])
+        cell, unit = self.cell(name, value), self.unit(_entry(name))
         return f"{cell} {unit}" if unit and cell != "-" else cell
 
     def lines(self, values: Mapping[str, Any], names: Sequence[str]) -> Iterator[tuple[str, str]]:
         """Return label and text of those of some quantities that an answer has."""
         for name in names:
             if (value := values.get(name)) is not None and not (isinstance(value, float) and math.isnan(value)):
-                yield QUANTITIES[name].heading, self.text(name, value)
+                yield _entry(name).heading, self.text(name, value)
 
-    def table(self, rows: AnswerRows, names: Sequence[str] = ()) -> tuple[list[str], list[list[str]]]:
-        """Return headings and cells of a table, of those of some columns that it has; of all if none are named."""
-        shown = [name for name in names or rows.columns if name in rows.columns]
-        columns = [[self.cell(name, value) for value in rows.columns[name]] for name in shown]
-        return [self.heading(name) for name in shown], [list(row) for row in zip(*columns, strict=True)]
+    def table(self, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = ()) -> "list[ShownColumn]":
+        """Return the columns of a table as a reader sees them: of those named that it has; of all if none are named.
+
+        A quantity with an interval, as value, low and high or in columns of their own, has a second column for it.
+        """
+        rows = rows if isinstance(rows, AnswerRows) else AnswerRows.of_records(rows)
+        ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high")}
+        shown = names or [name for name in rows.columns if name not in ends]
+        return [each for name in shown if name in rows.columns for each in self._columns(name, rows)]
+
+    def _columns(self, name: str, rows: AnswerRows) -> "Iterator[ShownColumn]":
+        values, lows, highs = (rows.columns.get(f"{name}{end}") for end in ("", "_low", "_high"))
+        if any(isinstance(each, Mapping) for each in values or ()):
+            values, lows, highs = ([each[key] for each in values or ()] for key in ("value", "low", "high"))
+        yield ShownColumn(self.heading(name), [self.cell(name, each) for each in values or ()], _entry(name).is_text)
+        if lows is not None and highs is not None:
+            ends = ([self.cell(name, each) for each in column] for column in (lows, highs))
+            yield ShownColumn("95 %", ["-" if "-" in pair else " to ".join(pair) for pair in zip(*ends, strict=True)])
+
+
+@dataclass(frozen=True)
+class ShownColumn:
+    """A column of a table as a reader sees it."""
+
+    heading: str
+    cells: list[str]
+    is_text: bool = False  # whether its cells are words, set flush left
+
+
+def _entry(name: str) -> Quantity:
+    """Return the quantity of a column; a part or a label is text."""
+    return quantity(name) or Quantity(name, "", "")

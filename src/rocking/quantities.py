@@ -257,7 +257,7 @@ _IMPACT_MODELS = (
     Quantity("high_95", "1", "upper end of the 95 % interval of one measured body"),
     Quantity("impulse_ratio", "1", "distance of the impulse over the lever of the new foot", label="k"),
     Quantity("impulse_position", "m", "x of the impulse on the ground"),
-    Quantity("energy_loss", "1", "fraction of the kinetic energy that is lost at the impact"),
+    Quantity("energy_loss", "1", "fraction of the kinetic energy that is lost at the impact", digits=".2%"),
     Quantity("admissible", "1", "1 if one impulse on the base can cause the impact without creating energy, 0 if not"),
     Quantity("energy_ratio", "1", "kinetic energy after over before the impact"),
     Quantity("energy", "J", "energy"),
@@ -266,7 +266,8 @@ _IMPACT_MODELS = (
     Quantity("velocity", "m/s", "velocity x, y at points"),
     Quantity("energy_left", "1", "fraction of the energy after an impact on each foot"),
     Quantity("impacts_to_half", "1", "number of impacts that halve the energy"),
-    Quantity("bias", "1", "bias: mean of model minus measurement"),
+    Quantity("bias", "1", "bias: mean of model minus measurement", digits="+.4f"),
+    Quantity("within", "1", "whether a value is within the 95 % interval", label="within 95 %"),
     Quantity("rmse", "1", "root mean square error of the coefficient"),
     Quantity("loss_rmse", "1", "root mean square error of the energy loss"),
     Quantity("behind_closest", "1", "error beyond that of the closest model: value, low, high"),
@@ -313,7 +314,7 @@ _STUDIES = (
     Quantity("not_lifted", "1", "number of histories without uplift"),
     Quantity("rocked", "1", "number of histories with rocking and without overturning"),
     Quantity("largest_peak_ratio", "1", "largest peak ratio without overturning", label="peak / alpha"),
-    Quantity("largest_overturned_period", "s", "largest 2 pi / p of a block that overturns"),
+    Quantity("largest_overturned_period", "s", "largest 2 pi / p of a block that overturns", label="overturns up to"),
     Quantity("seed", "1", "random seed"),
     Quantity("states", "1", "limit states: peak rotation over the slenderness angle"),
     Quantity("trials", "1", "number of histories at each level"),
@@ -327,7 +328,7 @@ _STUDIES = (
     Quantity("resurrected_motions_over_1_percent", "1", "number of these whose interval is wider than 1 %"),
     Quantity("slope", "1", "slope of the regression in logarithms"),
     Quantity("intercept", "1", "intercept of the regression in logarithms"),
-    Quantity("scatter", "1", "logarithmic scatter"),
+    Quantity("scatter", "1", "logarithmic scatter", digits=".4f"),
     Quantity("determination", "1", "R squared of the regression"),
     Quantity("modes", "1", "modes of an island"),
     Quantity("choices", "1", "differences between choices: fractions, ratios and distances of curves"),
@@ -343,8 +344,8 @@ _DECISIONS = (
     Quantity("beside", "1", "probability of overturning with another restitution model"),
     Quantity("sliding_beyond", "m", "sliding distance of which the probability is given"),
     Quantity("per_motion", "1", "probability under each motion"),
-    Quantity("first", "1", "first-order index of the variance of overturning"),
-    Quantity("total", "1", "total index of the variance of overturning"),
+    Quantity("first", "1", "first-order index of the variance of overturning", label="alone", digits=".2f"),
+    Quantity("total", "1", "total index of the variance of overturning", label="with the others", digits=".2f"),
     Quantity("input_low", "1", "mean of the input in the lowest fifth of its samples, in the unit of the input"),
     Quantity("input_high", "1", "mean of the input in the highest fifth of its samples, in the unit of the input"),
     Quantity("probability_low", "1", "probability of overturning there, lowest fifth"),
@@ -492,10 +493,13 @@ _IDENTIFICATION = (
     Quantity("independent", "1", "number of independent measured values"),
     Quantity("advantage", "1", "logarithm of the likelihood over that of times with a constant mean interval"),
     Quantity("residual_times", "s", "times of the residuals"),
+    Quantity("number", "1", "number of the impact, from zero", label="no."),
     Quantity("speed", "rad/s", "angular velocity before the impact, without sign"),
-    Quantity("release_ratio", "1", "initial rotation over the slenderness angle", digits="g"),
+    Quantity("release_ratio", "1", "initial rotation over the slenderness angle", label="release / alpha", digits="g"),
     Quantity("timing_noise", "s", "standard deviation of a measured time", digits=".2g"),
-    Quantity("deviation", "1", "standard deviation of the mean coefficient", digits=".2g"),
+    Quantity(
+        "deviation", "1", "standard deviation of the mean coefficient", label="standard deviation of r", digits=".2g"
+    ),
     Quantity("clock", "s", "lead of the clock of the measurement over that of the motion"),
     Quantity("gain", "1", "measured over true rotation"),
     Quantity("stretches", "1", "number of measured states at which half cycles begin anew"),
@@ -530,7 +534,7 @@ _LEAGUE = (
     Quantity("fitted", "1", "fitted parameters of a model"),
     Quantity("shares", "1", "shares of the scatter"),
     Quantity("inside", "1", "number of measurements within their intervals"),
-    Quantity("interval_width", "1", "mean width of the intervals"),
+    Quantity("interval_width", "1", "mean width of the intervals", digits=".3f"),
     Quantity("covered", "1", "number of measurements within their intervals, and of all"),
     Quantity("printed", "1", "values that the paper prints"),
     Quantity("recomputed", "1", "values that are recomputed"),
@@ -566,12 +570,12 @@ _PARTS = """
     hazard hierarchy identities ignored inputs intensity interfaces intervals inventory islands judged_by label
     laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest lowest_uplift
     mean measure measure_words messages method methods mirrored models motion motions_apart new not_assessed
-    not_objects not_read not_sampled note notes number objects one_by_one outside overturning passed_over passes
+    not_objects not_read not_sampled note notes objects one_by_one outside overturning passed_over passes
     plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies resolved
     restitution_drawn results rigid rings scores section sensitivity sentence sentences sets sides slow software
     solid source sources spacing spectrum stable stages standing starts_overturned stated stored tables target
     target_spectrum test text threads title to too_sure traces unit uplift_threshold values varied verdict
-    vertical_component with_friction within words x y
+    vertical_component with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
 

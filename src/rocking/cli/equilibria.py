@@ -154,16 +154,16 @@ class EquilibriaAnswer:
             page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
         answer, display = self.answer(), Display(self.length)
         names = ("pose", "centre_height", "energy", "nearest_edge", "barrier")
-        page.rows(answer["stable"], display, names, bold={number}, most=len(found.stable))
+        page.rows(answer["stable"], names, display, bold={number}, most=len(found.stable))
         page.line()
         page.line(f"It stands in pose {number}. To topple it towards a direction its centre must rise", "bold")
-        page.rows(self.directions, display)
+        page.rows(self.directions, (), display)
         page.line("azimuth: from x towards y.")
         page.line()
         page.line("What it stands on, if points of it that are this close to the ground touch it too", "bold")
         page.rows(
             answer["base_tolerances"],
-            display,
             ("tolerance", "touching", "corners", "nearest_edge", "azimuth", "uplift_acceleration", "barrier"),
+            display,
         )
         page.warn(found.notes)

@@ -144,14 +144,8 @@ class CalibrationAnswer:
         ]
         page.table(head, rows, ("",))
         page.line(sentence_of(self.calibration, self.left_out))
-        page.table(
-            ("group, left out", "n", "inside", "width", "mean within 95 %"),
-            [
-                (e.name, str(e.measurements), str(e.inside), f"{e.interval_width:.3f}", "yes" if e.within else "no")
-                for e in self.left_out
-            ],
-            ("group, left out",),
-        )
+        names = ("name", "measurements", "inside", "interval_width", "within")
+        page.rows((each.answer().values for each in self.left_out), names, most=len(self.left_out))
         show_league(page, self.league, len(self.data))
         page.line()
         for sentence in verdict(self.league, self.data):

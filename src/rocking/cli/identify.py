@@ -117,11 +117,11 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
 
 
 def _compared(page: Page, models: "Sequence[ModelComparison]") -> None:
-    from rocking.reports._identification import model_rows
+    from rocking.reports._identification import COMPARED
 
     if models:
         page.line()
-        page.table(("model", "r", "less measured", "within the interval"), model_rows(models), ("model",))
+        page.rows(map(vars, models), COMPARED)
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class IdentifiedAnswer:
         return self.found.plot()
 
     def show(self, page: Page) -> None:
-        from rocking.reports._identification import impact_rows
+        from rocking.reports._identification import IMPACT
 
         found = self.found
         page.line(found.verdict, style="bold")
@@ -148,7 +148,7 @@ class IdentifiedAnswer:
         if found.forced:
             page.line(str(found.forced))
         page.line()
-        page.table(("impact", "time [s]", "onto", "speed [rad/s]", "r", "95 %"), impact_rows(found), ("onto",))
+        page.rows(found.answer()["impacts"], IMPACT, most=len(found.impacts))
         _compared(page, found.models)
         page.line()
         page.facts(_facts(found), width=20)
@@ -195,7 +195,7 @@ class TrialsAnswer:
         return trials_picture(self.found)
 
     def show(self, page: Page) -> None:
-        from rocking.reports._identification import trial_rows
+        from rocking.reports._identification import TRIAL
 
         found = self.found
         page.line(found.verdict, style="bold")
@@ -205,7 +205,7 @@ class TrialsAnswer:
                 "size of the body, common to all, is in it."
             )
         page.line()
-        page.table(("trial", "r", "95 %", "scatter", "impacts"), trial_rows(found), ("trial",))
+        page.rows(found.good_rows, TRIAL, most=len(found.rows))
         _compared(page, found.models)
         kept = len(found.rows) - found.computed
         if kept:

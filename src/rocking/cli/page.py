@@ -4,7 +4,7 @@ import json
 import sys
 import threading
 import time
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -86,20 +86,21 @@ class Page:
 
     def rows(
         self,
-        rows: "AnswerRows",
-        display: "Display",
+        rows: "AnswerRows | Iterable[Mapping[str, Any]]",
         names: Sequence[str] = (),
+        display: "Display | None" = None,
         *,
         bold: Container[int] = (),
         most: int = MOST_ROWS,
+        **layout: Any,
     ) -> None:
         """Write the first rows of a table of an answer, and how many more there are; names: its columns."""
-        from rocking.quantities import QUANTITIES
+        from rocking.answers import Display
 
-        head, cells = display.table(rows, names)
-        words = [QUANTITIES[name].is_text for name in names or rows.columns if name in rows.columns]
-        left = [text for text, is_text in zip(head, words, strict=True) if is_text]
-        self.table(head, cells[:most], left, bold=bold, dense=True)
+        columns = (display or Display()).table(rows, names)
+        cells = list(zip(*(column.cells for column in columns), strict=True))
+        left = [column.heading for column in columns if column.is_text]
+        self.table([column.heading for column in columns], cells[:most], left, bold=bold, **{"dense": True, **layout})
         if len(cells) > most:
             self.line(f"... and {len(cells) - most} more; --json has them all", style="dim")
 

@@ -139,13 +139,7 @@ class PredictionAnswer:
             page.line(found.decides)
             page.line()
         else:
-            head = ("uncertain input", "alone", "95 %", "with the others", "95 %")
-            named = {("motion" if name == "case" else name): share for name, share in found.shares.items()}
-            page.table(head, [
-                (name, f"{s.first:.2f}", f"{s.first_low:.2f} to {s.first_high:.2f}", f"{s.total:.2f}",
-                 f"{s.total_low:.2f} to {s.total_high:.2f}")
-                for name, s in sorted(named.items(), key=lambda pair: -pair[1].total)
-            ], head[:1])  # fmt: skip
+            page.rows(found.contributions)
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
         told = found.assumptions.keys() | found.fixed.keys()

@@ -131,7 +131,7 @@ class ResponseAnswer:
         for name, (title, columns) in _TABLES.items() if self.details else ():
             if name in answer and len(answer[name]):
                 page.line(f"\n{title}", "bold")
-                page.rows(answer[name], self.display, columns)
+                page.rows(answer[name], columns, self.display)
 
     def _moved(self, answer: Answer) -> str:
         motions = answer["motions"] if "motions" in answer else {"": answer["motion"]}

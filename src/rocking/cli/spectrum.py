@@ -96,6 +96,12 @@ def _periods(text: str) -> dict[str, Any]:
     return values_table("--periods", text, "s", "log")[0]
 
 
+_SHOWN = (
+    "slenderness_ratio", "slenderness_angle", "not_lifted", "rocked", "overturned", "largest_peak_ratio",
+    "largest_overturned_period",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, eq=False)
 class SpectrumAnswer:
     """Spectra, as of `rocking_spectrum`."""
@@ -132,6 +138,7 @@ class SpectrumAnswer:
             {
                 "motion": str(name),
                 "slenderness_angle": alpha,
+                "slenderness_ratio": 1.0 / math.tan(alpha),
                 **_curve(self.dataset.isel(motion=i, slenderness_angle=j)),
             }
             for i, name in enumerate(self.dataset["motion"].values.tolist())
@@ -148,13 +155,12 @@ class SpectrumAnswer:
             f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
             f"{sizes[-1]:.4g} m, {periods.size} sizes"
         )
-        head = ("h/b", "alpha deg", "not lifted", "rocked", "overturned", "peak/alpha", "falls up to [s]")
         each = dataset.sizes["slenderness_angle"]
         for first in range(0, len(curves), each):
             page.line(f"\n{curves[first]['motion']}", "bold")
-            page.table(head, [_row(one) for one in curves[first : first + each]])
+            page.rows(curves[first : first + each], _SHOWN, most=each)
         page.line(
-            "\npeak/alpha is the largest of the blocks that stay standing; the last column is the largest 2 pi / p "
+            "\npeak / alpha is the largest of the blocks that stay standing; the last column is the largest 2 pi / p "
             "that overturns."
         )
         failed = sum(one["failed"] for one in curves)
@@ -173,10 +179,3 @@ def _curve(one: "xr.Dataset") -> dict[str, Any]:
         "largest_peak_ratio": float(peaks.max()) if peaks.size else None,
         "largest_overturned_period": float(fallen.max()) if fallen.size else None,
     }
-
-
-def _row(one: dict[str, Any]) -> tuple[str, ...]:
-    alpha, peak, last = (one[k] for k in ("slenderness_angle", "largest_peak_ratio", "largest_overturned_period"))
-    shape = (f"{1.0 / math.tan(alpha):.4g}", f"{math.degrees(alpha):.4g}")
-    counts = tuple(str(one[name]) for name in ("not_lifted", "rocked", "overturned"))
-    return *shape, *counts, *("-" if v is None else f"{v:.4g}" for v in (peak, last))

@@ -105,11 +105,7 @@ class ValidationAnswer:
             rows = [(words, *(interval(getattr(one, name)) for one in several)) for name, words in _SCORES.items()]
             page.table(("score", *each.forecasts), rows, ("score",), whole=(1, 2, 3))
             page.line()
-            rows = [
-                (f"{b.predicted:.2f}", f"{b.observed:.2f}", f"{b.low:.2f} to {b.high:.2f}", str(b.count))
-                for b in each.forecasts["prediction"].reliability()
-            ]
-            page.table(("said", "happened", "95 %", "outcomes"), rows)
+            page.rows(each.answer()["reliability"], ("predicted", "observed", "count"))
             page.line()
         page.line(NOTE)
         page.facts([("assumed", each) for each in self.found.prediction.assumed])

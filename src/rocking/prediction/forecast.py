@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.answers import Answer
+from rocking.answers import Answer, AnswerRows
 from rocking.conventions import FloatArray, percent
 from rocking.exported import Exported
 from rocking.motions.summary import MotionSummary, condition
@@ -133,6 +133,14 @@ class Prediction(Exported):
     seed: int
     gravity: float
     beside: Mapping[str, Chance] = field(default_factory=dict)
+
+    @property
+    def contributions(self) -> AnswerRows:
+        """Shares of the uncertain inputs in the variance of overturning, the largest first."""
+        ordered = sorted(self.shares.items(), key=lambda pair: -pair[1].total)
+        return AnswerRows.of_records(
+            {"input": "motion" if name == "case" else name, **vars(share)} for name, share in ordered
+        )
 
     @property
     def assumed(self) -> tuple[str, ...]:

@@ -1,13 +1,23 @@
 """The reports of a measurement and of a folder of trials: verdict, picture, what impacts took, models, how it was."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from rocking.conventions import FEET, NORMAL_95
+from rocking.conventions import FEET
 from rocking.identification import Identification, ModelComparison
 from rocking.identification.posterior import NO_SCATTER
 from rocking.messages import Message
 from rocking.plots.identification import identification_picture, trials_picture
-from rocking.reports.document import Content, Document, Paragraph, Picture, ReportSection, ReportTable, judged, table
+from rocking.reports.document import (
+    Content,
+    Document,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    answer_table,
+    judged,
+    table,
+)
 from rocking.spec.identification import IdentifiedTrials
 
 _HOW = (
@@ -38,7 +48,7 @@ def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
     sections = [
         ReportSection("The trials", [
             Picture("trials", "The coefficient of every trial with its interval, and that of the mean", 70),
-            table("", ["trial", "r [-]", "95 %", "scatter of ln r [-]", "impacts"], trial_rows(found)),
+            answer_table("", found.good_rows, TRIAL),
             *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
             *([Paragraph(found.passed_over_verdict)] if found.passed_over else []),
         ]),
@@ -50,15 +60,6 @@ def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
     title, count = f"Coefficient of restitution: {name or found.name}", f"{len(found.rows)} trials"
     document = judged(title, (count, date), sections, found.verdict, mark)
     return document, {"trials": lambda: trials_picture(found)}
-
-
-def trial_rows(found: IdentifiedTrials) -> list[tuple[str, ...]]:
-    """Return what is shown of every trial that says something."""
-    return [
-        (row["trial"], f"{row['coefficient']:.4f}", f"{row['coefficient_low']:.4f} to {row['coefficient_high']:.4f}",
-         f"{row['scatter']:.4f}", str(row["impacts"]))
-        for row in found.rows if not row["refused"]
-    ]  # fmt: skip
 
 
 def _document_of(found: Identification, name: str, date: str) -> Document:
@@ -107,35 +108,22 @@ def _found(found: Identification) -> ReportTable:
 
 
 def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
-    if not models:
-        return []
-    head = ["model", "r [-]", "less measured [-]", "within the interval of the mean"]
-    return [ReportSection("Models of restitution beside it", [table("", head, model_rows(models))])]
+    compared = answer_table("", map(vars, models), COMPARED)
+    return [ReportSection("Models of restitution beside it", [compared])] if models else []
 
 
-def model_rows(models: Iterable[ModelComparison]) -> list[tuple[str, ...]]:
-    """Return what models of restitution say beside what was measured."""
-    return [(m.model, f"{m.coefficient:.4f}", f"{m.bias:+.4f}", "yes" if m.within else "no") for m in models]
-
-
-def impact_rows(found: Identification) -> list[tuple[str, ...]]:
-    """Return what is shown of every impact."""
-    return [
-        (str(i.number), f"{i.time:.4f}", i.onto, f"{i.speed:.4g}", f"{i.coefficient.value:.4f}",
-         f"{i.coefficient.low:.4f} to {i.coefficient.high:.4f}")
-        for i in found.impacts
-    ]  # fmt: skip
+TRIAL = ("trial", "coefficient", "scatter", "impacts")
+IMPACT = ("number", "time", "onto", "speed", "coefficient")
+COMPARED = ("model", "coefficient", "bias", "within")
+DESIGN = ("release_ratio", "impacts", "timing_noise", "deviation")
+"""Columns of the tables of an identification, on every door."""
 
 
 def _impacts(found: Identification) -> ReportTable:
     note = "Of the first impact and of the last nothing is known."
-    return table("", ["impact", "time [s]", "onto", "speed before [rad/s]", "r [-]", "95 %"], impact_rows(found), note)
+    return answer_table("", found.answer()["impacts"], IMPACT, note)
 
 
 def _designs(found: Identification) -> ReportTable:
-    rows = [
-        (f"{each.release_ratio:g}", each.impacts, f"{1e3 * each.timing_noise:.2g}", f"{NORMAL_95 * each.deviation:.2g}")
-        for each in found.designs
-    ]
-    head = ["let go from, over the slenderness angle [-]", "impacts", "times to [ms]", "r to +- [-]"]
-    return table("", head, rows, "Bounds: no method does better with the same scatter from impact to impact.")
+    note = "Bounds: no method does better with the same scatter from impact to impact."
+    return answer_table("", found.answer()["designs"], DESIGN, note)

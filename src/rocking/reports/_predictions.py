@@ -7,7 +7,16 @@ from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
 from rocking.prediction.likelihood import scale_words
 from rocking.reports.body_blocks import body_blocks
-from rocking.reports.document import Content, Paragraph, Picture, ReportSection, ReportTable, judged, table
+from rocking.reports.document import (
+    Content,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    answer_table,
+    judged,
+    table,
+)
 from rocking.reports.motion_sources import motion_sources, peak_heads
 from rocking.spec.validation import FolderValidation
 from rocking.version import SOFTWARE
@@ -95,17 +104,8 @@ def _motions(found: Prediction) -> ReportTable:
 
 
 def _shares(found: Prediction) -> ReportTable:
-    rows = [
-        (
-            "motion" if name == "case" else name,
-            f"{s.first:.2f}",
-            f"{s.total:.2f}",
-            f"{s.total_low:.2f} to {s.total_high:.2f}",
-        )
-        for name, s in sorted(found.shares.items(), key=lambda pair: -pair[1].total)
-    ]
     note = "Sobol indices: contributions to the variance of overturning."
-    return table("", ["uncertain input", "alone [-]", "with the others [-]", "95 %"], rows, note)
+    return answer_table("", found.contributions, note=note)
 
 
 def _event(event: str, found: Validation) -> ReportSection:

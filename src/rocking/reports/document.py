@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking.answers import AnswerRows, Display
 from rocking.errors import InvalidValueError, extra
 from rocking.version import SOFTWARE
 
@@ -174,6 +175,14 @@ def table(
     """
     cells = [[each if isinstance(each, Cell) else Cell(str(each)) for each in row] for row in rows]
     return ReportTable(caption, header, cells, note, stem)
+
+
+def answer_table(
+    caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = ""
+) -> ReportTable:
+    """Return a table of an answer; names: its columns."""
+    columns = Display().table(rows, names)
+    return table(caption, [each.heading for each in columns], zip(*(each.cells for each in columns), strict=True), note)
 
 
 def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:

@@ -191,9 +191,14 @@ class IdentifiedTrials(Exported):
     passed_over: Mapping[str, str] = field(default_factory=dict)
 
     @property
+    def good_rows(self) -> list[Row]:
+        """Trials that have a coefficient."""
+        return [row for row in self.rows if not row["refused"]]
+
+    @property
     def good(self) -> int:
         """How many have a coefficient."""
-        return sum(not row["refused"] for row in self.rows)
+        return len(self.good_rows)
 
     @cached_property
     def mean(self) -> IntervalEstimate | None:
@@ -202,7 +207,7 @@ class IdentifiedTrials(Exported):
         It is from how trials differ, by Student's t, or from their own intervals where these say more; the error of the
         size of the body, common to all, is added.
         """
-        good = [row for row in self.rows if not row["refused"]]
+        good = self.good_rows
         if len(good) < 2:
             return None
         ln, common = np.log([row["coefficient"] for row in good]), np.array([row["common"] for row in good])
@@ -247,7 +252,7 @@ class IdentifiedTrials(Exported):
         count = f"{self.good} of {len(self.rows)} trials"
         if self.mean is None:
             return f"{count} have a coefficient of restitution; the mean needs two or more."
-        spread = float(np.log([row["coefficient"] for row in self.rows if not row["refused"]]).std(ddof=1))
+        spread = float(np.log([row["coefficient"] for row in self.good_rows]).std(ddof=1))
         return (
             f"The coefficient of restitution is {self.mean}, the mean of {count}; from trial to trial it scatters by "
             f"{100.0 * spread:.2g} %."
