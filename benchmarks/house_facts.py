@@ -131,12 +131,15 @@ def _is_ours(argument: ast.AST) -> bool:
 def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str]:
     """Return the modules and scripts that declare the width of a block.
 
-    That is a class with the fields, a table or list with the keys, or an option of a command, of width and height;
-    the tables of the page list names with labels or units. Values of a block are no declarations.
+    That is a class with the fields, a table or a list of five keys or more, or an option of a command, of width and
+    height; the tables of the page list names with labels or units. Values of a block, sides of an object alone and
+    pictures are no declarations.
     """
-    found = [name for name, tree in trees.items() if any(map(_declares, ast.walk(tree)))]
-    listed = re.compile(r"""\["width", "|"width", "height",|^\s*width: \[""", re.MULTILINE)
-    return found + [path.name for path in scripts if listed.search(path.read_text("utf-8"))]
+    drawn = {name for name in trees if ".plots." in name}
+    found = [name for name, tree in trees.items() if name not in drawn and any(map(_declares, ast.walk(tree)))]
+    listed = re.compile(r"""\["width", "|"width", "height",""")
+    kept = [path for path in scripts if path.parent.name not in {"charts", "drawing"}]
+    return found + [path.name for path in kept if listed.search(path.read_text("utf-8"))]
 
 
 def _declares(node: ast.AST) -> bool:
@@ -151,7 +154,7 @@ def _declares(node: ast.AST) -> bool:
         return described >= _SIZES
     if isinstance(node, ast.Tuple | ast.Set | ast.List):
         names = [getattr(each, "value", None) for each in node.elts]
-        return set(names) >= _SIZES and len(names) > 2
+        return set(names) >= _SIZES and len(names) > 4
     return False
 
 

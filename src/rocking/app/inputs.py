@@ -12,7 +12,7 @@ from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, model_valid
 from rocking.app.errors import Refused, TooLarge
 from rocking.app.work import Remembered
 from rocking.bodies import Body
-from rocking.bodies.formats.schema import BODIES, BodyFile, KnownTable, Positive
+from rocking.bodies.formats.schema import BODIES, BlockInput, BodyFile, KnownTable
 from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Motion
 from rocking.spec.bodies import body_of
@@ -63,13 +63,8 @@ _DEEPEST = 32
 _LARGEST = 2**63
 
 
-class BodyInput(BodyFile, KnownTable):
+class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made of the fields of a block
     """A unit of length, and one table that says what the body is, or width and height."""
-
-    width: Positive | None = None
-    height: Positive | None = None
-    depth: Positive | None = None
-    density: Positive | None = None
 
     @model_validator(mode="before")
     @classmethod

@@ -189,7 +189,9 @@ class Arguments:
         return keys or ({"model": self.options["restitution"]} if usual is None else usual)
 
     def body_table(self, file: str | None) -> Tables:
-        values = {name: self.options.get(name) for name in ("width", "height", "depth", "density", *_KNOWN)}
+        from rocking.bodies.formats.schema import BLOCK_KEYS
+
+        values = {name: self.options.get(name) for name in BLOCK_KEYS}
         if values["centre"] is not None:
             values["centre"] = numbers_in("--centre", values["centre"])
         if file is not None:

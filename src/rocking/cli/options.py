@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from rocking.bodies.formats.schema import BLOCK_KEYS, BlockTable
 from rocking.cli import completion
 from rocking.spec.documents.prediction import PredictTable
 from rocking.spec.motion_tables import ComponentsTable, MotionKeys
@@ -30,20 +31,14 @@ Units = Annotated[
 ]
 
 
-def _size(kind: Any, words: str) -> Any:
-    return Annotated[kind | None, typer.Option(help=words, rich_help_panel=SIZE)]
+def _size(name: str) -> Any:
+    text = (BlockTable.model_fields[name].description or "").replace("unit of the file", "m, or --units")
+    option = typer.Option(help=f"{text[:1].upper()}{text[1:]}.".replace("[", r"\["), rich_help_panel=SIZE)
+    kind: Any = str if name == "centre" else float
+    return Annotated[kind | None, option]
 
 
-_SIZES = {
-    "width": _size(float, r"Full width of a block \[m, or --units]."),
-    "height": _size(float, r"Full height of a block \[m, or --units]."),
-    "depth": _size(float, r"Depth of a block \[m, or --units]."),
-    "density": Density,
-    "mass": _size(float, r"Mass, in place of the density \[kg]."),
-    "centre": _size(str, r"Centre of mass X,Y from the lower left corner of a block \[m, or --units]."),
-    "moment_of_inertia": _size(float, r"Polar moment about the centre of mass \[kg m2]."),
-    "units": Units,
-}
+_SIZES = {name: _size(name) for name in BLOCK_KEYS} | {"density": Density, "units": Units}
 
 
 def sized(command: Callable[..., None], before: str = "sets") -> Callable[..., None]:

@@ -9,8 +9,6 @@ from typer.core import TyperCommand
 from rocking.errors import RockingError
 from rocking.messages import Fact, Message, Option, Parameter, Spelling
 
-_OF_BODIES = {"width", "height", "depth", "density", "mass", "centre", "moment_of_inertia"}
-
 
 class RefusedCommandError(Exception):
     """A command is refused; its text names what was typed."""
@@ -77,7 +75,9 @@ def _named(context: typer.Context, parameter: Parameter) -> str:
 
 def _is_of_another_table(fact: Option | Parameter) -> bool:
     """Return whether a fact has the name of an option of bodies, but is of no body."""
-    return fact.name in _OF_BODIES and fact.path.partition(".")[0] not in {"body", "block", fact.path}
+    from rocking.bodies.formats.schema import BLOCK_KEYS
+
+    return fact.name in BLOCK_KEYS and fact.path.partition(".")[0] not in {"body", "block", fact.path}
 
 
 def typed(context: typer.Context, *names: str) -> list[str]:

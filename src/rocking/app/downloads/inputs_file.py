@@ -13,6 +13,7 @@ from rocking.app.errors import Refused
 from rocking.app.inputs import Inputs, parsed_toml
 from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_value
 from rocking.app.records import is_hash
+from rocking.bodies.formats.schema import BLOCK_KEYS
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import Assumed
 from rocking.version import SOFTWARE
@@ -144,8 +145,7 @@ def _body(body: Mapping[str, Any]) -> list[str] | None:
     table = body.get("block", body)
     if "width" not in table or "feet" in table:
         return None
-    names = ("width", "height", "depth", "density", "mass", "centre", "moment_of_inertia")
-    sizes = {name: table[name] for name in names if table.get(name) is not None}
+    sizes = {name: table[name] for name in BLOCK_KEYS if table.get(name) is not None}
     if "centre" in sizes:
         sizes["centre"] = ",".join(f"{value!r}" for value in sizes["centre"])
     return [*_options(sizes), "--units", str(body["units"])]

@@ -12,6 +12,7 @@ from rocking.app.errors import TooLarge
 from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
 from rocking.app.records import is_hash
+from rocking.bodies.formats.schema import TABLES, RegionTable
 from rocking.bodies.formats.words import from_pydantic
 from rocking.errors import InvalidValueError, located
 from rocking.restitution.from_file import file_of
@@ -27,15 +28,13 @@ _MEASURED = {"stripes", "incremental", "cloud", "minimum-acceleration"}
 """Kinds that need every motion before they begin."""
 
 _QUICKLY_MADE = 200
-_BODY_KEYS = (
-    "units", "name", "note", "width", "height", "depth", "density", "slenderness_angle", "semi_diagonal", "feet",
-    "block", "trapezoid", "base", "top", "lean", "ellipse", "regular_polygon", "sides", "radius", "section", "region",
-    "outline", "holes", "wkt", "ground", "mass_points", "points", "masses", "contact",
-    "mass", "centre", "moment_of_inertia",
-)  # fmt: skip
+_FILES = {"file", "dxf", "geojson", "path"}
+_BODY_KEYS = {
+    "slenderness_angle", "semi_diagonal", *BodyInput.model_fields, *RegionTable.model_fields,
+    *(key for table in TABLES.values() for key in table.model_fields),
+} - {*_FILES, "layers"}  # fmt: skip
 """Keys of a body that a request may use; none of them can name a file of the server."""
 
-_FILES = {"file", "dxf", "geojson", "path"}
 _DEEPEST, _MOST_VALUES = 12, 500_000
 
 

@@ -1,8 +1,8 @@
 """What may stand in a TOML file of a body. Imported only when one is read: it loads pydantic."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Optional
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
 
 from rocking.bodies.formats.words import suggestion
 from rocking.errors import InvalidValueError
@@ -51,8 +51,8 @@ class KnownTable(StrictTable):
 class ShapeTable(KnownTable):
     """What every section-like shape has beside its dimensions, in the file's unit and kg/m3."""
 
-    density: Positive | None = Field(None, description="density; 2400 if neither the file nor the user says [kg/m3]")
     depth: Positive | None = Field(None, description="depth out of the plane; 1 m if left out [unit of the file]")
+    density: Positive | None = Field(None, description="density; 2400 if neither the file nor the user says [kg/m3]")
     feet: Pair | None = Field(
         None, description="positions of the left and right foot; the ends of the base if left out [unit of the file]"
     )
@@ -63,6 +63,22 @@ class BlockTable(ShapeTable):
 
     width: Positive = Field(description="full width [unit of the file]")
     height: Positive = Field(description="full height [unit of the file]")
+
+
+BLOCK_KEYS = tuple(
+    name for table in (BlockTable, ShapeTable, KnownTable) for name in table.__annotations__ if name != "feet"
+)
+"""Keys of a block in its short form, beside the unit."""
+_SIZES = {name: BlockTable.model_fields[name] for name in BLOCK_KEYS if name not in KnownTable.model_fields}
+BlockInput: Any = create_model(
+    "BlockInput",
+    __base__=StrictTable,
+    **{
+        name: (Optional[field.rebuild_annotation()], Field(None, description=field.description))  # noqa: UP045
+        for name, field in _SIZES.items()
+    },
+)
+"""The sizes of a block in its short form, where another body may stand in their place."""
 
 
 class TrapezoidTable(ShapeTable):
@@ -155,7 +171,7 @@ class BodyFile(StrictTable):
         if key in SHAPES:
             where = f"a part: write [[solid.part]] in a line above [solid.part.{key}]"
             return InvalidValueError(f"unknown key {key!r} outside of {where}")
-        tables = [name for name, table in _TABLES.items() if key in table.model_fields]
+        tables = [name for name, table in TABLES.items() if key in table.model_fields]
         if not tables:
             return super()._unknown(key)
         others = f"other tables with {key} are {', '.join(f'[{name}]' for name in tables[1:])}" if tables[1:] else ""
@@ -169,11 +185,11 @@ class BodyFile(StrictTable):
         return self
 
 
-_TABLES: dict[str, type[StrictTable]] = {
+TABLES: dict[str, type[StrictTable]] = {
     "block": BlockTable, "trapezoid": TrapezoidTable, "ellipse": EllipseTable, "regular_polygon": RegularPolygonTable,
     "section": SectionTable, "mass_points": MassPointsTable,
 }  # fmt: skip
-BODIES = tuple(_TABLES)
+BODIES = tuple(TABLES)
 """Tables that say what the body is."""
 
 

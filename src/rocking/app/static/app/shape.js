@@ -42,13 +42,14 @@ const eachOf = (table, keys, check) => keys.every((key) => maybe(check)(table[ke
 const withoutNulls = (table) =>
   Object.fromEntries(Object.entries(table).filter(([, value]) => value !== null && value !== undefined));
 
-const LENGTHS = [
-  "width", "height", "depth", "density", "base", "top", "lean", "sides", "radius", "ground", "mass",
-  "moment_of_inertia",
-];
+const SIZES = ["width", "height", "depth", "base", "top", "lean", "radius", "ground"];
+
+/** Keys of a body that are lengths, or lists of them. */
+export const LENGTHS = new Set([...SIZES, "feet", "outline", "holes", "points", "contact", "centre"]);
+const NUMBERS = [...SIZES, "density", "sides", "mass", "moment_of_inertia"];
 
 /** @param {any} table */
-const isSized = (table) => isTable(table) && eachOf(table, LENGTHS, isNumber) && eachOf(table, ["feet", "centre"], isPair);
+const isSized = (table) => isTable(table) && eachOf(table, NUMBERS, isNumber) && eachOf(table, ["feet", "centre"], isPair);
 
 /** @param {any} region */
 const isRegion = (region) =>

@@ -4,6 +4,8 @@ import { spanOf } from "/app/extremes.js";
 import { changedAt } from "/app/inputs.js";
 import { fromMetres } from "/views/body-units.js";
 
+const SIDES = { unit: "", min: 3, max: 10000, step: 1, whole: true };
+
 /** Shapes with the fields of each; a field is a length unless it says otherwise. */
 /** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
 export const SHAPES = {
@@ -19,12 +21,12 @@ export const SHAPES = {
     words: "Ellipse",
     fields: [
       ["width", "Width"], ["height", "Height"],
-      ["sides", "Sides", { unit: "", min: 3, max: 100000, step: 1, whole: true }],
+      ["sides", "Sides", SIDES],
     ],
   },
   regular_polygon: {
     words: "Regular polygon",
-    fields: [["sides", "Sides", { unit: "", min: 3, max: 1000, step: 1, whole: true }], ["radius", "Radius"]],
+    fields: [["sides", "Sides", SIDES], ["radius", "Radius"]],
   },
   section: { words: "Polygon", fields: [] },
 };

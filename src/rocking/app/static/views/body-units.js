@@ -1,14 +1,10 @@
 /** Units of length, and the same body in another unit. */
 
 import { tidy } from "/app/format.js";
+import { LENGTHS } from "/app/shape.js";
 
 /** Metres in each unit. */
 export const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
-
-const LENGTHS = new Set([
-  "width", "height", "depth", "base", "top", "lean", "radius", "feet", "ground", "outline",
-  "holes", "points", "contact", "centre",
-]);
 
 /** The same body with its lengths in another unit.
  * @param {Server.BodyInput} body @param {Unit} units @returns {Server.BodyInput} */

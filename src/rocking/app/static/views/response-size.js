@@ -1,7 +1,7 @@
 /** Bodies of the same shape and another size: every length of a body document times a factor. */
 
-const SIZES = ["width", "height", "depth", "base", "top", "lean", "radius", "ground"];
-const LENGTHS = new Set([...SIZES, "feet", "outline", "holes", "points", "contact", "centre"]);
+import { LENGTHS } from "/app/shape.js";
+
 /** @type {{ [key: string]: number }} */
 const POWERS = { mass: 3, moment_of_inertia: 5 };
 const HOLDERS = new Set(["block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points"]);
