@@ -247,7 +247,7 @@ _BODY = (
     Quantity("base_radius", "m", "radius of a round base"),
     Quantity("gravity", "m/s2", "acceleration of gravity"),
     Quantity("slenderness_ratio", "1", "slenderness h/b", label="h/b"),
-    Quantity("slenderness_angle", "rad", "slenderness angle alpha = atan(b/h)", digits=".3g"),
+    Quantity("slenderness_angle", "rad", "slenderness angle alpha = atan(b/h)", label="alpha", digits=".3g"),
     Quantity("semi_diagonal", "m", "distance R of the centre of mass from the foot", label="R"),
     Quantity("frequency_parameter", "rad/s", "frequency parameter p", label="p"),
     Quantity("uplift_acceleration", "m/s2", "ground acceleration at uplift, g tan(alpha)", label="uplift at"),
