@@ -7,6 +7,7 @@ itself where the series are long. The tests check every one of them.
 import inspect
 import json
 import math
+from collections.abc import Iterator
 from typing import Any, Literal, get_args, get_type_hints
 
 from fastapi import FastAPI
@@ -124,15 +125,27 @@ class AnswerShape(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
-def shape(name: str, meaning: str, base: type[AnswerShape] = AnswerShape, /, **fields: Any) -> Any:
+def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     """Return a table of an answer.
 
+    more: another table that it continues, and the names of quantities, with [] after lists of them.
     fields: by key the type; type and words; or type, words and the quantity whose unit it has, "" for none. Of a key
     that is a quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such
     as a default, is a `Field` in place of the words.
     """
+    base = next((each for each in more if not isinstance(each, str)), AnswerShape)
+    fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
+
+
+def _of_names(names: str) -> Iterator[tuple[str, Any]]:
+    for each in names.split():
+        key = each.removesuffix("[]")
+        entry = quantity_of(key)
+        assert entry is not None, key
+        kind = str if entry.is_text else float
+        yield key, list[kind] if key != each else kind  # type: ignore[valid-type]
 
 
 def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: Any) -> Any:

@@ -27,11 +27,7 @@ router = APIRouter(prefix="/api", tags=["body"])
 SideFacts: Any = shape(
     "SideFacts",
     "What one side of a body decides: it stands on this foot and turns about it.",
-    slenderness_ratio=float,
-    slenderness_angle=float,
-    semi_diagonal=float,
-    frequency_parameter=float,
-    uplift_acceleration=float,
+    "slenderness_ratio slenderness_angle semi_diagonal frequency_parameter uplift_acceleration",
 )
 Sides: Any = shape("Sides", "One entry for each foot.", left=SideFacts, right=SideFacts)
 Polygon: Any = shape(
@@ -44,25 +40,20 @@ Polygon: Any = shape(
 BodyFacts: Any = shape(
     "BodyFacts",
     "Mass, centre, feet, and what each side decides.",
+    "mass moment_of_inertia gravity assumed[] warnings[]",
     kind=(str, "class of the body in Python"),
-    mass=float,
     centre=Point,
     foot_positions=Point,
-    moment_of_inertia=float,
-    gravity=float,
-    assumed=list[str],
-    warnings=list[str],
     sides=Sides,
 )
 DrawnBody: Any = shape(
     "DrawnBody",
     "A body with the outline that draws it.",
     BodyFacts,
+    "masses[] ground",
     name=(str | None, "what the user calls it"),
     outline=(list[Polygon], "polygons; none for mass points and for ellipses"),
     points=list[Point],
-    masses=list[float],
-    ground=float,
     base_contact=list[Point],
 )
 DescribedBody: Any = shape("DescribedBody", "A body, and what a user should know of it.", DrawnBody, units=Units)

@@ -36,16 +36,10 @@ Shares: Any = shape(
 CoefficientFacts: Any = shape(
     "CoefficientFacts",
     "One model's answer for one body.",
+    "coefficient low_95 high_95 impulse_ratio impulse_position energy_loss warnings[]",
     model=(str, "name of the model with its parameters, or calibrated"),
-    coefficient=float,
-    low_95=float,
-    high_95=float,
-    impulse_ratio=float,
-    impulse_position=float,
-    energy_loss=float,
     friction_demand=(float, "friction coefficient below which the foot slips at the impact"),
     admissible=(bool, "whether one impulse on the base can do it without creating energy"),
-    warnings=list[str],
 )
 Stage: Any = shape(
     "Stage",
@@ -59,29 +53,22 @@ Stage: Any = shape(
 Stages: Any = shape(
     "Stages",
     "The three stages of KED for an impact at 1 rad/s.",
-    velocity_before=float,
-    velocity_after=float,
+    "velocity_before velocity_after",
     points=(list[Point], "where the velocities are given, x and y"),
     stages=list[Stage],
 )
 MeasuredPoint: Any = shape(
     "MeasuredPoint",
     "One published measurement.",
+    "slenderness_ratio slenderness_angle coefficient coefficient_low coefficient_high",
     group=str,
     label=str,
-    slenderness_ratio=float,
-    slenderness_angle=float,
-    coefficient=float,
-    coefficient_low=float,
-    coefficient_high=float,
 )
 Measured: Any = shape("Measured", "The published measurements.", source=str, measurements=list[MeasuredPoint])
 ModelCurve: Any = shape(
     "ModelCurve",
     "The coefficient of homogeneous rectangles under one model.",
-    model=str,
-    slenderness_ratio=list[float],
-    coefficient=list[float],
+    "model slenderness_ratio[] coefficient[]",
 )
 ImpactWarning: Any = shape("ImpactWarning", "A sentence, and the models that it is about.", words=str, models=list[str])
 ImpactAnswered: Any = shape(

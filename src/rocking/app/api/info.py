@@ -44,14 +44,13 @@ ParameterFacts: Any = shape(
 ModelFacts: Any = shape(
     "ModelFacts",
     "A restitution model.",
-    name=str,
+    "name summary",
     label=str,
     short_name=(str, "in a sentence or a legend"),
     colour=(str, "of its curves; empty where it has none of its own"),
     dash=(list[float], "of its curves: lengths of strokes and gaps [px]; empty for a whole line"),
     title=str,
     citation=str,
-    summary=str,
     assumptions=list[str],
     domain=str,
     known_defects=list[str],
@@ -61,11 +60,9 @@ PulseFacts: Any = shape("PulseFacts", "A kind of pulse.", summary=str, parameter
 FamilyFacts: Any = shape(
     "FamilyFacts",
     "A family of synthetic motions.",
-    name=str,
+    "name summary time_step",
     title=str,
-    summary=str,
     generator=str,
-    time_step=float,
 )
 FormatFacts: Any = shape(
     "FormatFacts",

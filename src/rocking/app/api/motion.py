@@ -28,8 +28,7 @@ _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 MotionSeries: Any = shape(
     "MotionSeries",
     "The curves of a motion, as many samples of each, every extreme among them.",
-    time=list[float],
-    acceleration=list[float],
+    "time[] acceleration[]",
     velocity=(list[float], "velocity"),
     displacement=(list[float], "displacement"),
     vertical_acceleration=(list[float] | None, Field(None, description="where there is one [m/s2]")),
@@ -39,12 +38,7 @@ MotionSeries: Any = shape(
 SpectrumFacts: Any = shape(
     "SpectrumFacts",
     "The response of oscillators to a motion.",
-    damping_ratio=float,
-    period=list[float],
-    pseudo_acceleration=list[float],
-    pseudo_velocity=list[float],
-    spectral_displacement=list[float],
-    absolute_acceleration=list[float],
+    "damping_ratio period[] pseudo_acceleration[] pseudo_velocity[] spectral_displacement[] absolute_acceleration[]",
 )
 MeasureFacts: Any = shape(
     "MeasureFacts",
@@ -55,8 +49,8 @@ MeasureFacts: Any = shape(
 MotionAnswered: Any = shape(
     "MotionAnswered",
     "What a motion is, how strong, and its curves.",
+    "name duration warnings[] provenance[] peak_ground_acceleration",
     kind=Literal["record", "pulse"],
-    name=str,
     format=str | None,
     event=str | None,
     station=str | None,
@@ -65,13 +59,9 @@ MotionAnswered: Any = shape(
     file_unit=(str | None, "unit of the file; the answer is in SI"),
     samples=(int | None, "of a record"),
     time_step=(float | None, "of a record"),
-    duration=float,
-    warnings=list[str],
-    provenance=list[str],
     peak_vertical_acceleration=float | None,
     intensity=(dict[str, float], "measures by their names, in their units"),
     scale=(float, "factor on the motion, which is in every number here"),
-    peak_ground_acceleration=float,
     series=MotionSeries,
     spectrum=(SpectrumFacts | None, "null where it was not asked for"),
     measures=list[MeasureFacts],

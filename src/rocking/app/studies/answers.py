@@ -246,9 +246,8 @@ StudyResult = Annotated[
 StudyFacts: Any = shape(
     "StudyFacts",
     "State and progress of a study.",
+    "name kind",
     id=(str, "its name in addresses"),
-    name=str,
-    kind=str,
     created=(str, "when, in UTC"),
     histories=(int, "of an adaptive study those that are known so far"),
     state=Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"],
