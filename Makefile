@@ -22,7 +22,7 @@ help:
 	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make types    the types of the page's scripts, where node and npm are"
-	@echo "make messages the catalogues of messages, compiled"
+	@echo "make messages the messages of the sources into the catalogues, and these compiled"
 	@echo "make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"

@@ -1,6 +1,10 @@
-"""Compile the catalogues of messages, src/rocking/language/*.po, into what is read at run time (`make messages`)."""
+"""Extract the messages of sources and page, update the catalogues, and compile them: `make messages`."""
 
+import ast
+import html
 import io
+import re
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -8,21 +12,108 @@ from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-FOLDER = Path(__file__).parents[1] / "src/rocking/language"
+SOURCE = Path(__file__).parents[1] / "src/rocking"
+FOLDER, PAGE = SOURCE / "language", SOURCE / "app/static"
 TEMPLATE = FOLDER / "messages.pot"
 DATE = datetime(2000, 1, 1, tzinfo=UTC)  # of every compiled catalogue: files change with their messages alone
 HEADER = 'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"\n'
+STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
+
+Key = tuple[str, str, str]
+"""A message: its text, its text where the count is not 1, and its context; the last two may be empty."""
 
 
-def catalogues() -> dict[str, Catalog]:
-    """Return the catalogues by the codes of their languages."""
-    return {path.stem: read(path, path.stem) for path in sorted(FOLDER.glob("*.po"))}
+def messages_of(tree: ast.AST) -> Iterator[Key]:
+    """Yield the messages of a module: Message(text, facts, many, context), say(text, many)."""
+    for call in ast.walk(tree):
+        if not isinstance(call, ast.Call) or not call.args:
+            continue
+        name = getattr(call.func, "id", getattr(call.func, "attr", ""))
+        if name not in {"Message", "say"}:
+            continue
+        named = {keyword.arg: keyword.value for keyword in call.keywords}
+        place = 2 if name == "Message" else 1
+        many = named.get("many", call.args[place] if len(call.args) > place else None)
+        for text in _texts(call.args[0]):
+            yield text, next(_texts(many), ""), next(_texts(named.get("context") if name == "Message" else None), "")
+
+
+def _texts(node: ast.AST | None) -> Iterator[str]:
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, ast.IfExp):
+        yield from (*_texts(node.body), *_texts(node.orelse))
+
+
+def messages_of_script(text: str) -> Iterator[Key]:
+    """Yield the messages of a script of the page: t("text"), t(["text", "text of many"])."""
+    for one, first, many in re.findall(rf"\bt\((?:{STRING}|\[{STRING}, {STRING}\])", text):
+        yield _unescaped(one or first), _unescaped(many), ""
+
+
+def literals_of_script(text: str) -> Iterator[str]:
+    """Yield the strings of a script or page, and the texts between its tags."""
+    for string in re.findall(STRING, text):
+        yield _unescaped(string)
+    for part in re.findall(r"[>}`]([^<>{}`$]+)(?=[<$`])", text):
+        yield html.unescape(_unescaped(" ".join(part.split())))
+
+
+def _unescaped(string: str) -> str:
+    return (
+        re.sub(r"\\u([0-9a-f]{4})", lambda code: chr(int(code[1], 16)), string).replace('\\"', '"').replace("\\n", "\n")
+    )
+
+
+def plain(text: str) -> str:
+    """Return a text without capitals and marks at its ends, which the page adds to words of the server."""
+    return text.strip(" .,:;").lower()
+
+
+def extracted() -> tuple[set[Key], set[str]]:
+    """Return the messages of all sources, and every literal in them as `plain`, by which a message may be used."""
+    messages, literals = set(), set()
+    for path in SOURCE.rglob("*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        messages.update(messages_of(tree))
+        literals.update(
+            node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        )
+    for path in [*PAGE.rglob("*.js"), *PAGE.rglob("*.html")]:
+        if "vendor" not in path.parts:
+            text = path.read_text("utf-8")
+            messages.update(messages_of_script(text))
+            literals.update(literals_of_script(text))
+    return messages, {plain(literal) for literal in literals}
+
+
+def unused() -> set[Key]:
+    """Return the messages of the template that no source states."""
+    messages, literals = extracted()
+    return {key for key in keys(read(TEMPLATE)) - messages if plain(key[0]) not in literals}
+
+
+def keys(catalogue: Catalog) -> set[Key]:
+    """Return the messages of a catalogue."""
+    pairs = [(message, message.id) for message in catalogue if message.id]
+    return {(*(text if isinstance(text, tuple) else (text, "")), message.context or "") for message, text in pairs}
+
+
+def untranslated(catalogue: Catalog) -> list[str]:
+    """Return the English texts of messages that have no translation."""
+    forms = ((message, message.string) for message in catalogue if message.id)
+    return [str(message.id) for message, form in forms if not all(form if isinstance(form, tuple) else [form])]
 
 
 def read(path: Path, code: str | None = None) -> Catalog:
     """Return a catalogue, or the template."""
     with path.open("rb") as file:
         return read_po(file, locale=code)
+
+
+def catalogues() -> dict[str, Catalog]:
+    """Return the catalogues by the codes of their languages."""
+    return {path.stem: read(path, path.stem) for path in sorted(FOLDER.glob("*.po"))}
 
 
 def write(path: Path, catalogue: Catalog) -> None:
@@ -43,6 +134,24 @@ def compiled(catalogue: Catalog) -> bytes:
     return file.getvalue()
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Add new messages to the template, and bring the catalogues to the same messages."""
+    template = read(TEMPLATE)
+    for text, many, context in extracted()[0]:
+        template.add((text, many) if many else text, context=context or None)
+    write(TEMPLATE, template)
     for code, catalogue in catalogues().items():
+        before = keys(catalogue)
+        catalogue.update(template, no_fuzzy_matching=True)
+        catalogue.obsolete.clear()
+        write(FOLDER / f"{code}.po", catalogue)
         (FOLDER / f"{code}.mo").write_bytes(compiled(catalogue))
+        empty = [message.id for message in catalogue if message.id and not all((*message.string,))]
+        print(
+            f"{code}: {len(catalogue)} messages, {len(keys(catalogue) - before)} new, {len(empty)} without translation"
+        )
+    print(f"{len(unused())} messages are stated nowhere")
+
+
+if __name__ == "__main__":
+    main()
