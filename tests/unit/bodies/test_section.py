@@ -162,39 +162,28 @@ def box(x0, y0, x1, y1, density=1.0, holes=()):
     return rk.Region([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], density, holes)
 
 
-@pytest.mark.parametrize(
-    "others",
-    [
-        [box(0.5, 0.5, 1.5, 2)],
-        [box(0, 0, 1, 1)],
-        [box(0.2, 0.2, 0.8, 0.8)],
-        [box(1, 0, 2, 1), box(1.9, 0, 3, 1)],
-        [box(0.999, 0, 2, 1)],
-    ],
-)
-def test_overlaps_are_refused(others):
-    """Regions that overlap are refused with the two numbers and the shared area."""
-    with pytest.raises(GeometryError, match=r"regions \d and \d overlap over .* m2; cut a hole"):
-        rk.Section([box(0, 0, 1, 1), *others])
+NO_SECTIONS = [
+    *(
+        (rk.Section, {"regions": [box(0, 0, 1, 1), *others]}, r"regions \d and \d overlap over .* m2; cut a hole")
+        for others in (
+            [box(0.5, 0.5, 1.5, 2)], [box(0, 0, 1, 1)], [box(0.2, 0.2, 0.8, 0.8)], [box(0.999, 0, 2, 1)],
+            [box(1, 0, 2, 1), box(1.9, 0, 3, 1)],
+        )
+    ),
+    *(
+        (rk.Section, {"regions": regions}, "a Section needs a list of at least one Region")
+        for regions in ([], (), None, "box", BOX, [BOX], [1], box(0, 0, 1, 1), [box(0, 0, 1, 1), None])
+    ),
+    (rk.Section.from_points, {"outline": [(0, 0), (1, 1), (0, 2), (-1, 1)]}, "touches the ground in one point only"),
+    (rk.Section.from_trapezoid, {"base": 1.0, "top": 1.0, "height": 2.0, "lean": 2.0}, "falls over by itself"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("shift", [0.0, 0.1, 1e6 + 0.3])
-def test_touching_regions_pass(shift):
-    """Regions that share edges, corners or fill a hole make one body with the sum of the masses."""
-    low, high = box(shift, 0, shift + 1, 0.3), box(shift + 0.1, 0.3, shift + 0.9, 2.3, 2.0)
-    assert rk.Section([low, high]).mass == pytest.approx(0.3 + 3.2, rel=1e-9)  # coordinates rounded 1e6 m away
-    hole = [(shift + 0.2, 0.1), (shift + 0.4, 0.1), (shift + 0.4, 0.2), (shift + 0.2, 0.2)]
-    plug = rk.Region(hole, 5.0)
-    assert rk.Section([box(shift, 0, shift + 1, 0.3, 1.0, [hole]), plug]).mass == pytest.approx(0.38, rel=1e-7)
-
-
-@pytest.mark.parametrize(
-    "regions", [[], (), None, "box", BOX, [BOX], [1], box(0, 0, 1, 1), [box(0, 0, 1, 1), None]], ids=str
-)
-def test_no_regions(regions):
-    """A Section is made of at least one Region, and nothing else."""
-    with pytest.raises(GeometryError, match="a Section needs a list of at least one Region"):
-        rk.Section(regions)
+@pytest.mark.parametrize(("make", "given", "words"), NO_SECTIONS)
+def test_what_is_no_section(make, given, words):
+    """Regions that overlap, or are none, one foot, and a centre beside the base are refused with the cause."""
+    with pytest.raises(GeometryError, match=words):
+        make(**given)
 
 
 @pytest.mark.parametrize(("dy", "words"), [(0.1, "floats above"), (-0.1, "reaches below"), (5.0, "floats above")])
@@ -213,12 +202,6 @@ def test_bad_ground_and_depth(bad):
         rk.Section.from_points(BOX, ground=bad)
     with pytest.raises(InvalidValueError, match=r"^depth must be "):
         rk.Section.from_points(BOX, depth=bad)
-
-
-def test_one_point_base():
-    """A body that stands on one corner has no two feet."""
-    with pytest.raises(GeometryError, match="touches the ground in one point only"):
-        rk.Section.from_points([(0, 0), (1, 1), (0, 2), (-1, 1)])
 
 
 FEET = {
@@ -250,12 +233,6 @@ def test_feet_that_are_none(feet, words):
     if isinstance(feet, tuple) and len(feet) == 2:
         with pytest.raises(InvalidValueError, match=words):
             rk.Section.from_points(BOX).with_feet(*feet)
-
-
-def test_centre_outside_the_base():
-    """A body whose centre is not above its base falls over by itself, and says so."""
-    with pytest.raises(GeometryError, match="falls over by itself"):
-        rk.Section.from_trapezoid(1.0, 1.0, 2.0, lean=2.0)
 
 
 def test_contact_stretches():

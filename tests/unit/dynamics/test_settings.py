@@ -52,27 +52,23 @@ def test_ranges(name: str) -> None:
         assert getattr(PlaneSettings(**changed), name) == value
 
 
-@pytest.mark.parametrize("value", [0, -1, 1.0, 2.5, True, None, "5", math.nan, math.inf, [1]])
-def test_most_events(value: Any) -> None:
-    """The number of impacts is a whole one from 1."""
-    with pytest.raises(InvalidValueError, match=r"most_events must be a whole number >= 1, got"):
-        PlaneSettings(most_events=value)
-
-
-@pytest.mark.parametrize("value", [0, 1, None, "yes", 0.0, [True]])
-def test_linear(value: Any) -> None:
-    """The choice of equations is True or False, not something that resembles them."""
-    with pytest.raises(InvalidValueError, match="linear must be True or False, got"):
-        PlaneSettings(linear=value)
-
-
 @pytest.mark.parametrize(
-    "value", [0, 2, 5, 7, 10, -8, 8.0, np.float64(8.0), "8", math.nan, True, [8], np.array([4, 8])]
+    ("name", "words", "values"),
+    [
+        ("most_events", "a whole number >= 1", [0, -1, 1.0, 2.5, True, None, "5", math.nan, math.inf, [1]]),
+        ("linear", "True or False", [0, 1, None, "yes", 0.0, [True]]),
+        (
+            "order",
+            r"one of \(4, 6, 8\)",
+            [0, 2, 5, 7, 10, -8, 8.0, np.float64(8), "8", math.nan, True, [8], np.ones(2)],
+        ),
+    ],
 )
-def test_order(value: Any) -> None:
-    """Orders that were not compiled, floats that equal one and rows are refused, with those that were."""
-    with pytest.raises(InvalidValueError, match=r"order must be one of \(4, 6, 8\), got"):
-        PlaneSettings(order=value)
+def test_whole_numbers_and_choices(name: str, words: str, values: list[Any]) -> None:
+    """Impacts are a whole number from 1, equations True or False, orders those compiled; not what equals one."""
+    for value in values:
+        with pytest.raises(InvalidValueError, match=f"{name} must be {words}, got"):
+            PlaneSettings(**{name: value})
 
 
 def test_options_of_a_call() -> None:

@@ -85,13 +85,6 @@ def test_what_other_mechanics_do_not_know(value: Any) -> None:
         assert shaken(**more).outcome is not rk.Outcome.FAILED  # what changes nothing is taken
 
 
-@pytest.mark.parametrize("threads", [0, -1, 1.0, True, "2", math.nan])
-def test_threads(threads: Any) -> None:
-    """Threads are a whole number from 1."""
-    with pytest.raises(InvalidValueError, match=r"threads must be a whole number in \[1, 4096\], got"):
-        many(threads=threads)
-
-
 def test_kinds_cannot_be_mixed() -> None:
     """Records and pulses in one call of the fast engine, several laws in one, or none, are refused with the way out."""
     law = RANDOM([0.5, 0.6], 1)
@@ -113,13 +106,6 @@ VERTICAL = rk.GroundMotion(np.array([0.0, 3.0, 0.0]), 0.1, vertical=np.array([0.
 # ---- what is asked of a response ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("time", [None, "a", [True], 1j, [[0.1], [0.1, 0.2]]])
-def test_times_that_are_no_numbers(time: Any) -> None:
-    """Times that are no numbers are refused."""
-    with pytest.raises(InvalidValueError, match=r"time must be numbers \[s\], got"):
-        RESPONSE.at(time)
-
-
 @pytest.mark.parametrize("time", [math.nan, math.inf, [0.1, -math.inf], -1.0, 1e9, -1e-6, END * (1.0 + 1e-6)])
 def test_times_outside_the_response(time: Any) -> None:
     """Times that are not finite or outside the response are refused with its range; the ends may be off by rounding."""
@@ -131,11 +117,20 @@ def test_times_outside_the_response(time: Any) -> None:
     assert RESPONSE.at([-1e-15, END * (1.0 + 1e-15)]).tolist() == [RESPONSE.rotation[0], RESPONSE.rotation[-1]]
 
 
-@pytest.mark.parametrize("friction", [math.nan, math.inf, -1.0, 0.0, None, "0.5", True])
-def test_friction(friction: Any) -> None:
-    """A coefficient of friction is above zero and finite."""
-    with pytest.raises(InvalidValueError, match="friction must be"):
-        RESPONSE.contact.warnings(friction)
+@pytest.mark.parametrize(
+    ("ask", "words", "values"),
+    [
+        (lambda threads: many(threads=threads), r"threads must be a whole number in \[1, 4096\], got",
+         [0, -1, 1.0, True, "2", math.nan]),
+        (RESPONSE.at, r"time must be numbers \[s\], got", [None, "a", [True], 1j, [[0.1], [0.1, 0.2]]]),
+        (RESPONSE.contact.warnings, "friction must be", [math.nan, math.inf, -1.0, 0.0, None, "0.5", True]),
+    ],
+)  # fmt: skip
+def test_what_is_no_number(ask: Callable[..., Any], words: str, values: list[Any]) -> None:
+    """Threads are a whole number from 1, times are numbers, a coefficient of friction is above zero and finite."""
+    for value in values:
+        with pytest.raises(InvalidValueError, match=words):
+            ask(value)
 
 
 def test_the_last_sample_of_a_record() -> None:
