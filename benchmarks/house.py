@@ -44,7 +44,7 @@ FLOORS = (
 
 
 # methods of results that may import a room above, within themselves, and the rooms that they may import
-UPWARD, DRAWN_BY = {"plot", "_plot", "animate", "report"}, ("rocking.plots", "rocking.reports")
+UPWARD, DRAWN_BY = {"plot", "_plot", "animate", "report"}, ("rocking.plots.", "rocking.reports.")
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ def _of_method(node: ast.stmt) -> list[ast.AST]:
     body = ast.Module(body=[node], type_ignores=[])
     if not isinstance(node, ast.FunctionDef) or node.name not in UPWARD:
         return [body]
-    drawn = [part for part in node.body if isinstance(part, ast.ImportFrom) and part.module in DRAWN_BY]
+    drawn = [part for part in node.body if isinstance(part, ast.ImportFrom) and f"{part.module}.".startswith(DRAWN_BY)]
     return [ast.Module(body=[part for part in node.body if part not in drawn], type_ignores=[])]
 
 

@@ -11,9 +11,10 @@ from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
 from rocking.motions.synthetic import families
 from rocking.spec import bodies
-from rocking.spec.document import CampaignDocument
 from rocking.spec.documents.identification import IdentificationDocument
 from rocking.spec.documents.response import ResponseDocument
+from rocking.spec.questions import question_in
+from rocking.spec.questions.overturning_map import MapQuestion
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference, steps, targets
 from rocking.studies import axes
@@ -43,11 +44,11 @@ def test_the_files_on_the_page_are_questions():
     response, study, measured = (tomllib.loads(block.partition("```")[0]) for block in page.split("```toml")[1:])
     study["campaign"] = {"name": "map", "kind": "overturning-map"}
     assert checked(ResponseDocument, response).restitution.models == ["ked", "housner"]
-    assert checked(CampaignDocument, study).map.x.count == 60
+    assert question_in(study).map.x.count == 60
     assert checked(IdentificationDocument, measured).identify.tilt == [0.0, 0.001]
     for tables in (response, study, measured):
         bodies.any_body_of(tables["body"], None)
-    others = (ResponseDocument, study), (CampaignDocument, response), (IdentificationDocument, response)
+    others = (ResponseDocument, study), (MapQuestion, response), (IdentificationDocument, response)
     for kind, tables in others:
         with pytest.raises(InvalidValueError):
             checked(kind, tables)

@@ -118,7 +118,7 @@ def fragility(
     length, written = None, ""
     if file := document_file(context, body, ("campaign", "fragility"), ["threads", "name", "crossing"]):
         problem = problem_in(file, "fragility", sets)
-        if problem.document.export is not None and not typed(context, "crossing"):
+        if not typed(context, "crossing"):
             crossing = problem.document.export.crossing
     else:
         arguments = Arguments(context, *TABLES, "fragility")
@@ -140,8 +140,8 @@ def fragility(
 
 def _histories(problem: "StudyProblem") -> int:
     """Return how many histories there are at least, refusing too many."""
-    levels = problem.fragility_table.levels
-    total = len(problem.motions) * (1 if levels is None else levels.numbers().size) * len(problem.restitutions)
+    levels = problem.document.levels
+    total = len(problem.motions) * (1 if levels is None else levels.size) * len(problem.restitutions)
     if total > MOST_HISTORIES:
         raise InvalidValueError(
             f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
@@ -210,10 +210,9 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
 
 
 def _usual_levels(problem: "StudyProblem") -> list[float]:
-    from rocking.spec.study import fragility_question
     from rocking.studies.fragility.question import default_levels
 
-    levels: list[float] = default_levels(fragility_question(problem, problem.restitution).subject).tolist()
+    levels: list[float] = default_levels(problem.document.analysis(problem, problem.restitution).subject).tolist()
     return levels
 
 
@@ -229,4 +228,4 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     if "nrml" in exports.names:
         from rocking.studies.fragility.export import intensity_type
 
-        intensity_type(problem.fragility_table.measure)
+        intensity_type(problem.document.fragility.measure)

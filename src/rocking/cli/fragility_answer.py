@@ -56,7 +56,7 @@ class FragilityAnswer:
     @property
     def kind(self) -> str:
         """Stripes, cloud or incremental."""
-        return self.problem.document.campaign.kind
+        return str(self.problem.document.kind)
 
     @property
     def unit(self) -> tuple[str, float]:
@@ -140,7 +140,7 @@ class FragilityAnswer:
             "analysis": self.kind,
             "measure": first.subject.measure.name,
             "measure_words": first.subject.measure_words,
-            "states": list(self.problem.fragility_table.states),
+            "states": list(self.problem.document.fragility.states),
             "uplift_threshold": first.subject.uplift_threshold,
             "lowest_uplift": first.subject.lowest_uplift,
             "levels": first.levels,

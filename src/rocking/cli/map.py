@@ -72,11 +72,9 @@ def map(
 def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":
     """Return the map with the first restitution, and, where there are several, what differs."""
     from rocking.errors import InvalidValueError
-    from rocking.spec.study import axes_of
     from rocking.studies._overturning_map import MapArrays
 
-    assert problem.document.map is not None  # the document refuses to be without
-    axes = axes_of(problem.document.map)
+    axes = problem.document.axes
     sizes = [axis.values.size for axis in axes]
     if math.prod(sizes) > MOST_CELLS:
         raise InvalidValueError(
@@ -182,7 +180,6 @@ class MapAnswer:
         from rocking.studies.boundaries import boundary
 
         problem = self.problem
-        assert problem.document.map is not None  # the document refuses to be without
         lines = boundary(
             problem.bodies[0], problem.motions[0], *self.axes, problem.restitution,
             levels=problem.document.map.refine or 0, tolerance=_LINE, **problem.stated,

@@ -12,7 +12,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.questions.rocking_spectrum import OWN_BLOCKS, SpectrumTable
+from rocking.spec.questions.rocking_spectrum import SpectrumQuestion, SpectrumTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,15 +57,14 @@ def spectrum(
         own = {"slenderness_angles": _angles(slenderness), "periods": _periods(periods), "scale": scale}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
-            raise InvalidValueError(f"{body} is a body, and {OWN_BLOCKS}")
+            raise InvalidValueError(f"{body} is a body, and {SpectrumQuestion.without_body}")
         with hinted(None, named[0]):
             each = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
                 "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table
             )
     blocks = problem.document.spectrum
-    assert blocks is not None  # the document refuses to be without
-    total = len(problem.motions) * blocks.slenderness_angles.numbers().size * blocks.periods.numbers().size
+    total = len(problem.motions) * blocks.slenderness_angles.size * blocks.periods.size
     if total > _MOST:
         raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
     with bar("histories", quiet=as_json) as progress:

@@ -13,9 +13,10 @@ from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
-from rocking.spec.document import NEEDS, CampaignDocument
 from rocking.spec.motion_tables import OF_FILES
-from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
+from rocking.spec.question import StudyQuestion
+from rocking.spec.questions import question_in, questions
+from rocking.spec.reading import CommandFiles, InputFiles, tables_in
 from rocking.spec.study import StudyProblem
 
 TABLES = ("body", "motion", "restitution", "settings")
@@ -23,35 +24,37 @@ TABLES = ("body", "motion", "restitution", "settings")
 _OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
 
 
-def problem_in(file: Path, own: str, sets: Sequence[str] | None = None) -> StudyProblem:
+def problem_in(file: Path, command: str, sets: Sequence[str] | None = None) -> StudyProblem:
     """Return what a file describes, with the keys that were set beside it."""
-    kinds = [kind for kind, table in NEEDS.items() if table == own]
+    kinds = [kind for kind, question in questions().items() if question.command == command]
     with located(str(file), "file"):
         tables = dict(tables_in(file) or {})
         if len(kinds) == 1:
-            tables.setdefault("campaign", {"name": own, "kind": kinds[0]})
-        document = checked(CampaignDocument, with_sets(tables, parsed_sets(sets, (*TABLES, own)), lists=True))
-        if NEEDS[document.campaign.kind] != own:
-            raise InvalidValueError(f'it is of kind "{document.campaign.kind}": rocking campaign run computes it')
+            tables.setdefault("campaign", {"name": command, "kind": kinds[0]})
+        document = question_in(with_sets(tables, parsed_sets(sets, (*TABLES, command)), lists=True))
+        if document.kind not in kinds:
+            raise InvalidValueError(f'it is of kind "{document.kind}": rocking campaign run computes it')
         return _in_memory(document, InputFiles(file.parent))
 
 
 def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
     """Return the problem of the document that was typed, which has some tables beside the settings."""
-    own = NEEDS[kind]
     settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
     if stated := arguments.restitution(tables.get("restitution", {})):
         tables["restitution"] = stated
-    document = {"campaign": {"name": own, "kind": kind}, "motions": motions, **settings, **tables}
-    return _in_memory(checked(CampaignDocument, document), CommandFiles(Path()))
+    document = {
+        "campaign": {"name": questions()[kind].own_table(), "kind": kind},
+        "motions": motions,
+        **settings,
+        **tables,
+    }
+    return _in_memory(question_in(document), CommandFiles(Path()))
 
 
-def _in_memory(document: CampaignDocument, files: InputFiles) -> StudyProblem:
+def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
     """Return the problem of a document, after refusing what only the files of a campaign show."""
-    of_files = {"map": {"boundary", "tolerance"}, "export": {"bootstrap", "measures", "columns"}}
-    for name, keys in of_files.items():
-        table = getattr(document, name)
-        if table is not None and (odd := sorted(keys & table.model_fields_set)):
+    for name, keys in document.of_files.items():
+        if odd := sorted(keys & getattr(document, name).model_fields_set):
             raise InvalidValueError(
                 f"{name}.{odd[0]} is for files of rocking campaign: leave it out, or compute this with it"
             )
@@ -79,7 +82,11 @@ def of_body(
         raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
     with arguments.hinted():
         body, _ = arguments.body_and_motions()
-        tables = {"body": arguments.body_table(body), "restitution": {"models": list(restitution)}, NEEDS[kind]: own}
+        tables = {
+            "body": arguments.body_table(body),
+            "restitution": {"models": list(restitution)},
+            questions()[kind].own_table(): own,
+        }
         return problem_of(kind, arguments, motions, **tables)
 
 
@@ -165,9 +172,8 @@ _GROUND = {"friction", "bounce", "bounce_law"}
 def subject_values(problem: StudyProblem) -> dict[str, Any]:
     """Return the body and the motion of a study of one of each for an answer."""
     body, motion = problem.bodies[0], problem.motions[0]
-    table = problem.document.map
     stated = problem.settings.stated
-    varied: set[str] = set() if table is None else {table.x.axis, table.y.axis}
+    varied = {axis.name for axis in problem.document.axes}
     ground = {name: value for name, value in stated.items() if name in _GROUND - varied}
     return {
         "body": repr(body),

@@ -63,6 +63,11 @@ class Values(JobTable):
             )
         return self
 
+    @property
+    def size(self) -> int:
+        """How many numbers there are."""
+        return len(self.values) if self.values is not None else int(self.count or 0)
+
     def numbers(self) -> FloatArray:
         if self.values is not None:
             return np.array(self.values, dtype=np.float64)

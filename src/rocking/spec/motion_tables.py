@@ -129,6 +129,11 @@ class MotionTable(_Along, MotionKeys):
         return self
 
     @property
+    def size(self) -> int:
+        """How many motions there are; of a folder, a pattern or a list, how many names."""
+        return self.count or len(self.records or self.pulse or [])
+
+    @property
     def file_options(self) -> dict[str, dict[str, Any]]:
         """The options of single record files, by their names; keys that are not stated are absent."""
         return {name: table.model_dump(exclude_none=True) for name, table in (self.files or {}).items()}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument
     from rocking.spec.fields import JobTable
 
     _Kind = TypeVar("_Kind", bound=JobTable)
@@ -109,28 +108,14 @@ def read_text(path: Path) -> str:
         raise InvalidValueError(f"{path}: is not UTF-8 text (byte {error.start})") from error
 
 
-def document_of(text: str) -> "CampaignDocument":
-    r"""Return what a job file says.
-
-    >>> document_of('[campaign]\nname = "a"\nkind = "stripe"')
-    Traceback (most recent call last):
-    rocking.errors.InvalidValueError: campaign.kind must be one of 'overturning-map', ... got 'stripe'; did you mean
-    stripes? (and 1 more)
-    """
-    from rocking.spec.document import CampaignDocument
-
-    return validated(CampaignDocument, text)
-
-
-def validated(kind: "type[_Kind]", text: str) -> "_Kind":
-    """Return the tables of a text, checked for themselves."""
+def tables_of(text: str) -> dict[str, Any]:
+    """Return the tables of a text, unchecked."""
     try:
-        tables = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InvalidValueError(f"is not TOML: {error}") from error
     except (ValueError, RecursionError) as error:
         raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
-    return checked(kind, tables)
 
 
 def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":

@@ -2,7 +2,7 @@
 
 import re
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from inspect import Parameter, getdoc, signature
 from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
@@ -12,23 +12,19 @@ from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
 from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
-from rocking.spec.document import CampaignTable
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
 from rocking.spec.documents.response import ResponseTable
 from rocking.spec.fields import JobTable, Values
 from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
-from rocking.spec.questions.fragility import ExportTable, FragilityTable
-from rocking.spec.questions.histories import HistoriesTable
-from rocking.spec.questions.inventory import InventoryTable, ThresholdsTable
-from rocking.spec.questions.minimum_acceleration import MinimumTable
-from rocking.spec.questions.overturning_map import MapTable
-from rocking.spec.questions.rocking_spectrum import SpectrumTable
+from rocking.spec.question import BodyQuestion, CampaignTable
+from rocking.spec.questions import questions
+from rocking.spec.questions.inventory import ThresholdsTable
 from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 from rocking.spec.settings_tables import StudySettingsTable
 from rocking.studies.inventory import Thresholds
 
-_TABLES: dict[str, tuple[type[JobTable], str]] = {
+_BEFORE: dict[str, tuple[type[JobTable], str]] = {
     "response": (ResponseTable, "`rocking simulate`"),
     "motion": (ComponentsTable, "`rocking simulate`, `rocking motion`"),
     "[motions]": (MotionTable, "every study"),
@@ -36,20 +32,14 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "restitution": (RestitutionTable, "every question"),
     "restitution.distribution": (RandomTable, "every question but [inventory]"),
     "settings": (StudySettingsTable, "every question"),
-    "map": (MapTable, "`rocking map`"),
-    "minimum": (MinimumTable, "`rocking minimum`"),
-    "spectrum": (SpectrumTable, "`rocking spectrum`"),
-    "fragility": (FragilityTable, "`rocking fragility`"),
-    "inventory": (InventoryTable, "`rocking inventory`"),
-    "inventory.thresholds": (ThresholdsTable, "`rocking inventory`"),
+}
+_AFTER: dict[str, tuple[type[JobTable], str]] = {
     "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
     "assess": (AssessTable, "`rocking assess`"),
     "measurement": (MeasurementTable, "`rocking identify`"),
     "identify": (IdentifyTable, "`rocking identify`"),
-    "histories": (HistoriesTable, "campaigns of kind histories"),
     "campaign": (CampaignTable, "`rocking campaign`"),
-    "export": (ExportTable, "`rocking campaign export`"),
-}  # fmt: skip
+}
 
 _BODIES: dict[str, type[BaseModel]] = {
     "the file": schema.BodyFile,
@@ -76,9 +66,30 @@ _BODIES: dict[str, type[BaseModel]] = {
 
 def reference() -> str:
     """Return a table of keys for every table of a question and of a body file: name, kind, usual value, meaning."""
-    questions = [_table(name, table, f" Of {where}.") for name, (table, where) in _TABLES.items()]
+    questions = [_table(name, table, f" Of {where}.") for name, (table, where) in _tables().items()]
     bodies = [_table(name, table) for name, table in _BODIES.items()]
     return "\n".join([*chain(*questions), *_names(), "## The keys of body files\n", *chain(*bodies)]) + "\n"
+
+
+def _tables() -> dict[str, tuple[type[JobTable], str]]:
+    """Return the tables of all questions and what they are of: those of studies as their classes have them."""
+    of_studies: dict[str, tuple[type[JobTable], str]] = {}
+    for kind, question in questions().items():
+        where = f"campaigns of kind {kind}" if question.command == "campaign" else f"`rocking {question.command}`"
+        of_studies = {**_within(question, where, {*BodyQuestion.model_fields}), **of_studies}
+    return _BEFORE | dict(sorted(of_studies.items())) | _AFTER
+
+
+def _within(
+    table: type[BaseModel], where: str, known: Collection[str] = (), above: str = ""
+) -> dict[str, tuple[type[JobTable], str]]:  # fmt: skip
+    """Return the tables that stand in a table, and in these."""
+    inner: dict[str, tuple[type[JobTable], str]] = {}
+    for name, field in table.model_fields.items():
+        kind = field.annotation
+        if isinstance(kind, type) and issubclass(kind, JobTable) and not issubclass(kind, Values) and name not in known:
+            inner |= {f"{above}{name}": (kind, where), **_within(kind, where, above=f"{above}{name}.")}
+    return inner
 
 
 def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
@@ -157,9 +168,8 @@ def _summary(documented: Any) -> str:
 
 def keys_of(name: str) -> list[str]:
     """Return the keys of a table as they are written; none where no table has the name."""
-    if name not in _TABLES:
-        return []
-    return [field.alias or key for key, field in _TABLES[name][0].model_fields.items()]
+    table = _tables().get(name)
+    return [] if table is None else [field.alias or key for key, field in table[0].model_fields.items()]
 
 
 def _names() -> Iterator[str]:
@@ -220,7 +230,8 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
             usual = _usual_setting(key)
         elif table is ThresholdsTable:
             usual = _usual(getattr(Thresholds(), key))
-        yield f"| `{field.alias or key}` | {_kind(field.annotation)} | {usual} | {field.description or ''} |"
+        choices = ", ".join(questions()) if (table, key) == (CampaignTable, "kind") else _kind(field.annotation)
+        yield f"| `{field.alias or key}` | {choices} | {usual} | {field.description or ''} |"
     yield ""
 
 

@@ -24,7 +24,7 @@ from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_v
 from rocking.cli.application import application
 from rocking.errors import InvalidValueError
 from rocking.spec.documents.response import ResponseDocument
-from rocking.spec.reading import InputFiles, validated
+from rocking.spec.reading import InputFiles, checked, tables_of
 from rocking.spec.response import response_problem
 from rocking.tables import escaped
 
@@ -117,7 +117,7 @@ def test_another_digit_is_another_document():
 def test_the_command_line_reads_the_file(tmp_path):
     """`rocking simulate` reads what is written: same body, motion, scale, restitutions and friction."""
     text = inputs_as_toml(Inputs.model_validate(EXAMPLE))
-    question = response_problem(validated(ResponseDocument, text), InputFiles(tmp_path))
+    question = response_problem(checked(ResponseDocument, tables_of(text)), InputFiles(tmp_path))
     assert (question.body.width, question.body.height) == (0.5, 2.0)
     assert (question.scale, question.assumed_friction) == (1.05, 0.4)
     assert list(question.restitutions) == ["ked", "housner"]

@@ -123,14 +123,14 @@ def info(request: Request) -> JsonAnswer:
 def _constant(*kinds: type) -> dict[str, Any]:
     """Return what only another model changes, of these kinds."""
     from rocking.app.api.contact_bed import ContactBedRequest
-    from rocking.app.studies.job_document import KINDS
+    from rocking.app.studies.job_document import launched_kinds
     from rocking.dynamics.plane import fast_engine
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic.families import families
-    from rocking.spec.document import NEEDS
     from rocking.spec.documents.prediction import PredictTable
     from rocking.spec.motion_tables import MotionTable, OneMotionTable
+    from rocking.spec.questions import questions
     from rocking.spec.questions.inventory import InventoryTable
     from rocking.spec.questions.minimum_acceleration import MinimumTable
     from rocking.spec.reference import described, steps, targets
@@ -162,7 +162,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
         "axes": [_quantity(one) for one in axes().values()],
-        "study_kinds": [{"name": name, "table": NEEDS[name]} for name in KINDS],
+        "study_kinds": [{"name": name, "table": questions()[name].own_table()} for name in launched_kinds()],
         "steps": steps(),
         "targets": targets(),
         "keys": {

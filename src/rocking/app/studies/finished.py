@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.campaigns.jobs import Job, JobFolder
-    from rocking.campaigns.jobs.study import AdaptiveResult
+    from rocking.studies.study_plan import AdaptiveResult
 
 
 Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
@@ -47,10 +47,15 @@ class OpenStudy:
         return self.opened.job
 
     @property
+    def question(self) -> Any:
+        """The question, of its own class."""
+        return self.job.document
+
+    @property
     def axes(self) -> tuple[str, ...]:
         """Dimensions beside the restitutions that are compared: it may be an axis, too."""
         study = self.job.study
-        if self.job.document.map is not None:
+        if self.job.document.axes:
             return tuple(study.dims)[-2:]
         return tuple(name for name in study.dims if name != "restitution")
 
@@ -118,7 +123,7 @@ def written(
         from rocking.plots.campaign import campaign_picture
         from rocking.plots.fragility import incremental_dynamic_analysis_picture
 
-        if study.job.document.campaign.kind == "incremental":
+        if study.job.document.kind == "incremental":
             analysis = list(study.analyses.values())[restitution]
             draw_to(lambda: incremental_dynamic_analysis_picture(analysis), target)
             return

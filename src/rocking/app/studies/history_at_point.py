@@ -12,7 +12,6 @@ from rocking.answers import Answer
 from rocking.app.api.response import response_answer
 from rocking.app.errors import NotFound
 from rocking.app.studies.finished import OpenStudy
-from rocking.app.studies.job_document import motions_in
 from rocking.app.studies.results import plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_file import body_to_toml
@@ -27,7 +26,6 @@ from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseProblem
 from rocking.studies.adaptive_grid import Plane
-from rocking.studies.axis import axis_of
 from rocking.studies.question import Question, changed_body
 
 _ACROSS = {
@@ -66,7 +64,7 @@ class HistoryPlace:
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
         """Return the history at a point of a picture."""
         dims, choices = study.job.study.dims, len(study.job.problem.restitutions)
-        across = _ACROSS.get(str(study.job.document.campaign.kind), study.axes[::-1])
+        across = _ACROSS.get(study.job.document.kind, study.axes[::-1])
         index = {"motion": motion} | dict(zip(across, (x, y), strict=True))
         sizes = {name: dims[name] for name in study.axes} | {"the restitution": choices}
         at = {name: index.get(name, 0) for name in study.axes} | {"the restitution": restitution}
@@ -102,25 +100,24 @@ class Variation:
         if getattr(restitution, "per_history", False):
             restitution = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
             choice = dict(restitution)
-        if job.document.map is not None:
-            body, table = job.problem.bodies[0], dict((job.document.body or [])[0])
+        if job.document.axes:
+            body, table = job.problem.bodies[0], dict(job.document.bodies[0])
             return _on_map(cls(body, table, label, restitution, choice, scale), study, place)
-        if job.document.spectrum is not None:
+        if not job.problem.bodies:
             angle, period = (job.study.coordinates[name].values for name in ("slenderness_angle", "semi_diagonal"))
             body = Block.from_angle(
                 float(angle[place.index["slenderness_angle"]]), float(period[place.index["period"]])
             )
             return cls(body, body_table(body), label, restitution, choice, scale)
         number = place.index.get("body", 0)
-        body, table = job.problem.bodies[number], dict((job.document.body or [])[number])
+        body, table = job.problem.bodies[number], dict(job.document.bodies[number])
         return cls(body, table, label, restitution, choice, scale)
 
 
 def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
     """Return the variation of a cell of a map: its axes change it."""
     job = study.job
-    assert job.document.map is not None  # asked before
-    x, y = (axis_of((table.axis, table.numbers())) for table in (job.document.map.x, job.document.map.y))
+    x, y = job.document.axes
     question = Question(variation.body, job.problem.motions[0], variation.restitution, job.problem.settings)
     case = Plane(question, x, y).case(*(axis.values[place.index[axis.name]][None] for axis in (x, y)))
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
@@ -158,9 +155,9 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
     """Return a motion of a study, its time stretched; how inputs name it, None where they cannot; its table's scale."""
     place = number
     for table in study.job.document.motions:
-        if place < motions_in(table):
+        if place < table.size:
             break
-        place -= motions_in(table)
+        place -= table.size
     if table.pulse is not None:
         words = stretched_words(table.pulse[place], stretch)
         return pulse(words), {"pulse": words}, table.scale

@@ -13,21 +13,14 @@ from rocking.app.inputs import MOTION_KEYS, BodyInput, levels
 from rocking.app.plain_text import toml_of
 from rocking.app.records import is_hash
 from rocking.bodies.formats.schema import TABLES, RegionTable
-from rocking.bodies.formats.words import from_pydantic
 from rocking.errors import InvalidValueError, located
 from rocking.restitution.from_file import file_of
-from rocking.spec.document import CampaignDocument
 from rocking.spec.motion_tables import MotionTable
-
-KINDS = (
-    "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "histories",
-)  # fmt: skip
-"""Kinds of campaigns that the application launches."""
-
-_MEASURED = {"stripes", "incremental", "cloud", "minimum-acceleration"}
-"""Kinds that need every motion before they begin."""
+from rocking.spec.question import StudyQuestion
+from rocking.spec.questions import question_in, questions
 
 _QUICKLY_MADE = 200
+_MOST = {"restitutions": 64, "bodies": 1000, "states": 20, "blocks times restitutions": 100_000, "motions": 2000}
 _FILES = {"file", "dxf", "geojson", "path"}
 _BODY_KEYS = {
     "slenderness_angle", "semi_diagonal", *BodyInput.model_fields, *RegionTable.model_fields,
@@ -38,12 +31,17 @@ _BODY_KEYS = {
 _DEEPEST, _MOST_VALUES = 12, 500_000
 
 
+def launched_kinds() -> tuple[str, ...]:
+    """Return the kinds of campaigns that the application launches: those whose own table names no file."""
+    return tuple(kind for kind, question in questions().items() if not question.names_files)
+
+
 @dataclass(frozen=True)
 class JobDocument:
     """A job as it came, and as its tables say it."""
 
     tables: dict[str, Any]  # as it came; records are named by their hashes
-    document: CampaignDocument  # the same, checked
+    document: StudyQuestion  # the same, checked
 
     @classmethod
     def of(cls, tables: object) -> "JobDocument":
@@ -54,44 +52,33 @@ class JobDocument:
         _refuse_files(tables)
         campaign = tables.get("campaign")
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
-        if isinstance(kind, str) and kind not in KINDS:
-            raise InvalidValueError(f"campaign.kind must be one of {', '.join(KINDS)}, got {kind!r:.60}")
+        if isinstance(kind, str) and kind not in (known := launched_kinds()):
+            raise InvalidValueError(f"campaign.kind must be one of {', '.join(known)}, got {kind!r:.60}")
         with located("job"):
-            try:
-                job = cls(tables, CampaignDocument.model_validate(tables))
-            except ValidationError as error:
-                raise from_pydantic(error.errors(include_url=False)) from error
+            job = cls(tables, question_in(tables))
         job._check_counts()
         return job
 
     def _check_counts(self) -> None:
         """Refuse what takes long to be made, however few its histories are."""
         document = self.document
-        bodies, choices, motions = document.body or [], _choices(document), _motion_count(document)
-        counts = {
-            "regions of bodies": (sum(map(_checked_regions, bodies)), 1000),
-            "restitutions": (choices, 64),
-            "bodies": (len(bodies), 1000),
-            "states": (len(document.fragility.states) if document.fragility else 0, 20),
-        }
-        if table := document.spectrum:
-            blocks = _count(table.slenderness_angles) * _count(table.periods)
-            counts["blocks times restitutions"] = (blocks * choices, 100_000)
-        if self.kind in _MEASURED:
-            counts["motions"] = (motions, 2000)
-        for name, (count, most) in counts.items():
-            if count > most:
-                raise TooLarge(f"the job has {count} {name}; a page takes up to {most}, `rocking campaign` any number")
+        counts = {"restitutions": document.choices, "bodies": len(document.bodies), **document.elements}
+        counts |= {"motions": document.motion_count} if document.needs_motions else {}
+        most = {"regions of bodies": 1000} | dict.fromkeys(counts, 100_000) | _MOST
+        for name, count in {"regions of bodies": sum(map(_checked_regions, document.bodies)), **counts}.items():
+            if count > most[name]:
+                limit = f"a page takes up to {most[name]}, `rocking campaign` any number"
+                raise TooLarge(f"the job has {count} {name}; {limit}")
 
     @property
     def needs_long(self) -> bool:
         """Whether its motions take so long to be made that only its own process checks them."""
-        return self.kind in _MEASURED and _motion_count(self.document) > _QUICKLY_MADE
+        return self.document.needs_motions and self.document.motion_count > _QUICKLY_MADE
 
     @property
     def kind(self) -> str:
         """What it computes."""
-        return str(self.document.campaign.kind)
+        return self.document.kind
 
     @property
     def records(self) -> list[str]:
@@ -101,16 +88,12 @@ class JobDocument:
     @property
     def histories(self) -> int:
         """How many histories it has, from its tables alone; of an adaptive study those of the first round."""
-        return math.prod(_sizes(self.document))
+        return math.prod(self.document.sizes)
 
     @property
     def most(self) -> int:
         """How many histories it may come to, roughly: a refined map goes on along its boundaries."""
-        table = self.document.map
-        if table is None or not table.refine:
-            return self.histories
-        boundary = 4 * (_count(table.x) + _count(table.y)) * 2**table.refine
-        return int(self.histories + boundary * _choices(self.document))
+        return self.histories + self.document.later_histories
 
     def toml(self, path_of: Callable[[str], str]) -> str:
         """Return the job as a job file."""
@@ -172,36 +155,6 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
             )
 
 
-def _sizes(document: CampaignDocument) -> list[int]:
-    """Return the numbers whose product is that of the histories."""
-    choices, motions, bodies = _choices(document), _motion_count(document), len(document.body or [])
-    match document.campaign.kind:
-        case "overturning-map" if document.map:
-            return [_count(document.map.x), _count(document.map.y), choices]
-        case "rocking-spectrum" if table := document.spectrum:
-            return [motions, _count(table.slenderness_angles), _count(table.periods), choices]
-        case "histories":
-            return [motions, bodies, _count(document.histories.scales) if document.histories else 1, choices]
-        case "minimum-acceleration" if document.minimum:
-            return [motions, bodies, document.minimum.points, choices]
-    levels = document.fragility.levels if document.fragility else None
-    return [motions, choices, _count(levels) if levels else 1]
-
-
-def _choices(document: CampaignDocument) -> int:
-    table = document.restitution
-    return max(1, len(table.models or []) + len(table.values or []))
-
-
-def _motion_count(document: CampaignDocument) -> int:
-    return sum(motions_in(table) for table in document.motions)
-
-
-def motions_in(table: MotionTable) -> int:
-    """Return how many motions a table describes."""
-    return int(table.count or 0) or len(table.records or []) or len(table.pulse or [])
-
-
 def _checked_regions(table: dict[str, Any]) -> int:
     """Return the regions of a body, unless the body alone is larger than a page takes."""
     try:
@@ -210,7 +163,3 @@ def _checked_regions(table: dict[str, Any]) -> int:
         return 0
     texts = [region.wkt or "" for region in body.section.region] if body.section else []
     return sum(max(1, text.count("((")) for text in texts)
-
-
-def _count(values: Any) -> int:
-    return len(values.values) if values.values is not None else int(values.count or 0)

@@ -15,7 +15,6 @@ from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
-from rocking.spec.questions.fragility import ExportTable
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
 from rocking.studies.islands import safe_islands
@@ -200,7 +199,7 @@ def _middles(edges: np.ndarray, x: FloatArray, y: FloatArray) -> FloatArray:
 
 def fragility_result(study: OpenStudy) -> dict[str, Any]:
     """Return a fragility analysis."""
-    first, export = next(iter(study.analyses.values())), study.job.document.export or ExportTable()
+    first, question = next(iter(study.analyses.values())), study.question
     measure = first.subject.measure
     return {
         "measure": {"name": measure.name, "unit": measure.unit, "words": measure.words},
@@ -208,7 +207,7 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
         "analyses": [
-            {"restitution": label, **_analysis(one, export.crossing)} for label, one in study.analyses.items()
+            {"restitution": label, **_analysis(one, question.export.crossing)} for label, one in study.analyses.items()
         ],
     }
 
@@ -304,7 +303,7 @@ _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
 def result_of(study: OpenStudy) -> dict[str, Any]:
     """Return the result of a finished study."""
     document = study.job.document
-    kind = str(document.campaign.kind)
+    kind = document.kind
     if kind == "minimum-acceleration":
         lost = [np.empty(0), *(each.lost_contact for each in study.answer.value if each is not None)]
         contact = contact_words(np.concatenate(lost))

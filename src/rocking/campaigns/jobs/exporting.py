@@ -20,21 +20,21 @@ from rocking.campaigns.jobs.findings import (
     datasets,
     label_of,
     measure_comparison,
+    pieces_of,
     refuse_unfinished,
 )
 from rocking.campaigns.jobs.folder import JobFolder
-from rocking.campaigns.jobs.kinds.fragility import ANALYSES, MEASURES
 from rocking.campaigns.jobs.rounds import finished_rounds
-from rocking.campaigns.jobs.study import TYPES, pieces_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.outcome import contact_sentence, lost_contact
-from rocking.spec.questions.fragility import ExportTable
+from rocking.spec.questions.fragility import ANALYSES, MEASURES
 from rocking.statistics.goodness import FEWEST
 from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.studies.fragility.measure_comparison import MeasureComparison
 from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity.comparison import Sensitivity
+from rocking.studies.study_plan import TYPES
 from rocking.tables import (
     Column,
     Grid,
@@ -154,7 +154,7 @@ def export(
     target, what = checked(folder, path, what, restitution, crossing, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
-    if what == "histories" and folder.job.document.map is not None:
+    if what == "histories" and folder.job.document.axes:
         provenance |= {"safe_islands": _islands(folder)}
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"), written_whole(target) as unfinished:
         if what in ANALYSES:
@@ -281,7 +281,8 @@ def _write_fragility(
     from rocking.studies.fragility import export as files
     from rocking.studies.fragility.curves import model_of
 
-    campaign, stated = folder.job.document.campaign, folder.job.document.export or ExportTable()
+    question: Any = folder.job.document
+    campaign, stated = question.campaign, question.export
     every = analyses(folder)
     analysis = every[restitution] if restitution else next(iter(every.values()))
     repetitions = stated.bootstrap if bootstrap is None else bootstrap

@@ -1,6 +1,7 @@
 """Results of the studies of finished campaigns, as the Python calls return them."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,18 +9,22 @@ import numpy as np
 from rocking import checks
 from rocking.campaigns import CampaignIncompleteError
 from rocking.campaigns.jobs.folder import JobFolder, job_status
-from rocking.campaigns.jobs.kinds.fragility import MEASURES, columns_of, measures_of
 from rocking.campaigns.jobs.rounds import replayed, resume
-from rocking.campaigns.jobs.study import TYPES, AdaptiveResult, pieces_of
+from rocking.campaigns.ledger import HistoryRange
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import attributes
+from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
 from rocking.studies.sensitivity.comparison import Sensitivity, drawn_in
+from rocking.studies.study_plan import TYPES, AdaptiveResult, Study
+from rocking.tables import PIECE
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking.spec.study import StudyProblem
     from rocking.studies.inventory.assessment import Assessment
 
 READ = ("outcome", "peak_rotation", "least_force")  # all that analyses and assessments read of a history: 17 bytes
@@ -152,6 +157,19 @@ def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_rat
     return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn_in(restitutions))
 
 
+def pieces_of(
+    study: Study, ranges: Iterable[HistoryRange], progress: Callable[[int], None] | None = None
+) -> Iterator[tuple[int, int, Arrays]]:
+    """Return first history, last one (not included) and the keys of `HISTORY`, a piece after another."""
+    for each in ranges:
+        for first in range(each.first, each.last, PIECE):
+            last = min(first + PIECE, each.last)
+            part = {name: values[first - each.first : last - each.first] for name, values in each.results.items()}
+            yield first, last, study.derived(first, last, part)
+            if progress is not None:
+                progress(last - first)
+
+
 def datasets(folder: JobFolder, names: Collection[str] = tuple(TYPES)) -> "dict[str, xr.Dataset]":
     """Return results of all histories by label of the restitution, as the studies' functions return them."""
     xarray: Any = extra("xarray", "comparing restitutions")
@@ -202,8 +220,9 @@ def measure_comparison(
     refuse_unfinished(folder)
     clouds = analyses(folder)
     cloud = clouds[label_of(MEASURES, restitution, list(clouds))]
-    names, columns = measures_of(document), columns_of(document, folder.job.problem.motions)
-    if document.export is None or document.export.columns is None:
+    question: Any = document
+    names, columns = question.measures(), question.columns(folder.job.problem.motions)
+    if question.export.columns is None:
         rocked = clearly_lifted(cloud.responses, cloud.least)
         columns = {name: values for name, values in columns.items() if np.unique(values[rocked]).size > 1}
     total, count, motions = len(folder.job.problem.motions) * len(names), folder.campaign.plan.count, 0
@@ -227,3 +246,33 @@ def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
         own = what if what == MEASURES else f"a {what}"
         raise InvalidValueError(f"restitution must be one of {', '.join(labels)}: each has {own} of its own")
     return labels[0] if restitution is None else checks.one_of("restitution", restitution, labels)
+
+
+@dataclass(frozen=True)
+class FinishedStudy:
+    """Results of a finished campaign, as the picture of its question takes them; without a restitution of the first."""
+
+    folder: JobFolder
+
+    @property
+    def problem(self) -> "StudyProblem":
+        """Bodies, motions, restitutions and settings."""
+        return self.folder.job.problem
+
+    @property
+    def answer(self) -> AdaptiveResult:
+        """Result of an adaptive study."""
+        return answer(self.folder)
+
+    @property
+    def assessment(self) -> "Assessment":
+        """Assessment of an inventory."""
+        return assessment(self.folder)
+
+    def analysis(self, restitution: str | None) -> Any:
+        """Return the fragility analysis with a restitution."""
+        return analyses(self.folder)[restitution or next(iter(self.problem.restitutions))]
+
+    def dataset(self, restitution: str | None) -> "xr.Dataset":
+        """Return the results of all histories with a restitution."""
+        return datasets(self.folder)[restitution or next(iter(self.problem.restitutions))]

@@ -35,10 +35,11 @@ from rocking.campaigns.jobs.rounds import (
 from rocking.campaigns.ledger import Verification
 from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.errors import InvalidValueError, located
-from rocking.spec.reading import InputFiles, document_of, refuse_changes
+from rocking.spec.questions import question_of
+from rocking.spec.reading import InputFiles, refuse_changes
 
 if TYPE_CHECKING:
-    from rocking.spec.document import CampaignDocument
+    from rocking.spec.question import StudyQuestion
 
 JOB, INPUTS = "job.toml", "inputs.json"  # files of the folder
 
@@ -208,7 +209,7 @@ def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStat
     return job_status(path, _document(path), verify)
 
 
-def job_status(path: Path, document: "CampaignDocument", verify: bool) -> JobStatus:
+def job_status(path: Path, document: "StudyQuestion", verify: bool) -> JobStatus:
     """Return how far the campaign of a document is."""
     name, kind, adaptive = document.campaign.name, document.campaign.kind, document.is_adaptive
     each = of_rounds(path, adaptive, lambda folder: Campaign.status_of(folder, verify=verify))
@@ -254,10 +255,10 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     )
 
 
-def _document(path: Path) -> "CampaignDocument":
+def _document(path: Path) -> "StudyQuestion":
     text, content = _kept(path)
     with located(content["job_file"], "file"):
-        return document_of(text)
+        return question_of(text)
 
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:

@@ -18,13 +18,14 @@ from rocking.dynamics.plane import fast_engine
 from rocking.errors import located
 from rocking.motions.summary import summaries_of
 from rocking.restitution import RestitutionModel
-from rocking.spec.reading import document_of, read_text
+from rocking.spec.questions import question_of
+from rocking.spec.reading import read_text
 from rocking.studies.motion_sets import MotionList
 
 if TYPE_CHECKING:
-    from rocking.campaigns.jobs.study import Study
-    from rocking.spec.document import CampaignDocument
+    from rocking.spec.question import StudyQuestion
     from rocking.spec.study import StudyProblem
+    from rocking.studies.study_plan import Study
 
 
 @dataclass(frozen=True)
@@ -105,9 +106,9 @@ class Job:
         return job
 
     @cached_property
-    def document(self) -> "CampaignDocument":
+    def document(self) -> "StudyQuestion":
         """Its tables."""
-        return document_of(self.text)
+        return question_of(self.text)
 
     @cached_property
     def problem(self) -> "StudyProblem":
@@ -119,9 +120,7 @@ class Job:
     @cached_property
     def study(self) -> "Study":
         """Histories, what they are over, and what is read off their results."""
-        from rocking.campaigns.jobs.kinds import study_of
-
-        return study_of(self.problem)
+        return self.document.study(self.problem)
 
     @property
     def inputs(self) -> list[dict[str, Any]]:

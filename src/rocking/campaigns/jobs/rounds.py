@@ -21,11 +21,11 @@ from rocking.campaigns import (
 from rocking.campaigns.disk import FolderLock
 from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.campaigns.identity import NAME, SHARDS, Identity
-from rocking.campaigns.jobs.study import AdaptiveResult, Search, first_round
 from rocking.campaigns.processes import chosen
 from rocking.campaigns.status import Summary
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies.histories import Histories
+from rocking.studies.study_plan import AdaptiveResult, Search, first_round
 
 _T = TypeVar("_T")
 

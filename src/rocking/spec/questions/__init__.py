@@ -1,1 +1,35 @@
-"""Studies: one file per study."""
+"""Studies: one file per study, used because it is in this folder."""
+
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Any
+
+from rocking.spec.question import QUESTIONS, StudyQuestion
+from rocking.spec.reading import checked, tables_of
+
+
+def questions() -> dict[str, type[StudyQuestion]]:
+    """Return the classes of studies by their kind."""
+    for module in iter_modules(__path__):
+        import_module(f"{__name__}.{module.name}")
+    return dict(sorted(QUESTIONS.items()))
+
+
+def question_of(text: str) -> StudyQuestion:
+    r"""Return the study that a job file describes.
+
+    >>> question_of('[campaign]\nname = "a"\nkind = "stripe"')
+    Traceback (most recent call last):
+    rocking.errors.InvalidValueError: campaign.kind must be one of ... got 'stripe'; did you mean stripes? (and 1 more)
+    """
+    return question_in(tables_of(text))
+
+
+def question_in(tables: dict[str, Any]) -> StudyQuestion:
+    """Return the study that tables describe, of the class of its kind."""
+    campaign, known = tables.get("campaign"), questions()
+    kind = campaign.get("kind") if isinstance(campaign, dict) else None
+    if isinstance(kind, str) and kind in known:
+        return checked(known[kind], tables)
+    own = {name for question in known.values() for name in question.model_fields} - {*StudyQuestion.model_fields}
+    return checked(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # which refuses

@@ -1,9 +1,22 @@
-"""Inventories."""
+"""Inventories: which objects of a list stay standing."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.spec.fields import JobTable, Text, key
+from rocking.spec.question import Progress, StudyQuestion
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.inventory import Inventory, Thresholds
+    from rocking.studies.inventory.hazard import Hazard
+    from rocking.studies.study_plan import Study
 
 
 class ThresholdsTable(JobTable):
@@ -38,3 +51,120 @@ class InventoryTable(JobTable):
         if self.pga is not None and self.pgv is not None:
             raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
         return self
+
+
+class InventoryQuestion(StudyQuestion):
+    """Which objects of a list stay standing."""
+
+    kind: ClassVar[str] = "inventory"
+    command: ClassVar[str] = "inventory"
+    without_body: ClassVar[str] = "the objects stand in the file that [inventory] names"
+    names_files: ClassVar[bool] = True
+
+    inventory: InventoryTable
+
+    @model_validator(mode="after")
+    def _shaken_as_a_list_is(self) -> "InventoryQuestion":
+        if odd := sorted(self.settings.model_fields_set - {"gravity", "friction"}):
+            raise InvalidValueError(
+                f"settings.{odd[0]} does not go with an inventory, which takes gravity and friction only"
+            )
+        families = [table for table in self.motions if table.synthetic is not None]
+        if any(table.pulse is not None for table in self.motions) or (families and len(self.motions) > 1):
+            raise InvalidValueError("the motions of an inventory are records, or one family of synthetic ones alone")
+        for table in families:
+            if odd := sorted({"pga", "pgv", "time_step"} & table.model_fields_set):
+                raise InvalidValueError(
+                    f"motions.{odd[0]} does not go with an inventory; how strong it is stands in [inventory]"
+                )
+        if families and self.inventory.pga is None and self.inventory.pgv is None:
+            raise InvalidValueError('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
+        return self
+
+    def read(
+        self, problem: "StudyProblem"
+    ) -> "tuple[Inventory, Callable[[Progress], Hazard], Thresholds, Any]":  # fmt: skip
+        """Return the objects, what makes their motions, the limits of the ratings, and the stated model."""
+        from rocking.studies.inventory import Thresholds, read_inventory
+        from rocking.studies.inventory.hazard import SEED, Hazard, IntensityLevel
+        from rocking.studies.motion_sets import SyntheticSet
+
+        table, motions = self.inventory, problem.motions
+        if len(problem.restitutions) > 1:
+            raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
+        stated = problem.restitution if "restitution" in self.model_fields_set else None
+        try:
+            limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
+        except InvalidValueError as error:  # which begins with the key
+            raise InvalidValueError(f"inventory.thresholds.{error}") from error
+        with located("inventory"):
+            folder = Path(table.objects).parent
+            objects = read_inventory(
+                problem.inputs.file(table.objects),
+                table.encoding,
+                lambda name: problem.inputs.file((folder / name).as_posix()),
+                table.columns,
+                table.language,
+            )
+            texts = {"PGA": table.pga, "PGV": table.pgv}
+            level = next((IntensityLevel.of(kind, text) for kind, text in texts.items() if text is not None), None)
+
+        def hazard(progress: Progress = None) -> Hazard:
+            with located("inventory"):
+                if isinstance(motions, SyntheticSet):
+                    assert level is not None  # the question refuses to be without
+                    own = self.motions[0].seed
+                    seed = SEED if own is None else own  # as on the command line
+                    return Hazard.of_family(motions.family, level, count=motions.count, seed=seed, progress=progress)
+                return Hazard.of_records([motions[k] for k in range(len(motions))], level)
+
+        return objects, hazard, limits, stated
+
+    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
+        """Return the `Assessment` of the list."""
+        from rocking.studies.inventory import assess
+
+        objects, hazard, limits, restitution = self.read(problem)
+        settings = problem.settings
+        return assess(
+            objects, hazard(progress), restitution=restitution, thresholds=limits, gravity=settings.gravity,
+            friction=settings.stated.get("friction"), threads=threads,
+        )  # fmt: skip
+
+    def study(self, problem: "StudyProblem") -> "Study":
+        """Return the study over motion, object, direction and the model of impact, those asked beside it.
+
+        With friction or body files over object, model of impact, motion and direction.
+        """
+        from rocking.studies.histories import JoinedHistories
+        from rocking.studies.inventory.assessment import assessment_plan
+        from rocking.studies.inventory.objects import DIRECTIONS
+        from rocking.studies.study_plan import Study, along, labels_along, motions_along
+
+        objects, motions, limits, restitution = self.read(problem)
+        hazard = motions(None)
+        with located("inventory"):
+            histories, finish, dims, items = assessment_plan(
+                objects, hazard, restitution=restitution, thresholds=limits, gravity=problem.settings.gravity,
+                friction=problem.settings.stated.get("friction"),
+            )  # fmt: skip
+        names = ("asked", "compared") if restitution is not None else ("calibrated", "housner", "ked")
+        if isinstance(histories, JoinedHistories) and restitution is None:
+            names = ("calibrated; ked in three dimensions", *names[1:])
+        coordinates = {
+            "motion": motions_along(histories.motions),
+            "object": labels_along("object", (item.name for item in items), "name of the object"),
+            "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
+            "number": labels_along("object", (item.number for item in items), "inventory number"),
+            "note": labels_along("object", (item.note for item in items), "what the list notes"),
+            "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
+            "restitution": labels_along("restitution", names, "model of impact"),
+        }
+        attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
+        return Study(histories, dims, coordinates, attributes, assess=finish)
+
+    def plot(self, finished: Any, restitution: str | None) -> "Figure":
+        """Draw the ratings of the objects."""
+        from rocking.plots.inventory import inventory_picture
+
+        return inventory_picture(finished.assessment)

@@ -1,6 +1,19 @@
-"""Minimum overturning accelerations."""
+"""Minimum accelerations: every acceleration at which bodies begin or cease to overturn under motions."""
 
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from rocking.errors import InvalidValueError, located
 from rocking.spec.fields import JobTable, Positive, key
+from rocking.spec.question import BodyQuestion, Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.study_plan import Study
 
 
 class MinimumTable(JobTable):
@@ -11,3 +24,100 @@ class MinimumTable(JobTable):
     points: int = key("first samples, in equal ratios", 400, ge=2, le=1_000_000)
     levels: int = key("how often suspicious intervals are halved, 0 to 12", 4, ge=0, le=12)
     tolerance: float = key("width of the last brackets over the acceleration [-]", 1e-12, ge=0.0, le=0.1)
+
+
+class MinimumQuestion(BodyQuestion):
+    """Every acceleration at which bodies begin or cease to overturn under motions."""
+
+    kind: ClassVar[str] = "minimum-acceleration"
+    command: ClassVar[str] = "minimum"
+    several_bodies: ClassVar[bool] = True
+    needs_motions: ClassVar[bool] = True
+
+    minimum: MinimumTable = Field(default_factory=MinimumTable)
+
+    @property
+    def is_adaptive(self) -> bool:
+        """Always."""
+        return True
+
+    @property
+    def sizes(self) -> list[int]:
+        """Motions, bodies, first samples and restitutions."""
+        return [*super().sizes, self.minimum.points]
+
+    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
+        """Return the `Transitions` of one body under one motion."""
+        from rocking.studies import minimum_overturning_acceleration
+
+        subject = (problem.only("bodies"), problem.only("motions"), problem.only("restitutions"))
+        options = {**problem.stated, "threads": threads, "progress": progress, **vars(self.minimum)}
+        return minimum_overturning_acceleration(*subject, **options)
+
+    def study(self, problem: "StudyProblem") -> "Study":
+        """Return the study: its first samples, over motion, restitution, body and point."""
+        from rocking.dynamics.mechanics import mechanics_of
+        from rocking.dynamics.parameters import sides_of
+        from rocking.spec.construction import MOST_IN_MEMORY
+        from rocking.studies.minimum_acceleration import Cases, Effort
+        from rocking.studies.minimum_rounds import MinimumSearch
+        from rocking.studies.motion_sets import MotionList
+        from rocking.studies.study_plan import Study, along, first_round, labels_along
+        from rocking.tables import Column
+
+        table, settings = self.minimum, problem.settings
+        if len(problem.motions) > MOST_IN_MEMORY:
+            raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
+        motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])
+        with located("body"):
+            make, laws = mechanics_of(settings).parameters, problem.restitutions.values()
+            parameters = [[make(body, law, settings) for body in problem.bodies] for law in laws]
+        sides = [sides_of(row) for row in parameters]
+        with located("minimum"):
+            effort = Effort(table.points, table.levels, table.tolerance)
+            cases = Cases.joined([
+                Cases.of(motions[k], each, settings, table.lowest, table.highest)
+                for k in range(len(motions)) for each in sides
+            ])  # fmt: skip
+        shape = (len(motions), len(problem.restitutions), len(problem.bodies))
+        names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
+        options = {"settings": settings, "engine": self.settings.engine}
+        search = MinimumSearch(cases, effort, motions, shape, parameters[0][0].law, options, names)
+        dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
+        scale = cases.grid(effort.points).reshape(*dims.values())
+        coordinates = {
+            "motion": labels_along("motion", names["motion"], "name of the motion"),
+            "restitution": labels_along("restitution", names["restitution"], "restitution"),
+            "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
+            "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
+        }
+        attributes = {
+            "points": effort.points,
+            "levels": effort.levels,
+            "tolerance": effort.tolerance,
+            "bodies": "; ".join(repr(body) for body in problem.bodies)[:4000],
+        }
+        exports = ("crossings", "minima", "histories")
+        return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
+
+    def plot(self, finished: Any, restitution: str | None) -> "Figure":
+        """Draw a panel for each restitution, with a lane for every motion and body."""
+        from rocking.plots.transitions import transitions_of_many_picture
+
+        problem, several = finished.problem, len(finished.problem.bodies) > 1
+        motions, bodies, labels = len(problem.motions), len(problem.bodies), list(problem.restitutions)
+        lanes = [
+            f"{problem.motions[k].name}, body {body}" if several else problem.motions[k].name
+            for k in range(motions) for body in range(bodies)
+        ]  # fmt: skip
+        every = finished.answer.value  # the body changes fastest, then the restitution
+        rows = {
+            label: [every[(k * len(labels) + number) * bodies + body] for k in range(motions) for body in range(bodies)]
+            for number, label in enumerate(labels) if restitution in {None, label}
+        }  # fmt: skip
+        for label, row in rows.items():
+            if None in row:
+                raise InvalidValueError(
+                    f"there is no picture: no history of {lanes[row.index(None)]} with restitution {label} has a result"
+                )
+        return transitions_of_many_picture(rows, lanes, words="motion and body" if several else "motion")

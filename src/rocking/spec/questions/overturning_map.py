@@ -1,11 +1,20 @@
-"""Overturning maps."""
+"""Overturning maps: the outcomes of one body under one motion over two parameters."""
 
-from typing import Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.spec.fields import JobTable, Text, Values, key
+from rocking.spec.question import BodyQuestion, Progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.axis import Axis
+    from rocking.studies.study_plan import Study
 
 
 class AxisTable(Values):
@@ -31,3 +40,93 @@ class MapTable(JobTable):
                 f"{' and '.join(odd)} goes with refine, how often cells along boundaries are halved: give it"
             )
         return self
+
+
+class MapQuestion(BodyQuestion):
+    """The outcomes of one body under one motion over two parameters."""
+
+    kind: ClassVar[str] = "overturning-map"
+    command: ClassVar[str] = "map"
+    of_files: ClassVar[dict[str, set[str]]] = {"map": {"boundary", "tolerance"}}
+
+    map: MapTable
+
+    @property
+    def axes(self) -> "tuple[Axis, ...]":
+        """The axes x and y."""
+        from rocking.studies.axis import axis_of
+
+        axes = []
+        for name, table in (("x", self.map.x), ("y", self.map.y)):
+            with located(f"map.{name}"):
+                axes.append(axis_of((table.axis, table.numbers())))
+        return tuple(axes)
+
+    @property
+    def is_adaptive(self) -> bool:
+        """Whether the map is refined."""
+        return self.map.refine is not None
+
+    @property
+    def sizes(self) -> list[int]:
+        """Points along x and y, and restitutions."""
+        return [self.map.x.size, self.map.y.size, self.choices]
+
+    @property
+    def later_histories(self) -> int:
+        """Estimated number of histories along the boundaries."""
+        refine = self.map.refine or 0
+        return 4 * (self.map.x.size + self.map.y.size) * 2**refine * self.choices if refine else 0
+
+    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
+        """Return the map as `MapArrays`; with several restitutions their comparison."""
+        from rocking.studies._overturning_map import map_arrays
+        from rocking.studies.sensitivity import map_sensitivity
+
+        options = {**problem.stated, "threads": threads, "progress": progress}
+        subject: Any = (problem.only("bodies"), problem.only("motions"), *self.axes)
+        if len(problem.restitutions) == 1:
+            return map_arrays(*subject, problem.restitution, refine=self.map.refine, **options)
+        if self.map.refine is not None:
+            raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
+        return map_sensitivity(*subject, restitutions=problem.restitutions, **options)
+
+    def study(self, problem: "StudyProblem") -> "Study":
+        """Return the study over y and x, and the restitution before them where there are several."""
+        from rocking.studies.adaptive_grid import Plane
+        from rocking.studies.map_rounds import MapHistories, MapSearch
+        from rocking.studies.question import Question
+        from rocking.studies.sensitivity.restitutions import sampled
+        from rocking.studies.study_plan import Study, along, labels_along
+
+        if len(problem.motions) != 1:
+            raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
+        subject, (x, y) = (problem.bodies[0], problem.motions[0]), self.axes
+        with located("map"):
+            questions = [
+                Question(*subject, restitution, problem.settings, None, self.settings.engine)
+                for restitution in problem.restitutions.values()
+            ]
+            if len(questions) > 1 and "restitution" in {x.name, y.name}:
+                raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
+            planes = [Plane(question, x, y) for question in questions]
+            histories = MapHistories.of(planes)
+        several = {"restitution": len(planes)} if len(planes) > 1 else {}
+        # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
+        attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
+        coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
+        if several:
+            coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
+        dims = several | {y.name: y.values.size, x.name: x.values.size}
+        study = Study(sampled(histories), dims, coordinates, attributes, rescale=histories.rescaled)
+        if self.map.refine is None:
+            return study
+        search = MapSearch.of(study, planes, self.map.refine, self.map.boundary, self.map.tolerance)
+        return replace(study, search=search, exports=("histories", "refined", "boundary"))
+
+    def plot(self, finished: Any, restitution: str | None) -> "Figure":
+        """Draw the map, with the boundaries of a refined one."""
+        from rocking.plots.overturning_map import overturning_map_picture
+
+        lines = finished.answer.value[1] if self.is_adaptive else ()
+        return overturning_map_picture(finished.dataset(restitution), lines)

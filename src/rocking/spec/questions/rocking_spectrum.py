@@ -1,8 +1,20 @@
-"""Rocking spectra."""
+"""Rocking spectra: the peak rotations of blocks of many sizes under motions."""
 
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rocking.errors import InvalidValueError, located
 from rocking.spec.fields import JobTable, Numbers, key
+from rocking.spec.question import Progress, StudyQuestion
 
-OWN_BLOCKS = "a spectrum makes its own blocks; of a body, plane or in space, a map over semi_diagonal shows all sizes"
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.study_plan import Study
+
+_LONGEST = 1e100  # period whose square is still a number [s]
 
 
 class SpectrumTable(JobTable):
@@ -11,3 +23,85 @@ class SpectrumTable(JobTable):
     slenderness_angles: Numbers = key("slenderness angles alpha = atan(b/h) [rad]", ...)
     periods: Numbers = key("periods 2 pi / p [s]", ...)
     scale: float = key("factor on the acceleration of the ground [-]", 1.0)
+
+
+class SpectrumQuestion(StudyQuestion):
+    """The peak rotations of blocks of many sizes under motions."""
+
+    kind: ClassVar[str] = "rocking-spectrum"
+    command: ClassVar[str] = "spectrum"
+    plane: ClassVar[bool] = True
+    without_body: ClassVar[str] = (
+        "a spectrum makes its own blocks; of a body, plane or in space, a map over semi_diagonal shows all sizes"
+    )
+
+    spectrum: SpectrumTable
+
+    @property
+    def sizes(self) -> list[int]:
+        """Motions, slenderness angles, periods and restitutions."""
+        return [self.motion_count, self.spectrum.slenderness_angles.size, self.spectrum.periods.size, self.choices]
+
+    @property
+    def elements(self) -> dict[str, int]:
+        """Blocks with each restitution."""
+        blocks = self.spectrum.slenderness_angles.size * self.spectrum.periods.size
+        return {"blocks times restitutions": blocks * self.choices}
+
+    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
+        """Return the dataset of `rocking_spectrum`."""
+        from rocking.studies import rocking_spectrum
+
+        table, motions = self.spectrum, [problem.motions[k] for k in range(len(problem.motions))]
+        blocks = (table.slenderness_angles.numbers(), table.periods.numbers())
+        options = {**problem.stated, "threads": threads, "progress": progress}
+        return rocking_spectrum(motions, *blocks, problem.only("restitutions"), scale=table.scale, **options)
+
+    def study(self, problem: "StudyProblem") -> "Study":
+        """Return the study over motion, slenderness angle and period, and several restitutions."""
+        from rocking import checks
+        from rocking.bodies import Block
+        from rocking.dynamics.impact_laws import ConstantRestitution
+        from rocking.studies.motion_sets import MotionList
+        from rocking.studies.sensitivity.restitutions import sampled
+        from rocking.studies.study_plan import Study, along, labels_along, motions_along
+        from rocking.tables import Column
+
+        table = self.spectrum
+        angles = checks.positive_array("spectrum.slenderness_angles", table.slenderness_angles.numbers(), "rad")
+        times = checks.positive_array("spectrum.periods", table.periods.numbers(), "s")
+        for name, row in (("slenderness_angles", angles), ("periods", times)):
+            if np.any(np.diff(row) <= 0.0):
+                raise InvalidValueError(f"spectrum.{name} must increase from value to value")
+        scale = checks.within("spectrum.scale", table.scale, -1e6, 1e6)
+        if times.max() > _LONGEST:
+            raise InvalidValueError(f"spectrum.periods must be up to {_LONGEST:g} s, got {times.max():g}")
+        sizes = 0.75 * problem.settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
+        with located("spectrum"):
+            blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
+            product, attributes = problem.product(blocks, np.array([scale]))
+        dims = {"motion": len(problem.motions), "slenderness_angle": angles.size, "period": times.size}
+        # a law changes it from impact to impact: there is no one coefficient to tell
+        coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
+        coordinates = {
+            "motion": motions_along(problem.motions),
+            "slenderness_angle": along("slenderness_angle", angles, "rad", "slenderness angle"),
+            "period": along("period", times, "s", "2 pi / p"),
+            "semi_diagonal": along("period", sizes, "m", "semi-diagonal R of the block"),
+        }
+        if len(problem.restitutions) > 1:
+            dims["restitution"] = len(problem.restitutions)
+            coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
+        coefficient = coefficient.reshape([*dims.values()][1:])
+        coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])
+        attributes["scale"] = scale
+        if isinstance(problem.motions, MotionList):
+            hashes = (item["sha256"] for item in problem.motions.description()["motions"])
+            attributes["motion_sha256"] = "; ".join(hashes)
+        return Study(sampled(product), dims, coordinates, attributes)
+
+    def plot(self, finished: Any, restitution: str | None) -> "Figure":
+        """Draw the spectra."""
+        from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+
+        return rocking_spectrum_picture(finished.dataset(restitution))

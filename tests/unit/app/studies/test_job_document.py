@@ -19,7 +19,7 @@ from rocking.app.plain_text import shown
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.studies import job_document
-from rocking.app.studies.job_document import KINDS, JobDocument
+from rocking.app.studies.job_document import JobDocument, launched_kinds
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study_folder import is_id, new_id
 from rocking.campaigns.jobs import Job
@@ -28,7 +28,9 @@ from rocking.spec.motion_tables import MotionTable
 
 EXAMPLES = examples.path("overturning-map").parent
 LAUNCHED = [
-    path for path in sorted(EXAMPLES.glob("*.toml")) if tomllib.loads(path.read_text())["campaign"]["kind"] in KINDS
+    path
+    for path in sorted(EXAMPLES.glob("*.toml"))
+    if tomllib.loads(path.read_text())["campaign"]["kind"] in launched_kinds()
 ]
 SHA = "ab" * 32
 

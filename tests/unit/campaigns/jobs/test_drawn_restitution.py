@@ -13,7 +13,7 @@ from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
 from rocking.spec.documents.response import ResponseDocument
-from rocking.spec.reading import InputFiles, validated
+from rocking.spec.reading import InputFiles, checked, tables_of
 from rocking.spec.response import response_problem
 from rocking.studies import SampledRestitution, overturning_map
 
@@ -98,7 +98,7 @@ def test_labels():
 def test_one_response():
     """The document of one response takes it too, drawn per impact."""
     text = f"[response]\nfree = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
-    problem = response_problem(validated(ResponseDocument, text), InputFiles(Path()))
+    problem = response_problem(checked(ResponseDocument, tables_of(text)), InputFiles(Path()))
     (law,) = problem.restitutions.values()
     wanted = restitution_distribution(BLOCK).per_impact(3)
     assert (type(law), law.seed) == (type(wanted), 3)

@@ -14,10 +14,10 @@ from rocking.campaigns import Campaign, CampaignIncompleteError, CampaignStorage
 from rocking.campaigns.jobs import Job, JobFolder, export
 from rocking.campaigns.jobs.exporting import FORMATS
 from rocking.campaigns.jobs.findings import datasets
-from rocking.campaigns.jobs.study import TYPES
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.quantities import QUANTITIES
 from rocking.studies.islands import safe_islands
+from rocking.studies.study_plan import TYPES
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")

@@ -202,5 +202,5 @@ def test_refusals_of_crossing(crossed, text, tmp_path):
         export(folder, tmp_path / "r.nc", crossing="refuse")
     with pytest.raises(InvalidValueError, match=r"export\.crossing"):
         Job.of_text(text("stripes") + COMMON.replace("common-", "un"))
-    with pytest.raises(InvalidValueError, match=r"\[export\] goes with stripes, incremental, cloud"):
+    with pytest.raises(InvalidValueError, match=r"\[export\] does not go with kind = .overturning-map"):
         JobFolder.create(tmp_path / "m", Job.of_text(text("overturning-map") + COMMON))

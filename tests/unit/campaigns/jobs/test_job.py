@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.campaigns.jobs import Job, forecast
-from rocking.campaigns.jobs.study import TYPES, Study
 from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError, RockingError
 from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
+from rocking.studies.study_plan import TYPES, Study
 from rocking.tables.table import blocks
 
 
@@ -195,7 +195,7 @@ REFUSED = {
     "values and range": ("values = [1, 2], from = 1", "from = 1", r"map\.[xy]: values stand alone, without from"),
     "wrong table": ("[spectrum]\nslenderness_angles = 0.1\nperiods = 1\n[map]", "[map]",
         r'\[spectrum\] does not go with kind'),
-    "missing table": ("[histories]\nscales = 1\n[other]", "[map]", r"unknown key 'other'"),
+    "missing table": ("[other]", "[map]", r"unknown key 'other'"),
     "chunk of none": ("chunk = 0\n[body]", "[body]", r"campaign\.chunk must be a number >= 1, got 0"),
     "chunk too large": ("chunk = 99999999\n[body]", "[body]", r"campaign\.chunk must be a number <= .*got 99999999"),
     "negative seed": ("seed = -1\n[body]", "[body]", r"campaign\.seed must be a number >= 0, got -1"),

@@ -8,7 +8,7 @@ import rocking as rk
 from rocking import examples
 from rocking.campaigns.jobs import Job, analyses, export
 from rocking.errors import InvalidValueError
-from rocking.spec import document
+from rocking.spec.questions import questions
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
 from rocking.studies.sensitivity import SampledRestitution
@@ -242,4 +242,4 @@ def test_examples():
         kinds.add(job.document.campaign.kind)
         last = min(job.study.histories.count, 24)
         assert (job.study.histories.run(0, last, threads=1)["outcome"] < 3).all()
-    assert kinds == set(document.NEEDS)
+    assert kinds == set(questions())

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.campaigns.jobs.kinds.maps import MapHistories
 from rocking.errors import InvalidValueError
 from rocking.studies import axes
 from rocking.studies._overturning_map import map_arrays
 from rocking.studies.adaptive_grid import Plane
+from rocking.studies.map_rounds import MapHistories
 
 pytestmark = pytest.mark.verifies(room="campaigns")
 

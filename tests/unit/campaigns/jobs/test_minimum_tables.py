@@ -8,9 +8,9 @@ from campaign_jobs import finished, job, search
 
 from rocking import conventions
 from rocking.campaigns.jobs import answer
-from rocking.campaigns.jobs.kinds.minimum import tables_of
 from rocking.studies import SyntheticSet
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
+from rocking.studies.minimum_rounds import tables_of
 
 NAMES = {"motion": ["north", "south"], "restitution": ["0.9"]}
 EFFORT = Effort(points=7, levels=0, tolerance=0.01)

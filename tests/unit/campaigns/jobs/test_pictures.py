@@ -6,7 +6,8 @@ from campaign_jobs import finished as through
 
 from rocking.cli.campaign_export import write
 from rocking.errors import InvalidValueError
-from rocking.spec.document import NEEDS
+from rocking.spec.question import StudyQuestion
+from rocking.spec.questions import questions
 
 pytest.importorskip("matplotlib")
 NOTHING = {"restitution": None, "crossing": None, "inputs": None, "as_json": False}
@@ -31,9 +32,9 @@ def test_picture(finished, tmp_path, capsys, kind):
 
 def test_kinds_with_and_without():
     """Of the kinds there are, one has no picture; the picture of an inventory stands beside its report."""
-    from rocking.plots.campaign import WITHOUT
-
-    assert {*OF_CALL, *WITHOUT, "minimum-acceleration", "inventory"} == set(NEEDS)
+    without = {kind for kind, question in questions().items() if question.plot is StudyQuestion.plot}
+    assert without == {"histories"}
+    assert {*OF_CALL, *without, "minimum-acceleration", "inventory"} == set(questions())
 
 
 @pytest.mark.parametrize(

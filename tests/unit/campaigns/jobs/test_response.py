@@ -10,7 +10,7 @@ import rocking as rk
 from rocking import examples
 from rocking.errors import InvalidValueError, RockingError, located
 from rocking.spec.documents.response import ResponseDocument
-from rocking.spec.reading import InputFiles, read_text, tables_in, validated
+from rocking.spec.reading import InputFiles, checked, read_text, tables_in, tables_of
 from rocking.spec.response import ResponseProblem, response_problem
 
 EXAMPLES = [
@@ -23,7 +23,7 @@ TEXT = f'[response]\nassumed_friction = 0.4\n{BODY}[motion]\npulse = "sine:ampli
 
 
 def problem_of(text, folder, files=None):
-    return response_problem(validated(ResponseDocument, text), files or InputFiles(folder))
+    return response_problem(checked(ResponseDocument, tables_of(text)), files or InputFiles(folder))
 
 
 def problem_in(path):

@@ -1,13 +1,12 @@
-"""A study as a campaign sees it: histories, what they are over, what is read off their results, and rounds of them."""
+"""A study as a campaign computes it: histories, their dimensions, the use of their results, and rounds."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
 
-from rocking.campaigns.ledger import HistoryRange
 from rocking.conventions import IntArray
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import hash_of
@@ -20,7 +19,7 @@ from rocking.studies.histories import Histories, HistoryTable
 from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.question import Question, modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
-from rocking.tables import PIECE, Column, Table, text_array
+from rocking.tables import Column, Table, text_array
 
 TYPES: dict[str, Any] = {
     name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
@@ -91,19 +90,6 @@ class Study:
         ratio = peak_ratio(own["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         whole = {**own, **flags(own), "mode": modes_of(own), "peak_ratio": ratio}
         return {name: whole[name] for name in HISTORY}
-
-
-def pieces_of(
-    study: Study, ranges: Iterable[HistoryRange], progress: Callable[[int], None] | None = None
-) -> Iterator[tuple[int, int, Arrays]]:
-    """Return first history, last one (not included) and the keys of `HISTORY`, a piece after another."""
-    for each in ranges:
-        for first in range(each.first, each.last, PIECE):
-            last = min(first + PIECE, each.last)
-            part = {name: values[first - each.first : last - each.first] for name, values in each.results.items()}
-            yield first, last, study.derived(first, last, part)
-            if progress is not None:
-                progress(last - first)
 
 
 def along(dim: str, values: Any, unit: str = "1", meaning: str = "") -> Column:

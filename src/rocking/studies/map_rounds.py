@@ -1,14 +1,13 @@
-"""Overturning maps as campaigns: their histories piece by piece, and their boundaries in rounds."""
+"""Histories of overturning maps piece by piece, and their boundaries in rounds."""
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from rocking import quantities
-from rocking.campaigns.jobs.study import AdaptiveResult, Compute, DelegatedQuestion, Study, along, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.parameters import sides_of
@@ -16,55 +15,18 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError, located
 from rocking.quantities import QUANTITIES
-from rocking.spec.questions.overturning_map import MapTable
-from rocking.spec.study import StudyProblem, axes_of
 from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refined
 from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.histories import Histories
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import Question, modes_of, peak_ratio, quickened
-from rocking.studies.sensitivity.restitutions import sampled
+from rocking.studies.question import modes_of, peak_ratio, quickened
+from rocking.studies.study_plan import AdaptiveResult, Compute, DelegatedQuestion, Study
 from rocking.tables import PIECE, Column, Table, prefixed, text_array
 
 MOST_POINTS = 10_000_000  # points of a map that is refined: they take less than 2 GiB of memory
 _PROBES = 1024
 # later histories over edges and halvings of a line across a map
 _EDGES = (2.0, 12.0)
-
-
-def map_study(problem: StudyProblem) -> Study:
-    """Return the study of an overturning map: over y and x, and the restitution before them where there are several."""
-    table = problem.document.map
-    assert table is not None  # the document refuses to be without
-    if len(problem.motions) != 1:
-        raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
-    axes = x, y = axes_of(table)
-    engine = problem.document.settings.engine
-    with located("map"):
-        questions = [
-            Question(problem.bodies[0], problem.motions[0], restitution, problem.settings, None, engine)
-            for restitution in problem.restitutions.values()
-        ]
-        if len(questions) > 1 and any(axis.name == "restitution" for axis in axes):
-            raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
-        planes = [Plane(question, *axes) for question in questions]
-        histories = MapHistories.of(planes)
-    several = {"restitution": len(planes)} if len(planes) > 1 else {}
-    # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
-    attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
-    coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
-    if several:
-        coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
-    study = Study(
-        sampled(histories),
-        several | {y.name: y.values.size, x.name: x.values.size},
-        coordinates,
-        attributes,
-        rescale=histories.rescaled,
-    )
-    if table.refine is None:
-        return study
-    return replace(study, search=MapSearch.of(study, planes, table), exports=("histories", "refined", "boundary"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,9 +120,8 @@ class MapSearch:
     kept: float = field(default=0.25, init=False)  # halvings of edges are forgotten
 
     @classmethod
-    def of(cls, study: Study, planes: list[Plane], table: MapTable) -> "MapSearch":
-        """Return the search that a job asks for, checked."""
-        assert table.refine is not None  # asked before
+    def of(cls, study: Study, planes: list[Plane], levels: int, by: str, tolerance: float) -> "MapSearch":
+        """Return the search of a map, checked."""
         if len(planes) > 1:
             raise InvalidValueError(
                 "map.refine is for one restitution: each has boundaries of its own; make a job of each"
@@ -172,9 +133,9 @@ class MapSearch:
                 "take fewer points, and one level more: it halves the spacing"
             )
         with located("map.refine"):
-            tolerance = checked(planes[0], table.boundary, table.tolerance)
-            AdaptiveGrid(planes[0], table.refine)
-        return cls(study, planes[0], table.refine, table.boundary, tolerance)
+            tolerance = checked(planes[0], by, tolerance)
+            AdaptiveGrid(planes[0], levels)
+        return cls(study, planes[0], levels, by, tolerance)
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
         """Return a pair of `RefinedMap` and a list of `Polyline`, and tables of them."""

@@ -1,4 +1,4 @@
-"""Minimum overturning accelerations as campaigns: every motion with every restitution and body, searched together."""
+"""Minimum overturning accelerations in rounds: every motion with every restitution and body, searched together."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -6,21 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.study import AdaptiveResult, Compute, NumberedTable, Study, along, first_round, labels_along
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.mechanics import mechanics_of
-from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
-from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Pulse
-from rocking.spec.construction import MOST_IN_MEMORY
-from rocking.spec.questions.minimum_acceleration import MinimumTable
-from rocking.spec.study import StudyProblem
 from rocking.studies.minimum_acceleration import Cases, Effort, Transitions, searched
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
+from rocking.studies.study_plan import AdaptiveResult, Compute, NumberedTable
 from rocking.tables import Column, Table, prefixed, text_array
 
 # histories of later rounds over those of the first, by what the motions are
@@ -48,44 +42,6 @@ _CROSSING = {
     "scale": ("1", "the same as factor on the motion"),
     "width": ("m/s2", "width of the bracket"),
 }
-
-
-def minimum_study(problem: StudyProblem) -> Study:
-    """Return the study of minimum accelerations: its first samples, over motion, restitution, body and point."""
-    table = problem.document.minimum or MinimumTable()
-    if len(problem.motions) > MOST_IN_MEMORY:
-        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
-    motions, settings = MotionList([problem.motions[k] for k in range(len(problem.motions))]), problem.settings
-    with located("body"):
-        make, laws = mechanics_of(settings).parameters, problem.restitutions.values()
-        parameters = [[make(body, law, settings) for body in problem.bodies] for law in laws]
-    sides = [sides_of(row) for row in parameters]
-    with located("minimum"):
-        effort = Effort(table.points, table.levels, table.tolerance)
-        cases = Cases.joined([
-            Cases.of(motions[k], each, settings, table.lowest, table.highest)
-            for k in range(len(motions)) for each in sides
-        ])  # fmt: skip
-    shape = (len(motions), len(problem.restitutions), len(problem.bodies))
-    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
-    options = {"settings": settings, "engine": problem.document.settings.engine}
-    search = MinimumSearch(cases, effort, motions, shape, parameters[0][0].law, options, names)
-    dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
-    scale = cases.grid(effort.points).reshape(*dims.values())
-    coordinates = {
-        "motion": labels_along("motion", names["motion"], "name of the motion"),
-        "restitution": labels_along("restitution", names["restitution"], "restitution"),
-        "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
-        "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
-    }
-    attributes = {
-        "points": effort.points,
-        "levels": effort.levels,
-        "tolerance": effort.tolerance,
-        "bodies": "; ".join(repr(body) for body in problem.bodies)[:4000],
-    }
-    exports = ("crossings", "minima", "histories")
-    return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
 
 
 @dataclass(frozen=True)

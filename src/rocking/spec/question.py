@@ -1,0 +1,177 @@
+"""A study of many histories as a class: what the classes in `rocking.spec.questions` have in common."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic_core import PydanticKnownError
+
+from rocking.errors import InvalidValueError
+from rocking.spec.fields import JobTable, Seed, Text, in_list, key
+from rocking.spec.motion_tables import MotionTable
+from rocking.spec.restitution_tables import RestitutionTable
+from rocking.spec.settings_tables import StudySettingsTable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking.spec.study import StudyProblem
+    from rocking.studies.axis import Axis
+    from rocking.studies.study_plan import Study
+
+QUESTIONS: "dict[str, type[StudyQuestion]]" = {}
+"""The classes of studies by their kind; `rocking.spec.questions` fills it."""
+
+Progress = Callable[[int], None] | None
+
+
+def _kind_of_a_study(kind: str) -> str:
+    if kind not in QUESTIONS:
+        raise PydanticKnownError("literal_error", {"expected": ", ".join(map(repr, sorted(QUESTIONS)))})
+    return kind
+
+
+class CampaignTable(JobTable):
+    """What the campaign is called and what it computes."""
+
+    name: Text = key("what it is called", ...)
+    kind: Annotated[str, AfterValidator(_kind_of_a_study)] = key("which study", ...)
+    note: str | None = key("anything")
+    chunk: int | None = key("histories that are kept together", None, ge=1, le=1 << 22)
+    seed: Seed = key("seed of what is drawn", 0)
+
+
+class StudyQuestion(JobTable):
+    """A study of many histories: its tables, what they describe, and its answer; a subclass per kind of campaign.
+
+    A subclass has its `kind`, its own table first among its fields, `answer`, `study`, and `plot` if it has a picture.
+    """
+
+    kind: ClassVar[str] = ""  # as [campaign] has it
+    command: ClassVar[str] = "campaign"  # command whose options make the tables
+    without_body: ClassVar[str] = ""  # reason why there is no [body]; empty where there is one
+    plane: ClassVar[bool] = False  # the bodies move along x and z alone
+    one_restitution: ClassVar[bool] = False  # a picture shows one restitution
+    needs_motions: ClassVar[bool] = False  # every motion is made before the first history
+    names_files: ClassVar[bool] = False  # its own table names files, which no browser sends
+    of_files: ClassVar[dict[str, set[str]]] = {}  # keys by table that only files of a campaign show
+
+    campaign: CampaignTable
+    motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
+    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model="ked"))
+    settings: StudySettingsTable = Field(default_factory=StudySettingsTable)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        if "kind" in vars(cls):
+            QUESTIONS[cls.kind] = cls
+
+    @classmethod
+    def own_table(cls) -> str:
+        """Return the name of the table that no other study has."""
+        return next(name for name in cls.model_fields if name not in BodyQuestion.model_fields)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_nothing(cls, stated: Any) -> Any:
+        """Leave out tables of other studies that are null, as browsers send them."""
+        if not isinstance(stated, dict):
+            return stated
+        return {name: table for name, table in stated.items() if table is not None or name in cls.model_fields}
+
+    @classmethod
+    def _unknown(cls, key: str) -> InvalidValueError:
+        if key == "body":
+            return InvalidValueError(f"[body] makes no sense: {cls.without_body}")
+        if any(key in question.model_fields for question in QUESTIONS.values()):
+            return InvalidValueError(f'[{key}] does not go with kind = "{cls.kind}", which takes [{cls.own_table()}]')
+        return super()._unknown(key)
+
+    @property
+    def bodies(self) -> list[dict[str, Any]]:
+        """The tables of the bodies."""
+        return []
+
+    @property
+    def axes(self) -> "tuple[Axis, ...]":
+        """The axes x and y of a map."""
+        return ()
+
+    @property
+    def is_adaptive(self) -> bool:
+        """Whether later histories depend on the results of earlier ones."""
+        return False
+
+    @property
+    def choices(self) -> int:
+        """Number of restitutions."""
+        return max(1, len(self.restitution.models or []) + len(self.restitution.values or []))
+
+    @property
+    def motion_count(self) -> int:
+        """Number of motions."""
+        return sum(table.size for table in self.motions)
+
+    @property
+    def sizes(self) -> list[int]:
+        """Numbers whose product is the number of histories; of an adaptive study, of those of the first round."""
+        return [self.motion_count, max(1, len(self.bodies)), self.choices]
+
+    @property
+    def later_histories(self) -> int:
+        """Estimated number of histories of later rounds."""
+        return 0
+
+    @property
+    def elements(self) -> dict[str, int]:
+        """Numbers, beside the histories, that a page limits."""
+        return {}
+
+    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
+        """Compute the study in memory.
+
+        Parameters
+        ----------
+        problem : StudyProblem
+            Bodies, motions, restitutions and settings that the tables describe.
+        progress : callable, optional
+            Called with a number of histories since the last call.
+        threads : int, optional
+            Threads; the result does not depend on them.
+
+        Returns
+        -------
+        object
+            What the function of `rocking.studies` returns; with several restitutions a comparison.
+        """
+        raise InvalidValueError(f'kind = "{self.kind}" is computed by rocking campaign run')
+
+    def study(self, problem: "StudyProblem") -> "Study":
+        """Return the histories of the study, their dimensions, and the evaluation of their results."""
+        raise NotImplementedError
+
+    def plot(self, finished: Any, restitution: str | None) -> "Figure":
+        """Draw a finished campaign with one restitution; without a name, with the first or with all."""
+        raise InvalidValueError(f'a campaign of kind "{self.kind}" has no picture; take its table (.csv, .xlsx, .nc)')
+
+
+class BodyQuestion(StudyQuestion):
+    """A study of one body, or of several."""
+
+    several_bodies: ClassVar[bool] = False
+
+    body: Annotated[list[dict[str, Any]], Field(min_length=1), BeforeValidator(in_list)] | None = None
+
+    @model_validator(mode="after")
+    def _bodies_it_takes(self) -> "BodyQuestion":
+        if self.body is None:
+            raise InvalidValueError("[body] is missing")
+        if len(self.body) > 1 and not self.several_bodies:
+            raise InvalidValueError(f'[[body]] can be given once only with kind = "{self.kind}", got {len(self.body)}')
+        return self
+
+    @property
+    def bodies(self) -> list[dict[str, Any]]:
+        """The tables of the bodies."""
+        return self.body or []
