@@ -5,7 +5,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from rocking.spec.question import QUESTIONS, StudyQuestion
-from rocking.spec.reading import checked, tables_of
+from rocking.spec.reading import migrated, tables_of, validated
 
 
 def questions() -> dict[str, type[StudyQuestion]]:
@@ -27,9 +27,10 @@ def question_of(text: str) -> StudyQuestion:
 
 def question_in(tables: dict[str, Any]) -> StudyQuestion:
     """Return the study that tables describe, of the class of its kind."""
-    campaign, known = tables.get("campaign"), questions()
+    tables, known = migrated(tables), questions()
+    campaign = tables.get("campaign")
     kind = campaign.get("kind") if isinstance(campaign, dict) else None
     if isinstance(kind, str) and kind in known:
-        return checked(known[kind], tables)
+        return validated(known[kind], tables)
     own = {name for question in known.values() for name in question.model_fields} - {*StudyQuestion.model_fields}
-    return checked(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # which refuses
+    return validated(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # which refuses

@@ -84,12 +84,13 @@ class MapQuestion(BodyQuestion):
         from rocking.studies.sensitivity import map_sensitivity
 
         options = {**problem.stated, "threads": threads, "progress": progress}
-        subject: Any = (problem.only("bodies"), problem.only("motions"), *self.axes)
+        x, y = self.axes
+        subject = (problem.only("bodies"), problem.only("motions"), x, y)
         if len(problem.restitutions) == 1:
             return map_arrays(*subject, problem.restitution, refine=self.map.refine, **options)
         if self.map.refine is not None:
             raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
-        return map_sensitivity(*subject, restitutions=problem.restitutions, **options)
+        return map_sensitivity(*subject, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the study over y and x, and the restitution before them where there are several."""

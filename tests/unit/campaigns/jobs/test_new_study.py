@@ -1,0 +1,125 @@
+"""A new study is one file in `rocking.spec.questions`: for jobs, campaigns, exports, the application and the manual."""
+
+import sys
+
+import pytest
+
+from rocking import cli
+from rocking.app.studies.job_document import JobDocument, launched_kinds
+from rocking.campaigns.jobs import Job, JobFolder, status_of
+from rocking.errors import InvalidValueError
+from rocking.spec import questions
+from rocking.spec.question import QUESTIONS
+from rocking.spec.reference import keys_of, reference
+
+STUDY = '''
+"""Polarity: every motion as recorded and reversed."""
+
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.spec.fields import JobTable, Positive, key
+from rocking.spec.question import BodyQuestion
+from rocking.studies.sensitivity.restitutions import sampled
+from rocking.studies.study_plan import Study, along, motions_along
+
+
+class PolarityTable(JobTable):
+    """The scale of the motions."""
+
+    factor: Positive = key("scale factor of both polarities [-]", 1.0)
+
+
+class PolarityQuestion(BodyQuestion):
+    """Every motion as recorded and reversed."""
+
+    kind: ClassVar[str] = "polarity"
+
+    polarity: PolarityTable
+
+    @property
+    def sizes(self):
+        return [*super().sizes, 2]
+
+    def study(self, problem):
+        scales = self.polarity.factor * np.array([1.0, -1.0])
+        product, attributes = problem.product(problem.bodies, scales)
+        dims = {"motion": len(problem.motions), "scale": 2}
+        coordinates = {"motion": motions_along(problem.motions), "scale": along("scale", scales)}
+        return Study(sampled(product), dims, coordinates, attributes)
+
+    def answer(self, problem, progress=None, threads=None):
+        histories = self.study(problem).histories
+        return int((histories.run(0, histories.count, threads=threads)["outcome"] == 2).sum())
+
+    def plot(self, finished, restitution):
+        from matplotlib.figure import Figure
+
+        figure = Figure()
+        figure.subplots().plot(finished.dataset(restitution)["peak_ratio"].values.ravel())
+        return figure
+'''
+JOB = """
+[campaign]
+name = "both ways"
+kind = "polarity"
+[body]
+units = "m"
+width = 0.5
+height = 2.0
+[motions]
+pulse = ["sine:amplitude=4,period=0.5", "ricker:amplitude=6,period=0.9"]
+[polarity]
+factor = 2.0
+"""
+TABLES = {
+    "campaign": {"name": "both ways", "kind": "polarity"}, "body": {"units": "m", "width": 0.5, "height": 2.0},
+    "motions": {"pulse": ["sine:amplitude=4,period=0.5"]}, "polarity": {"factor": 2.0},
+}  # fmt: skip
+
+
+@pytest.fixture
+def added(tmp_path, monkeypatch):
+    """Add the file of a study to the folder of studies."""
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "polarity.py").write_text(STUDY.strip() + "\n", encoding="utf-8")
+    monkeypatch.setattr(questions, "__path__", [*questions.__path__, str(tmp_path / "studies")])
+    yield tmp_path
+    QUESTIONS.pop("polarity", None)
+    sys.modules.pop(f"{questions.__name__}.polarity", None)
+
+
+def test_one_file_is_a_study_everywhere(added, capsys):
+    (added / "job.toml").write_text(JOB, encoding="utf-8")
+    job = Job.read(added / "job.toml")
+    assert job.study.dims == {"motion": 2, "scale": 2}
+    assert job.problem.answer() > 0
+    for words in ("check job.toml", "run job.toml --out c", "status c", "export c --out a.nc --out a.csv --out a.png"):
+        arguments = [str(added / word) if "." in word or word == "c" else word for word in words.split()]
+        with pytest.raises(SystemExit, match="0"):
+            cli.main(["campaign", *arguments, "--json"])
+    assert capsys.readouterr().out.count('"kind": "polarity"') == 3
+    assert (added / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert status_of(added / "c").complete
+    assert JobFolder.open(added / "c").campaign.results()["outcome"].size == 4
+    assert "polarity" in launched_kinds()
+    assert JobDocument.of(TABLES).histories == 2
+    assert keys_of("polarity") == ["factor"]
+    assert "### [polarity]" in reference()
+    assert "| `factor` | number | `1.0` | scale factor of both polarities [-] |" in reference()
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"polarity": {"factor": -1.0}}, r"polarity\.factor must be a number > 0, got -1"),
+        ({"polarity": {"factors": 1.0}}, "polarity: unknown key 'factors'; did you mean factor"),
+        ({"polarity": None}, "polarity"),
+        ({"map": {}}, r'\[map\] does not go with kind = "polarity", which takes \[polarity\]'),
+        ({"body": None}, r"\[body\] is missing"),
+    ],
+)
+def test_its_refusals_are_those_of_its_class(added, tables, words):
+    with pytest.raises(InvalidValueError, match=words):
+        JobDocument.of(TABLES | tables)
