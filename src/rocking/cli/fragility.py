@@ -107,7 +107,7 @@ def fragility(
 ) -> None:  # fmt: skip
     """Run `rocking fragility`."""
     from rocking import checks
-    from rocking.cli.arguments import Arguments, document_file
+    from rocking.cli.arguments import Arguments
     from rocking.cli.fragility_answer import FragilityAnswer
     from rocking.cli.spelling import typed
     from rocking.cli.study import TABLES, problem_in
@@ -116,8 +116,7 @@ def fragility(
     exports = Exports.of(out, EXPORTS)
     checks.one_of("--crossing", crossing, get_args(Crossing))
     length, written = None, ""
-    if file := document_file(context, body, ("campaign", "fragility"), ["threads", "name", "crossing"]):
-        problem = problem_in(file, "fragility", sets)
+    if problem := problem_in(context, body, "fragility", "name", "crossing"):
         if not typed(context, "crossing"):
             crossing = problem.document.export.crossing
     else:

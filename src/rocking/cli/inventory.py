@@ -69,13 +69,11 @@ def inventory(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking inventory`."""
-    from rocking.cli.arguments import document_file
     from rocking.cli.study import problem_in
 
     targets = [Path(text) for text in out or ()]
     _check(targets)
-    file = document_file(context, str(objects), ("campaign", "inventory"))
-    problem = problem_in(file, "inventory", sets) if file is not None else _problem(context)
+    problem = problem_in(context, str(objects), "inventory") or _problem(context)
     with bar("motions", quiet=as_json) as progress:
         assessment = problem.answer(progress)
     if not assessment.verdicts:

@@ -51,15 +51,13 @@ def map(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking map`."""
-    from rocking.cli.arguments import Arguments, document_file
+    from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, DATASET)
     written: dict[str, str] = {}
     length = None
-    if file := document_file(context, body, ("campaign", "map"), ["threads"]):
-        problem = problem_in(file, "map", sets)
-    else:
+    if (problem := problem_in(context, body, "map")) is None:
         arguments = Arguments(context, *TABLES, "map")
         length = arguments.length
         table, written = _table(arguments, x, y, refine)

@@ -64,15 +64,13 @@ def minimum(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking minimum`."""
-    from rocking.cli.arguments import Arguments, document_file
+    from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(out, EXPORTS)
     length: str | None = None
     acceleration: str | None = None
-    if file := document_file(context, body, ("campaign", "minimum"), ["threads"]):
-        problem = problem_in(file, "minimum", sets)
-    else:
+    if (problem := problem_in(context, body, "minimum")) is None:
         arguments = Arguments(context, *TABLES, "minimum")
         length, acceleration = arguments.length, arguments.acceleration
         table = arguments.table("minimum", {**_range(lowest, highest), "points": points, "levels": levels})

@@ -58,7 +58,7 @@ def predict(
     from rocking.spec.prediction import PredictionProblem
 
     exports = Exports.of(out, EXPORTS)
-    if file := document_file(context, body, ("predict",), ["threads"]):
+    if file := document_file(context, body, ("predict",)):
         document, inputs = in_file(file, sets, PredictionDocument)
     else:
         told = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
@@ -176,7 +176,7 @@ def assess(
     from rocking.spec.prediction import PredictionProblem
 
     exports = Exports.of(out, REPORTED)
-    if file := document_file(context, body, ("assess",), ["threads"]):
+    if file := document_file(context, body, ("assess",)):
         document, inputs = in_file(file, sets, AssessmentDocument, (*TABLES, "assess"))
     else:
         own = {"assess": {"restitutions": None if restitution is None else [*map(number_or_name, restitution)]}}

@@ -42,15 +42,12 @@ def spectrum(
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking spectrum`."""
-    from rocking.cli.arguments import NO_MOTION, Arguments, document_file, hinted, is_body, is_file
+    from rocking.cli.arguments import NO_MOTION, Arguments, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 
     exports = Exports.of(out, DATASET)
     named = [*(motions or ()), *(motion or ())]
-    marks = ("campaign", "spectrum")
-    if file := document_file(context, named[0] if len(named) == 1 else None, marks, ["threads"]):
-        problem = problem_in(file, "spectrum", sets)
-    else:
+    if (problem := problem_in(context, named[0] if len(named) == 1 else None, "spectrum")) is None:
         arguments = Arguments(context, "motion", "settings", "spectrum")
         if not named:
             raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
-from rocking.cli.arguments import NO_MOTION, Arguments, parsed_sets, with_sets
+from rocking.cli.arguments import NO_MOTION, Arguments, document_file, parsed_sets, with_sets
 from rocking.cli.numbers import in_unit, side_line
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
@@ -19,19 +19,26 @@ from rocking.spec.questions import question_in, questions
 from rocking.spec.reading import CommandFiles, InputFiles, tables_in
 from rocking.spec.study import StudyProblem
 
+if TYPE_CHECKING:
+    import typer
+
 TABLES = ("body", "motion", "restitution", "settings")
 """Tables of which `--set` changes a key, beside the one that a study has of its own."""
 _OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
 
 
-def problem_in(file: Path, command: str, sets: Sequence[str] | None = None) -> StudyProblem:
-    """Return what a file describes, with the keys that were set beside it."""
+def problem_in(context: "typer.Context", word: str | None, command: str, *beside: str) -> StudyProblem | None:
+    """Return what a file with all tables describes, with the keys of `--set`; None where the word is no such file."""
+    if (file := document_file(context, word, ("campaign", command), beside)) is None:
+        return None
     kinds = [kind for kind, question in questions().items() if question.command == command]
     with located(str(file), "file"):
         tables = dict(tables_in(file) or {})
         if len(kinds) == 1:
             tables.setdefault("campaign", {"name": command, "kind": kinds[0]})
-        document = question_in(with_sets(tables, parsed_sets(sets, (*TABLES, command)), lists=True))
+        document = question_in(
+            with_sets(tables, parsed_sets(context.params.get("sets"), (*TABLES, command)), lists=True)
+        )
         if document.kind not in kinds:
             raise InvalidValueError(f'it is of kind "{document.kind}": rocking campaign run computes it')
         return _in_memory(document, InputFiles(file.parent))

@@ -129,22 +129,7 @@ class StudyQuestion(JobTable):
         return {}
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Compute the study in memory.
-
-        Parameters
-        ----------
-        problem : StudyProblem
-            Bodies, motions, restitutions and settings that the tables describe.
-        progress : callable, optional
-            Called with a number of histories since the last call.
-        threads : int, optional
-            Threads; the result does not depend on them.
-
-        Returns
-        -------
-        object
-            What the function of `rocking.studies` returns; with several restitutions a comparison.
-        """
+        """Compute the study in memory; return what the function of `rocking.studies` does, or a comparison."""
         raise InvalidValueError(f'kind = "{self.kind}" is computed by rocking campaign run')
 
     def study(self, problem: "StudyProblem") -> "Study":

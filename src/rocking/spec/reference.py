@@ -24,7 +24,7 @@ from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 from rocking.spec.settings_tables import StudySettingsTable
 from rocking.studies.inventory import Thresholds
 
-_BEFORE: dict[str, tuple[type[JobTable], str]] = {
+_TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (ResponseTable, "`rocking simulate`"),
     "motion": (ComponentsTable, "`rocking simulate`, `rocking motion`"),
     "[motions]": (MotionTable, "every study"),
@@ -32,8 +32,6 @@ _BEFORE: dict[str, tuple[type[JobTable], str]] = {
     "restitution": (RestitutionTable, "every question"),
     "restitution.distribution": (RandomTable, "every question but [inventory]"),
     "settings": (StudySettingsTable, "every question"),
-}
-_AFTER: dict[str, tuple[type[JobTable], str]] = {
     "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
     "assess": (AssessTable, "`rocking assess`"),
     "measurement": (MeasurementTable, "`rocking identify`"),
@@ -77,7 +75,7 @@ def _tables() -> dict[str, tuple[type[JobTable], str]]:
     for kind, question in questions().items():
         where = f"campaigns of kind {kind}" if question.command == "campaign" else f"`rocking {question.command}`"
         of_studies = {**_within(question, where, {*BodyQuestion.model_fields}), **of_studies}
-    return _BEFORE | dict(sorted(of_studies.items())) | _AFTER
+    return _TABLES | dict(sorted(of_studies.items()))
 
 
 def _within(

@@ -17,7 +17,7 @@ from rocking.spec.bodies import body_moved
 from rocking.spec.construction import motions_of, restitutions_of
 from rocking.spec.reading import InputFiles
 from rocking.studies.axis import friction_beside
-from rocking.studies.motion_sets import MotionSet
+from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
     from rocking.spec.question import StudyQuestion
@@ -78,6 +78,11 @@ class StudyProblem:
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
         """Compute the study in memory, as its question says."""
         return self.document.answer(self, progress, threads)
+
+    @property
+    def kept_motions(self) -> MotionList:
+        """The motions, all in memory."""
+        return MotionList([self.motions[k] for k in range(len(self.motions))])
 
     def only(self, things: str) -> Any:
         """Return the one body, motion or restitution of a study that takes no more."""

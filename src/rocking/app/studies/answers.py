@@ -238,9 +238,21 @@ MinimumResult: Any = shape(
     bodies=Coordinate,
     tables=dict[str, list[ColumnAnswer]],
 )
-StudyResult = Annotated[
-    MapResult | SpectrumResult | FragilityResult | HistoriesResult | MinimumResult, Field(discriminator="kind")
-]
+OutcomesResult: Any = shape(
+    "OutcomesResult",
+    "The outcomes of a study of another kind.",
+    Result,
+    kind=str,
+    dimensions=list[Coordinate],
+    shares=list[list[Share]],
+    tables=(dict[str, list[ColumnAnswer]], "of an adaptive study; else empty"),
+)
+StudyResult = (
+    Annotated[
+        MapResult | SpectrumResult | FragilityResult | HistoriesResult | MinimumResult, Field(discriminator="kind")
+    ]
+    | OutcomesResult
+)
 """What a study found, by its kind."""
 
 StudyFacts: Any = shape(

@@ -65,7 +65,7 @@ class HistoryPlace:
         """Return the history at a point of a picture."""
         dims, choices = study.job.study.dims, len(study.job.problem.restitutions)
         across = _ACROSS.get(study.job.document.kind, study.axes[::-1])
-        index = {"motion": motion} | dict(zip(across, (x, y), strict=True))
+        index = {"motion": motion} | dict(zip(across, (x, y), strict=False))
         sizes = {name: dims[name] for name in study.axes} | {"the restitution": choices}
         at = {name: index.get(name, 0) for name in study.axes} | {"the restitution": restitution}
         for name, size in sizes.items():

@@ -151,6 +151,16 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     }
 
 
+def outcomes_result(study: OpenStudy) -> dict[str, Any]:
+    """Return the outcomes of a study that has no picture on the page, `OutcomesResult`."""
+    known = study.job.study.coordinates
+    return {
+        "dimensions": [coordinate(study, name) for name in study.axes if name in known],
+        "shares": [mode_shares(each) for each in by_restitution(study, "mode")],
+        "tables": {} if study.job.study.search is None else tables_of(study),
+    }
+
+
 def map_result(study: OpenStudy) -> dict[str, Any]:
     """Return an overturning map."""
     axes = coordinates(study, y=study.axes[0], x=study.axes[1])
@@ -311,6 +321,6 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
         contact = contact_words(lost_contact(study.raw))
     head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": contact}
     result: dict[str, Any] = plain(
-        {**head, "restitutions": list(study.job.problem.restitutions), **_BY_KIND[kind](study)}
+        {**head, "restitutions": list(study.job.problem.restitutions), **_BY_KIND.get(kind, outcomes_result)(study)}
     )
     return result

@@ -121,12 +121,17 @@ class AnalysisQuestion(BodyQuestion):
         )  # fmt: skip
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the analysis."""
-        from rocking.studies.motion_sets import MotionList
+        """Return the analysis; stripes with several restitutions are compared."""
+        from rocking.studies.sensitivity import fragility_sensitivity
 
-        motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])  # made once, for every level
-        problem.only("bodies")
-        return self.analysis(problem, problem.only("restitutions"), motions).computed(threads, progress)
+        motions, body = problem.kept_motions, problem.only("bodies")  # made once, for every level
+        if len(problem.restitutions) == 1 or self.one_restitution:
+            return self.analysis(problem, problem.only("restitutions"), motions).computed(threads, progress)
+        table, options = self.fragility, {**problem.stated, "threads": threads, "progress": progress}
+        states, levels = tuple(table.states), self.levels
+        return fragility_sensitivity(
+            body, motions, levels, problem.restitutions, measure=table.measure, states=states, **options
+        )
 
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the study over motion, level save in clouds, and several restitutions."""
@@ -178,18 +183,6 @@ class StripesQuestion(AnalysisQuestion):
 
     kind: ClassVar[str] = "stripes"
 
-    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the analysis; with several restitutions their comparison."""
-        from rocking.studies.motion_sets import MotionList
-        from rocking.studies.sensitivity import fragility_sensitivity
-
-        if len(problem.restitutions) == 1:
-            return super().answer(problem, progress, threads)
-        motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])  # made once, for every level
-        options = {**problem.stated, "threads": threads, "progress": progress, "measure": self.fragility.measure}
-        subject = (problem.only("bodies"), motions, self.levels, problem.restitutions)
-        return fragility_sensitivity(*subject, states=tuple(self.fragility.states), **options)
-
 
 class IncrementalQuestion(AnalysisQuestion):
     """The fragility of one body: every level at which a motion begins or ceases to overturn it."""
@@ -205,12 +198,6 @@ class IncrementalQuestion(AnalysisQuestion):
         if "tolerance" in self.settings.stated():
             raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
         return super().analysis(problem, restitution, motions)
-
-    def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the analysis."""
-        if len(problem.restitutions) > 1:
-            raise InvalidValueError("several restitutions are compared by stripes, not by incremental")
-        return super().answer(problem, progress, threads)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
         """Draw the levels of every motion."""

@@ -61,14 +61,13 @@ class MinimumQuestion(BodyQuestion):
         from rocking.spec.construction import MOST_IN_MEMORY
         from rocking.studies.minimum_acceleration import Cases, Effort
         from rocking.studies.minimum_rounds import MinimumSearch
-        from rocking.studies.motion_sets import MotionList
         from rocking.studies.study_plan import Study, along, first_round, labels_along
         from rocking.tables import Column
 
         table, settings = self.minimum, problem.settings
         if len(problem.motions) > MOST_IN_MEMORY:
             raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
-        motions = MotionList([problem.motions[k] for k in range(len(problem.motions))])
+        motions = problem.kept_motions
         with located("body"):
             make, laws = mechanics_of(settings).parameters, problem.restitutions.values()
             parameters = [[make(body, law, settings) for body in problem.bodies] for law in laws]
