@@ -160,7 +160,7 @@ class InventoryQuestion(StudyQuestion):
             "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
             "restitution": labels_along("restitution", names, "model of impact"),
         }
-        attributes = {"shaking": hazard.words(), "hazard": hazard.source, "objects": objects.source}
+        attributes = {"shaking": hazard.words(), "hazard": str(hazard.source), "objects": objects.source}
         return Study(histories, dims, coordinates, attributes, assess=finish)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
