@@ -253,8 +253,6 @@ _BODY = (
     Quantity("uplift_acceleration", "m/s2", "ground acceleration at uplift, g tan(alpha)", label="uplift at"),
 )
 _IMPACT_MODELS = (
-    Quantity("low_95", "1", "lower end of the 95 % interval of one measured body"),
-    Quantity("high_95", "1", "upper end of the 95 % interval of one measured body"),
     Quantity("impulse_ratio", "1", "distance of the impulse over the lever of the new foot", label="k"),
     Quantity("impulse_position", "m", "x of the impulse on the ground"),
     Quantity("energy_loss", "1", "fraction of the kinetic energy that is lost at the impact", digits=".2%"),

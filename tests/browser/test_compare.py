@@ -92,7 +92,7 @@ def test_models_are_hidden_and_opened(open_page: Callable[..., Any], served: Any
         expect(about).to_contain_text(words)
     impact = served.api("impact", json={"body": BODY})["coefficients"]["right"]
     mine = next(one for one in impact if one["model"] == "ked")
-    expect(about).to_contain_text(f"{mine['low_95']:.4g}")
+    expect(about).to_contain_text(f"{mine['coefficient_low']:.4g}")
     assert page.evaluate("document.activeElement.id") == "about-model-title"
 
 

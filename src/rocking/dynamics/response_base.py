@@ -204,7 +204,8 @@ class ResponseBase(Exported):
         settings = {f"setting_{name}": value for name, value in self.settings.integration.items()}
         beside = {name.removesuffix("s"): rows.arrays for name, rows in self._tables.items()}
         tables = {row: Table.of(row, arrays) for row, arrays in beside.items()}
-        return Table.of("time", self._samples, with_units(ended | self._facts | settings), tables, no_unit="-")
+        provenance = with_units(ended | self._facts | settings)
+        return Table.of("time", self._samples, provenance=provenance, beside=tables, no_unit="-")
 
     def animate(self, path: str | Path, **options: Any) -> Path:
         """Write the response as it moves.

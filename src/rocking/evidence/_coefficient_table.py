@@ -107,7 +107,8 @@ class CoefficientRow:
         """Return the model's coefficient, its interval and what it implies."""
         implied = self.implication
         return Answer({
-            "model": self.name, "coefficient": self.coefficient, "low_95": self.low, "high_95": self.high,
+            "model": self.name, "coefficient": self.coefficient,
+            "coefficient_low": self.low, "coefficient_high": self.high,
             "impulse_ratio": implied.impulse_ratio, "impulse_position": implied.impulse_x,
             "energy_loss": implied.energy_loss, "friction_demand": implied.friction_demand,
             "admissible": implied.admissible, "warnings": self.warnings,

@@ -102,9 +102,9 @@ class Table:
     no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
 
     @classmethod
-    def of(cls, row: str, arrays: Arrays, *more: Any, no_unit: str = "") -> "Table":
-        """Return a table of arrays that have entries in `rocking.quantities`; more: provenance, tables beside it."""
-        return cls(row, {name: Column.of(name, values) for name, values in arrays.items()}, *more, no_unit=no_unit)
+    def of(cls, row: str, arrays: Arrays, **more: Any) -> "Table":
+        """Return a table of arrays that have entries in `rocking.quantities`; more: its other fields."""
+        return cls(row, {name: Column.of(name, values) for name, values in arrays.items()}, **more)
 
     @classmethod
     def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":

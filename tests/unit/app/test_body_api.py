@@ -127,7 +127,7 @@ def test_impact_has_every_model_with_evidence_and_stages(client):
     answer = client.post("/api/impact", json={"body": {"units": "m", "width": 1, "height": 4}}).json()
     rows = {row["model"]: row for row in answer["coefficients"]["right"]}
     assert math.isclose(rows["housner"]["coefficient"], 1.0 - 1.5 / 17.0)
-    assert rows["ked"]["low_95"] < rows["ked"]["coefficient"] < rows["ked"]["high_95"]
+    assert rows["ked"]["coefficient_low"] < rows["ked"]["coefficient"] < rows["ked"]["coefficient_high"]
     assert len(answer["measured"]["measurements"]) == 39
     assert "doi:" in answer["measured"]["source"]
     stages = answer["stages"]["right"]

@@ -36,7 +36,7 @@ Shares: Any = shape(
 CoefficientFacts: Any = shape(
     "CoefficientFacts",
     "One model's answer for one body.",
-    "coefficient low_95 high_95 impulse_ratio impulse_position energy_loss warnings[]",
+    "coefficient coefficient_low coefficient_high impulse_ratio impulse_position energy_loss warnings[]",
     model=(str, "name of the model with its parameters, or calibrated"),
     friction_demand=(float, "friction coefficient below which the foot slips at the impact"),
     admissible=(bool, "whether one impulse on the base can do it without creating energy"),

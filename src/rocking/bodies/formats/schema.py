@@ -69,15 +69,12 @@ BLOCK_KEYS = tuple(
     name for table in (BlockTable, ShapeTable, KnownTable) for name in table.__annotations__ if name != "feet"
 )
 """Keys of a block in its short form, beside the unit."""
-_SIZES = {name: BlockTable.model_fields[name] for name in BLOCK_KEYS if name not in KnownTable.model_fields}
-BlockInput: Any = create_model(
-    "BlockInput",
-    __base__=StrictTable,
-    **{
-        name: (Optional[field.rebuild_annotation()], Field(None, description=field.description))  # noqa: UP045
-        for name, field in _SIZES.items()
-    },
-)
+_SIZES: Any = {
+    name: (Optional[field.rebuild_annotation()], Field(None, description=field.description))  # noqa: UP045
+    for name in BLOCK_KEYS
+    if name not in KnownTable.model_fields and (field := BlockTable.model_fields[name])
+}
+BlockInput: Any = create_model("BlockInput", __base__=StrictTable, **_SIZES)
 """The sizes of a block in its short form, where another body may stand in their place."""
 
 

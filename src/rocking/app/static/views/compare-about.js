@@ -51,7 +51,7 @@ const Evidence = ({ found, name }) => {
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
   if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
   return html`${rows.map(({ foot, row }) => html`<p key=${foot}>${t(LANDS[foot], {
-        coefficient: number(row.coefficient, 4), low: number(row.low_95, 4), high: number(row.high_95, 4) })}${" "}
+        coefficient: number(row.coefficient, 4), low: number(row.coefficient_low, 4), high: number(row.coefficient_high, 4) })}${" "}
       ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
     <p class="field-help">${t("{count} published measurements.", { count: found.measured.measurements.length })} ${found.measured.source}</p>`;

@@ -35,7 +35,7 @@ const pointsOf = ({ measured }) => measured.measurements;
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot */
 const rowsOf = (answer, foot) => answer.coefficients[foot].map((row) => ({
-  model: row.model, value: row.coefficient, low: row.low_95, high: row.high_95,
+  model: row.model, value: row.coefficient, low: row.coefficient_low, high: row.coefficient_high,
 }));
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */

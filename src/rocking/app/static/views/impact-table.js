@@ -19,11 +19,11 @@ export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
   const shown = rows.map((row) => [
     html`<span class="model-name" title=${answer.titles?.[row.model]}><${Swatch} label=${row.model} />${wordsOf(row.model)}</span>`,
-    row.coefficient, `${row.low_95.toFixed(4)} \u2026 ${row.high_95.toFixed(4)}`, row.impulse_ratio,
+    row.coefficient, `${row.coefficient_low.toFixed(4)} \u2026 ${row.coefficient_high.toFixed(4)}`, row.impulse_ratio,
     percent(row.energy_loss), row.friction_demand, row.admissible ? "yes" : html`<strong class="bad">no</strong>`,
   ]);
   const copied = () => rows.map((row) => [
-    row.model, row.coefficient, t("{low} to {high}", { low: row.low_95, high: row.high_95 }), row.impulse_ratio, row.energy_loss,
+    row.model, row.coefficient, t("{low} to {high}", { low: row.coefficient_low, high: row.coefficient_high }), row.impulse_ratio, row.energy_loss,
     row.friction_demand, row.admissible ? "yes" : "no",
   ]);
   return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"
