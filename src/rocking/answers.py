@@ -76,7 +76,7 @@ class Answer:
     def plain(self) -> dict[str, Any]:
         """Return the values as JSON has them, null where there is no finite number, and the unit of each quantity."""
         own = dict(self.quantities)
-        tree = _plain(self, own)
+        tree = plain(self, own)
         owners = dict.fromkeys(name for _, name in _owners(tree, (), own) if name)
         units = {name: entry.unit for name in owners if (entry := quantity(name, own)) and entry.unit}
         return {**tree, "units": units} if units else tree
@@ -85,7 +85,7 @@ class Answer:
     def bare(self) -> list[str]:
         """Numbers without an entry in `rocking.quantities`, by their keys; none if all is well."""
         own = dict(self.quantities)
-        tree = _plain(self, own)
+        tree = plain(self, own)
         return [path for path, name in _owners(tree, (), own) if not name]
 
 
@@ -99,21 +99,23 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
     return array.astype(np.int8) if array.dtype == bool else array
 
 
-def _plain(value: Any, own: dict[str, Quantity]) -> Any:  # noqa: PLR0911 - one a kind
+def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:  # noqa: PLR0911 - one a kind
+    """Return a value as JSON has it, null where there is no finite number; own: takes quantities of answers in it."""
+    own = {} if own is None else own
     if isinstance(value, Answer):
         own |= value.quantities
-        return _plain(value.values, own)
+        return plain(value.values, own)
     if isinstance(value, AnswerRows):
-        return _plain(value.records, own)
+        return plain(value.records, own)
     if isinstance(value, Mapping):
-        return {str(name): _plain(each, own) for name, each in value.items()}
+        return {str(name): plain(each, own) for name, each in value.items()}
     if isinstance(value, Message):
         return str(value)
     if hasattr(value, "tolist"):
         whole = getattr(getattr(value, "dtype", None), "kind", "") in "iub" or np.isfinite(value).all()
-        return value.tolist() if whole else _plain(value.tolist(), own)
+        return value.tolist() if whole else plain(value.tolist(), own)
     if isinstance(value, (list, tuple)):
-        return [_plain(each, own) for each in value]
+        return [plain(each, own) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -168,8 +168,8 @@ def comparison():
 def mcnemar(first, second):
     """Flips at one level, where motions are independent: by chance so one-sided if neither overturned more often?"""
     flips = flips_of(first, second)
-    assert flips.lost > 0  # single motions go both ways
-    return stats.binomtest(flips.gained, flips.count, 0.5, "greater").pvalue
+    assert flips.only_first > 0  # single motions go both ways
+    return stats.binomtest(flips.only_second, flips.count, 0.5, "greater").pvalue
 
 
 @pytest.mark.verifies(

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
     from rocking.tables import Table
 
-# quantities by the keys of a comparison
-_FLIPS = {"gained": "only_second", "lost": "only_first", "low": "share_low", "high": "share_high"}
 # quantities in the unit of the measure
 _MEASURED = (
     "levels", "median", "median_95", "median_interval", "crossings", "uplift_threshold", "lowest_uplift",
@@ -147,7 +145,7 @@ class FragilityAnswer:
             "crossing": {"method": self.crossing, "adjusted": "" if self.shown is None else self.shown.adjusted},
             "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
             "comparison": None if compared is None else {
-                "choices": [{_FLIPS.get(key, key): value for key, value in one.items()} for one in compared.summary()],
+                "choices": compared.summary(),
                 "verdict": compared.verdict,
             },
         }, {name: Quantity(name, unit, first.subject.measure_words) for name in _MEASURED})  # fmt: skip

@@ -223,15 +223,10 @@ class MapAnswer:
     def _sensitivity(self) -> dict[str, Any] | None:
         if self.compared is None:
             return None
-        names = ("count", "compared", "unknown", "share")
+        names = ("only_second", "only_first", "share_low", "share_high", "count", "compared", "unknown", "share")
         pairs = [
-            {
-                "first": a, "second": b, "only_second": flips.gained, "only_first": flips.lost,
-                "share_low": flips.low, "share_high": flips.high,
-                **{name: getattr(flips, name) for name in names},
-            }
-            for a, b, flips in self._pairs()
-        ]  # fmt: skip
+            {"first": a, "second": b, **{name: getattr(flips, name) for name in names}} for a, b, flips in self._pairs()
+        ]
         return {"baseline": self.compared.baseline, "pairs": pairs}
 
     def _pairs(self) -> list[tuple[str, str, Any]]:
@@ -279,7 +274,10 @@ class MapAnswer:
         if self.compared is not None:
             page.line()
             head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
-            rows = [(a, b, str(f.count), percent(f.share), str(f.gained), str(f.lost)) for a, b, f in self._pairs()]
+            rows = [
+                (a, b, str(f.count), percent(f.share), str(f.only_second), str(f.only_first))
+                for a, b, f in self._pairs()
+            ]
             page.table(head, rows, head[:2], whole=(0, 1))
             page.line(self.compared.verdict)
 

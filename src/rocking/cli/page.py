@@ -112,20 +112,9 @@ def sentence(text: str) -> str:
 
 def print_json(facts: Any) -> None:
     """Print plain values as JSON, with null where there is no finite number."""
+    from rocking.answers import plain
+
     print(json.dumps(plain(facts), indent=1, allow_nan=False))
-
-
-def plain(values: Any) -> Any:
-    """Return values as JSON knows them."""
-    if hasattr(values, "plain"):
-        return {name: value for name, value in values.plain().items() if name != "units"}
-    if isinstance(values, dict):
-        return {str(name): plain(one) for name, one in values.items()}
-    if isinstance(values, (list, tuple)):
-        return [plain(one) for one in values]
-    if hasattr(values, "tolist"):
-        return plain(values.tolist())
-    return None if isinstance(values, float) and not abs(values) < float("inf") else values
 
 
 def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json: bool) -> None:

@@ -7,8 +7,8 @@ import bad_scans
 import pytest
 
 import rocking as rk
+from rocking.answers import plain
 from rocking.cli import main
-from rocking.cli.page import plain
 from rocking.prediction import predict
 
 trimesh = pytest.importorskip("trimesh")

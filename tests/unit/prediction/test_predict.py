@@ -9,7 +9,7 @@ import scipy.stats
 from random_cases import noise_motion, section
 
 import rocking as rk
-from rocking.cli.page import plain
+from rocking.answers import plain
 from rocking.errors import RockingError
 from rocking.prediction import Prediction, predict
 from rocking.prediction._predict import _chance

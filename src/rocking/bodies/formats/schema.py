@@ -69,11 +69,14 @@ BLOCK_KEYS = tuple(
     name for table in (BlockTable, ShapeTable, KnownTable) for name in table.__annotations__ if name != "feet"
 )
 """Keys of a block in its short form, beside the unit."""
-_SIZES: Any = {
-    name: (Optional[field.rebuild_annotation()], Field(None, description=field.description))  # noqa: UP045
-    for name in BLOCK_KEYS
-    if name not in KnownTable.model_fields and (field := BlockTable.model_fields[name])
-}
+
+
+def _optional(name: str) -> Any:
+    field = BlockTable.model_fields[name]
+    return Optional[field.rebuild_annotation()], Field(None, description=field.description)  # noqa: UP045
+
+
+_SIZES: Any = {name: _optional(name) for name in BLOCK_KEYS if name not in KnownTable.model_fields}
 BlockInput: Any = create_model("BlockInput", __base__=StrictTable, **_SIZES)
 """The sizes of a block in its short form, where another body may stand in their place."""
 

@@ -27,13 +27,13 @@ class Flips:
     """Histories whose verdict, overturned or not, differs between two results."""
 
     count: int  # histories whose verdict differs
-    gained: int  # those of them that overturn in the second result only; the others overturn in the first only
+    only_second: int  # those of them that overturn in the second result only; the others overturn in the first only
     compared: int  # histories with a verdict in both
     unknown: int  # histories that could not be computed in one of them
-    # low, high: 95 % interval of the share: what other motions, or other draws, of the same kind may give; NaN where
+    # 95 % interval of the share: what other motions, or other draws, of the same kind may give; NaN where
     # there is neither, since the cells of a grid are no sample of anything [-]
-    low: float
-    high: float
+    share_low: float
+    share_high: float
     # motions that the histories belong to, which are what the interval takes for independent; 0 if it takes every
     # history for independent, or there is none
     clusters: int = 0
@@ -44,9 +44,9 @@ class Flips:
         return self.count / self.compared
 
     @property
-    def lost(self) -> int:
+    def only_first(self) -> int:
         """Histories that overturn in the first result only."""
-        return self.count - self.gained
+        return self.count - self.only_second
 
 
 def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = False) -> Flips:
@@ -57,11 +57,11 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = Fals
     if not compared:
         raise InvalidValueError(f"no verdicts to compare: all {sign.size} histories failed in one of the two results")
     flipped = np.abs(sign[known])
-    count, gained = int(flipped.sum()), int((sign == 1).sum())
+    count, only_second = int(flipped.sum()), int((sign == 1).sum())
     groups = None if motions is None else np.broadcast_to(np.asarray(motions), sign.shape)[known]
     size, clusters = _effective(flipped, groups)
     low, high = share_interval(count / compared * size, size) if clusters or drawn else (np.nan, np.nan)
-    return Flips(count, gained, compared, sign.size - compared, low, high, clusters)
+    return Flips(count, only_second, compared, sign.size - compared, low, high, clusters)
 
 
 def flip_map(first: Any, second: Any) -> np.ndarray:

@@ -27,7 +27,7 @@ from rocking.studies.sensitivity.restitutions import named_restitutions, sampled
 if TYPE_CHECKING:
     import xarray as xr
 
-_COUNTS = ("count", "gained", "lost", "compared", "unknown", "share", "low", "high")
+_COUNTS = ("count", "only_second", "only_first", "compared", "unknown", "share", "share_low", "share_high")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,7 +106,7 @@ class Sensitivity:
         first, second = (checks.one_of("choice", label, self.labels) for label in (first, second))
         a, b = (self.datasets[label]["outcome"] for label in (first, second))
         if first == second:
-            return replace(flips_of(a.values, b.values), low=0.0, high=0.0)
+            return replace(flips_of(a.values, b.values), share_low=0.0, share_high=0.0)
         drawn = not {first, second}.isdisjoint(self.drawn)
         if "motion" not in a.dims:
             return flips_of(a.values, b.values, drawn=drawn)
@@ -119,8 +119,8 @@ class Sensitivity:
         Returns
         -------
         xarray.Dataset
-            Over ``first, second``: count, gained (overturned in the second only), lost, compared, unknown, and the
-            share with its 95 % interval from low to high, missing where there is no sample of motions or draws.
+            Over ``first, second``: count, only_second (overturned in the second only), only_first, compared, unknown,
+            and the share with its 95 % interval, missing where there is no sample of motions or draws.
         """
         xarray = extra("xarray", "a table of flips")
         pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
@@ -247,14 +247,16 @@ class Sensitivity:
         flips = self.flips_between(self.baseline, label)
         where = f"{flips.count:,}" if flips.count else "none"
         share = percent(flips.share)
-        if _known(flips.low) is not None:
-            share += f", 95 % interval {percent(flips.low)} to {percent(flips.high)}"
+        if _known(flips.share_low) is not None:
+            share += f", 95 % interval {percent(flips.share_low)} to {percent(flips.share_high)}"
         words = [
             f"The choice between {self.baseline} and {label} changes the verdict in {where} of {flips.compared:,} "
             f"{self.cases} ({share})"
         ]
         if flips.count:
-            words.append(f"{flips.gained:,} overturn only with {label}, {flips.lost:,} only with {self.baseline}")
+            words.append(
+                f"{flips.only_second:,} overturn only with {label}, {flips.only_first:,} only with {self.baseline}"
+            )
         if flips.unknown:
             words.append(f"{flips.unknown:,} could not be computed")
         changes = self._curve_changes.get(label, {})

@@ -27,7 +27,7 @@ def test_a_flip_is_a_change_of_the_verdict_alone():
     second = [ROCKED, ROCKED, OVER, STILL, OVER, OVER, FAILED]
     assert flip_map(first, second).tolist() == [0, 0, 1, -1, 0, 2, 2]
     found = flips_of(first, second)
-    assert (found.count, found.gained, found.lost, found.compared, found.unknown) == (2, 1, 1, 5, 2)
+    assert (found.count, found.only_second, found.only_first, found.compared, found.unknown) == (2, 1, 1, 5, 2)
     assert found.share == 0.4
 
 
@@ -36,8 +36,8 @@ def test_the_other_way_round_gains_what_was_lost():
     rng = np.random.default_rng(1)
     first, second = rng.integers(0, 4, (2, 30, 8))
     there, back = flips_of(first, second), flips_of(second, first)
-    assert (there.gained, there.lost) == (back.lost, back.gained)
-    assert (there.low, there.high) == (back.low, back.high)
+    assert (there.only_second, there.only_first) == (back.only_first, back.only_second)
+    assert (there.share_low, there.share_high) == (back.share_low, back.share_high)
 
 
 def coverage(by_motion, repetitions=400):
@@ -48,7 +48,7 @@ def coverage(by_motion, repetitions=400):
         second = np.where(rng.random((40, 12)) < rng.beta(1.0, 4.0, (40, 1)), OVER, ROCKED)  # mean 0.2
         motions = np.arange(40)[:, None] if by_motion else None
         found = flips_of(np.full_like(second, ROCKED), second, motions, drawn=not by_motion)
-        inside += found.low <= 0.2 <= found.high
+        inside += found.share_low <= 0.2 <= found.share_high
     return inside / repetitions
 
 
@@ -62,8 +62,8 @@ def test_no_flips_are_as_sure_as_there_are_motions():
     """Without any flip the upper end is that of as many trials as there are motions: 1 - 0.025^(1/20)."""
     same = np.full((20, 50), ROCKED)
     found = flips_of(same, same, np.arange(20)[:, None])
-    assert (found.count, found.low, found.clusters) == (0, 0.0, 20)
-    assert found.high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12, abs=0.0)
+    assert (found.count, found.share_low, found.clusters) == (0, 0.0, 20)
+    assert found.share_high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12, abs=0.0)
 
 
 def test_one_motion_is_no_sample_of_motions():
@@ -73,7 +73,7 @@ def test_one_motion_is_no_sample_of_motions():
     for motions in ([[0]], None):
         found = flips_of(first, second, motions)
         assert (found.count, found.share, found.clusters) == (50, 1.0, 0)
-        assert np.isnan([found.low, found.high]).all()
+        assert np.isnan([found.share_low, found.share_high]).all()
 
 
 @pytest.mark.parametrize(

@@ -42,11 +42,11 @@ def test_flips_between_all_pairs():
     """The table of flips holds the counts made by hand, mirrored for gained and lost, nothing on its diagonal."""
     found = sensitivity(given(KNOWN), list(KNOWN)).flips()
     assert found["count"].values.tolist() == [[0, 3, 0], [3, 0, 3], [0, 3, 0]]
-    assert found["gained"].values.tolist() == [[0, 2, 0], [1, 0, 1], [0, 2, 0]]
+    assert found["only_second"].values.tolist() == [[0, 2, 0], [1, 0, 1], [0, 2, 0]]
     assert found["compared"].values.tolist() == [[6, 6, 5], [6, 6, 5], [5, 5, 5]]
     assert found["unknown"].sel(first="housner", second="0.9") == 1
     assert found["share"].sel(first="housner", second="ked") == 0.5
-    assert np.diag(found["high"]).tolist() == [0.0, 0.0, 0.0]
+    assert np.diag(found["share_high"]).tolist() == [0.0, 0.0, 0.0]
     assert found.attrs["cases"] == "cells"
 
 
@@ -77,22 +77,22 @@ def test_histories_of_one_motion_are_counted_together():
     assert by_row.clusters == 30
     results = {name: given(outcomes)(restitution=name) for name in outcomes}
     cells = Sensitivity(results, baseline="ked", drawn=["ked"]).flips_between("housner", "ked")
-    assert by_row.high - by_row.low > 2.0 * (cells.high - cells.low)
+    assert by_row.share_high - by_row.share_low > 2.0 * (cells.share_high - cells.share_low)
 
 
 def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
     """A map of constants is no sample: no interval in numbers or words; with one drawn choice its pairs have one."""
     constant = map_sensitivity(BLOCK, PULSE, *AXES, ["housner", "ked"])
     flips = constant.flips_between("housner", "ked")
-    assert np.isnan([flips.low, flips.high]).all()
+    assert np.isnan([flips.share_low, flips.share_high]).all()
     assert "interval" not in constant.verdict
-    assert constant.summary()[1]["low"] is constant.summary()[1]["high"] is None
+    assert constant.summary()[1]["share_low"] is constant.summary()[1]["share_high"] is None
     assert constant.flips().attrs["independent"] == "nothing"
     law = RandomRestitution.normal(0.9, 0.02, seed=1)
     drawn = map_sensitivity(BLOCK, PULSE, *AXES, {"housner": "housner", "ked": "ked", "drawn": law})
-    assert np.isnan(drawn.flips_between("housner", "ked").low)
+    assert np.isnan(drawn.flips_between("housner", "ked").share_low)
     flips = drawn.flips_between("housner", "drawn")
-    assert (flips.low, flips.high) == share_interval(flips.count, flips.compared)
+    assert (flips.share_low, flips.share_high) == share_interval(flips.count, flips.compared)
     assert [line.count("95 % interval") for line in drawn.verdict.splitlines()] == [0, 1]
     single = spectrum_sensitivity(PULSE, [0.2], [2.0, 3.0, 4.0], ["housner", "ked"])
     assert "interval" not in single.verdict
