@@ -75,8 +75,8 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     """
     made = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
     if made is None:
-        names = ", ".join(kind.__name__ for kind in _CONTENTS)
-        raise InvalidValueError(f"found must be one of {names}, got {found!r:.60}")
+        kinds = ", ".join(kind.__name__ for kind in _CONTENTS)
+        raise InvalidValueError(f"found must be one of {kinds}, got {found!r:.60}")
     target = target_of(path)
     known = [each for each in signature(made).parameters.values() if each.kind is Parameter.KEYWORD_ONLY]
     names = [each.name for each in known]
