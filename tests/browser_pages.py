@@ -37,6 +37,12 @@ def response(motion: str, restitution: Any) -> Response:
     return simulate(Block(width=0.5, height=2.0), pulses.pulse(motion), restitution)
 
 
+def open_board(page: Any) -> None:
+    """Turn the body into a polygon, whose board is shown."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+
+
 def card(page: Any, label: str) -> Any:
     """Return the card of a model's outcome."""
     return page.get_by_test_id(f"outcome-{label}")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import facts, number, settled
+from browser_pages import facts, number, open_board, settled
 from playwright.sync_api import expect
 
 L_SHAPE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 4.0), (0.0, 4.0)]
@@ -52,8 +52,7 @@ def test_points_are_read_in_every_usual_form(page: Any) -> None:
 
 def test_the_board_by_keyboard_alone(page: Any) -> None:
     """A vertex moves by arrow keys, one is added and deleted, and undo and redo walk back and forth."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     settled(page, "Centre of mass, x m", 0.25)
     page.get_by_label("Grid step").fill("0.1")
     corner = page.get_by_role("button", name="Vertex 3 of region 1: x 0.5, y 2 m")
@@ -82,8 +81,7 @@ def _trapezoid_centre(base: float, top: float, height: float) -> float:
 
 def test_the_board_by_pointer(page: Any, shot: Callable[..., Any], calm: Callable[[Any], None]) -> None:
     """Dragging a vertex widens the body, clicking an edge adds a vertex, a hole takes mass away."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 2400.0)
     calm(page)  # the board is drawn anew when the answer comes
     for name in ("Vertex 2 of region 1", "Vertex 3 of region 1"):
@@ -109,8 +107,7 @@ def test_the_board_by_pointer(page: Any, shot: Callable[..., Any], calm: Callabl
 
 def test_regions_have_densities_of_their_own(page: Any) -> None:
     """A second region on top, four times as dense, moves the centre as the composite of two rectangles."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     page.get_by_role("button", name="Add region").click()
     page.get_by_label("Density of region 2").fill("9600")
     lower, upper = 2.0 * 2400.0, 0.5 * 9600.0
@@ -120,8 +117,7 @@ def test_regions_have_densities_of_their_own(page: Any) -> None:
 
 def test_a_mass_puts_densities_aside(page: Any) -> None:
     """Typed over two densities it outlasts Undo and another shape; emptied, they are back; a density ends it."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     page.get_by_role("button", name="Add region").click()
     page.get_by_label("Density of region 1").fill("1000")
     page.get_by_label("Density of region 2").fill("9600")
@@ -147,8 +143,7 @@ def test_a_mass_puts_densities_aside(page: Any) -> None:
     expect(page.get_by_label("Width")).to_be_visible()
     expect(mass).to_have_value("300")
     settled(page, "Mass kg", 300.0)
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     expect(mass).to_have_value("300")
     settled(page, "Mass kg", 300.0)
 
@@ -164,16 +159,14 @@ def test_a_mass_outlasts_another_shape(page: Any) -> None:
     settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 500.0)
     mass.fill("300")
     settled(page, "Mass kg", 300.0)
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     expect(mass).to_have_value("300")
     settled(page, "Mass kg", 300.0)
 
 
 def test_what_is_wrong_has_the_keyboard(page: Any) -> None:
     """Points that cannot be read, an arc without a rise, a file without a unit: marked, and the keyboard is there."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     paste(page, "0 0 0", "Use as outline")
     points = page.get_by_label("Points, x and y on each line")
     expect(points).to_be_focused()
@@ -216,8 +209,7 @@ def paste(page: Any, text: str, use: str) -> None:
 
 def test_a_drawing_outlasts_a_look_at_another_shape(page: Any) -> None:
     """Polygon, Block, Polygon: two regions with eight vertices are still there, and so is the way back."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     page.get_by_role("button", name="Add region").click()
     expect(page.locator(".vertex")).to_have_count(8)
     page.get_by_label("Shape").select_option("block")
@@ -232,8 +224,7 @@ def test_a_drawing_outlasts_a_look_at_another_shape(page: Any) -> None:
 
 def test_undo_keeps_the_focus_when_nothing_is_left_to_undo(page: Any) -> None:
     """The keyboard stays on the button that has done its last step."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     page.get_by_role("button", name="Add region").click()
     undo = page.get_by_role("button", name="Undo")
     undo.focus()
@@ -245,8 +236,7 @@ def test_undo_keeps_the_focus_when_nothing_is_left_to_undo(page: Any) -> None:
 def test_refusals_speak_as_the_page_does(page: Any) -> None:
     """Regions count from one, places are in the unit of the drawing, and no key of the API is named."""
     page.get_by_role("radio", name="cm", exact=True).check()
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     refusal = page.get_by_test_id("body-refusal")
     paste(page, square(0, 100, 50, 150), "Add as region")
     expect(refusal).to_contain_text("Regions 1 and 2 overlap over 5000 cm\u00b2")
@@ -293,8 +283,7 @@ def test_a_pasted_outline_is_the_whole_body(page: Any, tmp_path: Path, shot: Cal
 
 def test_undo_of_a_drawing_leaves_feet_that_were_typed_since(page: Any) -> None:
     """A region added and undone takes nothing along that was typed in the form between the two."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     page.get_by_role("button", name="Add region").click()
     page.get_by_label("Left foot").fill("0.1")
     page.get_by_label("Right foot").fill("0.4")
@@ -310,8 +299,7 @@ def test_a_regular_polygon_becomes_a_polygon_with_every_digit(page: Any) -> None
     page.get_by_label("Radius").fill("1")
     settled(page, "Slenderness h/b", math.sqrt(3.0))
     before = facts(page)
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     for unit in ("ft", "mm", "m"):
         page.get_by_role("radio", name=unit, exact=True).check()
     found = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs')).body.section.region[0].outline")

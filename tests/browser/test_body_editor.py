@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from browser_pages import link, number, settled
+from browser_pages import link, number, open_board, settled
 from playwright.sync_api import expect
 
 BOARD = ".board"
@@ -20,8 +20,7 @@ DOTS = """() => [...document.querySelectorAll('.vertex')].map((each) => {
 
 def drawn(page: Any, outline: list[tuple[float, float]] | None = None) -> Any:
     """Show the board with a polygon, by default the rectangle of 0.5 m by 2 m."""
-    page.get_by_label("Shape").select_option("section")
-    page.get_by_test_id("board").wait_for()
+    open_board(page)
     if outline:
         page.get_by_text("Paste points from Excel").click()
         page.get_by_label("Points, x and y on each line").fill("\n".join(f"{x} {y}" for x, y in outline))

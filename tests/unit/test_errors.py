@@ -1,4 +1,4 @@
-"""Errors and their hints as data: parameter, value, allowed values, hint and places; the sentence is made of them, and never read."""
+"""Errors and their hints as data: parameter, value, allowed values, places; the sentence is made of them."""
 
 import ast
 import math

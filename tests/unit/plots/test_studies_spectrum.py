@@ -1,4 +1,4 @@
-"""Pictures of rocking spectra and sensitivity: curves, fractiles, overturning and sizes against the data and closed forms."""
+"""Pictures of rocking spectra and sensitivity: curves, fractiles, sizes against data and closed forms."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Overturning maps and rocking spectra: cell by cell the same as single histories, mirrored, stretched, refined, refused."""
+"""Overturning maps and rocking spectra: the same as single histories, mirrored, stretched, refined."""
 
 import math
 
