@@ -249,41 +249,41 @@ ASKED = {
     "help": "--help",
     "cor": "cor SIZE",
     "cor json": "cor SIZE --json",
-    "cor statue": "cor statue.toml --json --csv o.csv --picture o.png",
-    "cor one side": "cor statue.toml --onto left --model ked --model 0.98*ked --identities",
+    "cor statue": "cor statue.toml --json --out csv=o.csv --out picture=o.png",
+    "cor one side": "cor statue.toml --onto left --restitution ked --restitution 0.98*ked --identities",
     "cor solid": "cor solid.toml --json",
-    "cor solid page": "cor solid.toml --model ked-3d",
+    "cor solid page": "cor solid.toml --restitution ked-3d",
     "cor refused": "cor --width -1 --height 2",
-    "cor refused model": "cor SIZE --model kedd",
+    "cor refused model": "cor SIZE --restitution kedd",
     "simulate": "simulate SIZE PULSE",
     "simulate json": "simulate SIZE PULSE --json",
-    "simulate files": "simulate statue.toml PULSE --restitution housner --csv o.csv --picture o.png --json",
-    "simulate record": "simulate statue.toml record.txt --units cm,g --time-step 0.01 --scale 3",
-    "simulate record json": "simulate SIZE record.txt --units m,g --time-step 0.01 --scale 4 --json",
+    "simulate files": "simulate statue.toml PULSE --restitution housner --out csv=o.csv --out picture=o.png --json",
+    "simulate record": "simulate statue.toml record.txt --units cm,g --set motion.time_step=0.01 --scale 3",
+    "simulate record json": "simulate SIZE record.txt --units m,g --set motion.time_step=0.01 --scale 4 --json",
     "simulate free": "simulate statue.toml --free 0.5",
     "simulate free json": "simulate SIZE --free -0.5 --json",
-    "simulate contact": "simulate SIZE PULSE --contact --friction 0.4",
-    "simulate contact json": "simulate statue.toml PULSE --contact --friction 0.3 --json",
-    "simulate solid": "simulate solid.toml PULSE --motion-y sine:amplitude=1,period=0.5",
+    "simulate contact": "simulate SIZE PULSE --friction 0.4",
+    "simulate contact json": "simulate statue.toml PULSE --friction 0.3 --json",
+    "simulate solid": "simulate solid.toml PULSE --motion y=sine:amplitude=1,period=0.5",
     "simulate solid json": "simulate solid.toml PULSE --json",
     "simulate document": "simulate response.toml --json",
     "simulate document page": "simulate free.toml",
     "simulate refused": "simulate SIZE sine:amplitude=3",
     "simulate refused file": "simulate SIZE none.at2",
-    "simulate refused units": "simulate SIZE record.txt --time-step 0.01",
+    "simulate refused units": "simulate SIZE record.txt --set motion.time_step=0.01",
     "simulate doubted": "simulate --width 500 --height 2000 sine:amplitude=300,period=0.8",
     "map": "map SIZE PULSE --x frequency_ratio=0.5:7:14 --y amplitude_ratio=1:9:12",
-    "map files": "map statue.toml PULSE --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json --csv o.csv --netcdf "
-    "o.nc --picture o.png",
+    "map files": "map statue.toml PULSE --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json --out csv=o.csv --out netcdf="
+    "o.nc --out picture=o.png",
     "map two": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --restitution ked "
     "--restitution housner",
     "map refined": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --refine 2 --json "
-    "--netcdf o.nc --csv o.csv",
+    "--out netcdf=o.nc --out csv=o.csv",
     "map refused": "map SIZE PULSE --x nonsense=1:2:3",
     "minimum": "minimum SIZE sine:amplitude=1,period=0.8 --points 60",
     "minimum files": "minimum statue.toml sine:amplitude=1,period=0.8 --points 60 --json",
     "spectrum": "spectrum PULSE --slenderness 4,6 --periods 1:6:6",
-    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --csv o.csv",
+    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --out csv=o.csv",
     "fragility": "fragility SIZE --synthetic point-source --count 20",
     "fragility json": "fragility SIZE --synthetic pulse-like --count 15 --seed 2 --json",
     "inventory": "inventory inventory.csv --pga 0.3g --count 30",
@@ -293,8 +293,8 @@ ASKED = {
     "models one": "models ked-3d",
     "models refused": "models Hausner",
     "motion": "motion PULSE",
-    "motion json": "motion record.txt --units g --time-step 0.01 --json",
-    "motion files": "motion PULSE --csv o.csv --picture o.png",
+    "motion json": "motion record.txt --units g --set motion.time_step=0.01 --json",
+    "motion files": "motion PULSE --out csv=o.csv --out picture=o.png",
     "formats": "formats",
     "formats json": "formats --json",
     "paper": "paper --json",
@@ -434,7 +434,7 @@ def campaigns() -> dict[str, Case]:
         for what in whats:
             for ending in ENDINGS:
                 target = f"o-{what}.{ending}"
-                ask(f"export {what} {ending}", "export", "c", "--to", target, *(["--what", what] if what else []))
+                ask(f"export {what} {ending}", "export", "c", "--out", f"{what}={target}" if what else target)
         files = {
             path.name: trees.of_file(path.name, path.read_bytes())
             for path in sorted(folder.glob("o-*"))

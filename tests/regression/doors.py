@@ -52,26 +52,6 @@ def response_tree(response: Any) -> dict[str, Any]:
     return said | {"data": data}
 
 
-_SAID_NOW = {
-    "--picture": "--out picture={}", "--csv": "--out csv={}", "--netcdf": "--out netcdf={}",
-    "--motion-y": "--motion y={}",
-    "--time-step": "--set motion.time_step={}", "--model": "--restitution {}",
-}  # fmt: skip
-
-
-def said_now(words: list[str]) -> list[str]:
-    """Return the words of a command of before as they are said now."""
-    words, now = [word for word in words if word != "--contact"], []
-    if words[:2] == ["campaign", "export"] and "--to" in words:
-        place = words.index("--to")
-        what = f"{words[place + 3]}=" if "--what" in words else ""
-        return [*words[:place], "--out", f"{what}{words[place + 1]}"]
-    while words:
-        word = words.pop(0)
-        now += _SAID_NOW[word].format(words.pop(0)).split() if word in _SAID_NOW else [word]
-    return now
-
-
 def command(words: list[str], folder: Path) -> dict[str, Any]:
     """Return exit code, output and errors of `rocking WORDS`, in a folder."""
     out, err, before = io.StringIO(), io.StringIO(), Path.cwd()
@@ -79,7 +59,7 @@ def command(words: list[str], folder: Path) -> dict[str, Any]:
     os.chdir(folder)
     try:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            main(said_now(words))
+            main(words)
     except SystemExit as stop:
         code = stop.code or 0
     finally:
