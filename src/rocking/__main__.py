@@ -3,4 +3,4 @@
 from rocking.cli import main
 
 if __name__ == "__main__":
-    main()
+    main(unnamed_file=globals().get("unnamed_file", ""))  # which `runpy` sets for a file that it has written

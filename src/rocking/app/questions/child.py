@@ -13,6 +13,7 @@ import threading
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
+from runpy import run_module
 from typing import Any
 
 _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
@@ -72,10 +73,8 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list
         sys.exit(2)
     models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
-    from rocking.cli import main as run
-
-    sys.argv[1:] = words  # which reports of an answer name
-    run(words, unnamed_file=file)
+    sys.argv[1:] = words
+    run_module("rocking", {"unnamed_file": file}, "__main__")
 
 
 def keep_inside(*folders: Path) -> None:
