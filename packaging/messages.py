@@ -146,10 +146,8 @@ def main() -> None:
         catalogue.obsolete.clear()
         write(FOLDER / f"{code}.po", catalogue)
         (FOLDER / f"{code}.mo").write_bytes(compiled(catalogue))
-        empty = [message.id for message in catalogue if message.id and not all((*message.string,))]
-        print(
-            f"{code}: {len(catalogue)} messages, {len(keys(catalogue) - before)} new, {len(empty)} without translation"
-        )
+        new, empty = keys(catalogue) - before, untranslated(catalogue)
+        print(f"{code}: {len(catalogue)} messages, {len(new)} new, {len(empty)} without translation")
     print(f"{len(unused())} messages are stated nowhere")
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking.messages import Amount, Fact, Message, Parameter, Range
 
-LANGUAGES = {"en": ".", "de": ",", "it": ","}
+LANGUAGES = {"en": ".", "de": ",", "it": ",", "zh": "."}
 """Languages of reports by their ISO 639-1 codes, with their decimal marks."""
 
 

@@ -129,10 +129,13 @@ def _drawn(assessment: Assessment, folder: Path) -> list[str]:
 
     count = len(assessment.verdicts)
     try:
-        if count:
-            write(inventory_picture(assessment, MOST_DRAWN), folder / f"{GLANCE}.svg")
-        if count > MOST_DRAWN:
-            write(inventory_distribution(assessment), folder / f"{SHARES}.svg")
+        with warnings.catch_warnings():
+            # their words are text in any script, in the fonts of whoever reads them
+            warnings.filterwarnings("ignore", "Glyph .* missing from font")
+            if count:
+                write(inventory_picture(assessment, MOST_DRAWN), folder / f"{GLANCE}.svg")
+            if count > MOST_DRAWN:
+                write(inventory_distribution(assessment), folder / f"{SHARES}.svg")
         return [stem for stem in (GLANCE, SHARES) if (folder / f"{stem}.svg").exists()]
     except MissingExtraError:  # a report without a picture says the same
         return []

@@ -88,9 +88,9 @@ def test_files_are_in_the_language_and_keys_are_not(found, tmp_path):
 
 
 def test_a_language_without_words_says_so(found):
-    """Chinese: in English, and the report says that there are no words of it yet."""
-    text = texts(inventory_document(replace(found, language="zh")))
-    assert "in the language zh, of which there are no words yet" in text
+    """French: in English, and the report says that there are no words of it yet."""
+    text = texts(inventory_document(replace(found, language="fr")))
+    assert "in the language fr, of which there are no words yet" in text
     assert "Which objects stay standing" in text
 
 

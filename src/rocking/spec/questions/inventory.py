@@ -41,7 +41,7 @@ class InventoryTable(JobTable):
     )
     pga: Text | None = key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
     pgv: Text | None = key("peak ground velocity in its place: 25cm/s, 0.25m/s")
-    language: Text | None = key("language of the report: en, de, it; that of the list's header if not given")
+    language: Text | None = key("language of the report: en, de, it, zh; that of the list's header if not given")
     thresholds: ThresholdsTable = Field(
         default_factory=ThresholdsTable, description="where one light ends and the next begins"
     )
