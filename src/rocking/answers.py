@@ -191,6 +191,10 @@ class Display:
         """Return the columns of a table as a reader sees them: of those named that it has; of all if none are named.
 
         A quantity with an interval, as value, low and high or in columns of their own, has a second column for it.
+
+        >>> rows = [{"observed": 0.5, "observed_low": 0.25, "observed_high": 0.75}]
+        >>> [(column.heading, column.cells) for column in Display().table(rows)]
+        [('observed', ['0.50']), ('95 %', ['0.25 to 0.75'])]
         """
         rows = rows if isinstance(rows, AnswerRows) else AnswerRows.of_records(rows)
         ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high")}
