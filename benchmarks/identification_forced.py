@@ -194,7 +194,11 @@ def identified(number: int, kind: str = "rotation", *, friction: bool = False, s
         "held": (estimated(fit.shared((MEAN, 1.0)), 1.0), case["r"]),  # by feet that are believed to hold
     }  # fmt: skip
     row |= {name: bool(each.low <= value and not value > each.high) for name, (each, value) in true.items()}
-    row |= {"width": found.mean.high - found.mean.low, "impacts": len(found.impacts), "odd": found.forced.half_cycles_left_out}
+    row |= {
+        "width": found.mean.high - found.mean.low,
+        "impacts": len(found.impacts),
+        "odd": found.forced.half_cycles_left_out,
+    }
     row |= {"constant": constant_holds(fit, case["r"]), "foreseen": found.forced.predictable}
     told, true_friction = found.forced.friction, case.get("friction", math.inf)
     row |= {"identified": math.isfinite(told.value), "told": [told.value, told.low, told.high], "true": true_friction}

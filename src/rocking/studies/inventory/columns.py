@@ -15,12 +15,13 @@ from typing import Any
 
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
+from rocking.studies.inventory import objects
 
 WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("header_words.toml").read_text("utf-8"))
 """Words of lists in eight languages: of headers, by what the column holds, and of cells."""
 
-SIZES = ("width", "depth", "height", "length", "diameter")
-LENGTHS = (*SIZES, "base", "base_width", "base_depth", "base_diameter", "pedestal", "centre_of_mass_height")
+SIZES = (*objects.SIZES, "length", "diameter")
+LENGTHS = (*SIZES, "base", *objects.LENGTHS[3:5], "base_diameter", "pedestal", objects.LENGTHS[5])
 """What a column of lengths may hold."""
 
 WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
@@ -122,7 +123,7 @@ class Header:
         missing = [] if {"name", "number"} & known else ["name"]
         if "body_file" in known or {"diameter", "height"} <= known or ("size" in known and "height" not in known):
             return missing
-        wanted = ("width", "height") if {"width", "shape"} <= known else ("width", "depth", "height")
+        wanted = ("width", "height") if {"width", "shape"} <= known else objects.SIZES
         return missing + [each for each in wanted if each not in known]
 
 

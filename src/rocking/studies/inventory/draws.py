@@ -11,13 +11,12 @@ from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, IntArray
 from rocking.restitution import ImpactGeometry
 from rocking.restitution.calibrated import drawn
-from rocking.studies.inventory.objects import SMALLEST, InventoryObject
+from rocking.studies.inventory.objects import LENGTHS, SMALLEST, InventoryObject
 from rocking.studies.sensitivity.restitutions import uniforms
 
 STRATA = 5
 """Bodies standing for an object of approximate sizes: a Latin hypercube, which the motions take one after another."""
 
-_SIZES = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
 _ROUND = {"depth": "width", "base_depth": "base_width"}
 _HIGHEST = 0.99  # of the height, for a centre of mass that is drawn
 
@@ -30,7 +29,7 @@ class Draws:
 
     def bodies(self, item: InventoryObject) -> list[InventoryObject]:
         """Return the objects that stand for one; itself if its sizes are known."""
-        levels = {name: self._level(item, name) for name in _SIZES if item.approximate.get(name, 0.0) > 0.0}
+        levels = {name: self._level(item, name) for name in LENGTHS if item.approximate.get(name, 0.0) > 0.0}
         every = [{name: 2.0 * each[k] - 1.0 for name, each in levels.items()} for k in range(STRATA)]
         return [_resized(item, shares) for shares in every] if levels else [item]
 
@@ -50,7 +49,7 @@ class Draws:
     def _level(self, item: InventoryObject, name: str) -> FloatArray:
         """Return the probabilities of a size: one in each stratum, in an order of its own; a circle has one."""
         own = _ROUND.get(name, name) if item.shape == "round" and item.width == item.depth else name
-        place = 2 + 2 * _SIZES.index(own)
+        place = 2 + 2 * LENGTHS.index(own)
         order, within = (uniforms(self.seed, np.arange(STRATA), place + k) for k in (0, 1))
         return np.asarray((np.argsort(order) + within) / STRATA)
 
@@ -79,9 +78,9 @@ def _resized(item: InventoryObject, shares: dict[str, float]) -> InventoryObject
     """Return an object whose sizes are moved by shares of their half widths, with what must stay smaller, smaller."""
     made: dict[str, Any] = {
         name: max(SMALLEST, getattr(item, name) + shares.get(name, 0.0) * item.approximate.get(name, 0.0))
-        for name in _SIZES if getattr(item, name) is not None
+        for name in LENGTHS if getattr(item, name) is not None
     }  # fmt: skip
-    most = {"base_width": made["width"], "base_depth": made["depth"], _SIZES[-1]: _HIGHEST * made["height"]}
+    most = {"base_width": made["width"], "base_depth": made["depth"], LENGTHS[-1]: _HIGHEST * made["height"]}
     made |= {name: min(made[name], limit) for name, limit in most.items() if name in made}
     # the weight does not change how it rocks, and need not fit every size
     return replace(item, **made, mass=None, approximate={})

@@ -22,6 +22,10 @@ Direction = Literal["width", "depth"]
 DIRECTIONS: tuple[Direction, Direction] = ("width", "depth")
 """The two horizontal directions in which an object may rock."""
 
+SIZES = ("width", "depth", "height")
+LENGTHS = (*SIZES, "base_width", "base_depth", "centre_of_mass_height")
+"""Fields of an object that are lengths; the first three are its outer size."""
+
 SMALLEST, LARGEST = 0.001, 100.0
 """Allowed lengths [m]."""
 
@@ -112,7 +116,7 @@ class InventoryObject:
         word: object = self.name
         if not isinstance(word, str) or not word.strip():
             raise InvalidValueError("name must not be empty")
-        for name in ("width", "depth", "height"):
+        for name in SIZES:
             object.__setattr__(self, name, _length(name, getattr(self, name)))
         for name, most in (("base_width", self.width), ("base_depth", self.depth)):
             value = getattr(self, name)
