@@ -266,8 +266,8 @@ _IMPACT_MODELS = (
     Quantity("impacts_to_half", "1", "number of impacts that halve the energy"),
     Quantity("bias", "1", "bias: mean of model minus measurement", digits="+.4f"),
     Quantity("within", "1", "whether a value is within the 95 % interval", label="within 95 %"),
-    Quantity("rmse", "1", "root mean square error of the coefficient"),
-    Quantity("loss_rmse", "1", "root mean square error of the energy loss"),
+    Quantity("rmse", "1", "root mean square error of the coefficient", label="RMSE", digits=".4f"),
+    Quantity("loss_rmse", "1", "root mean square error of the energy loss", label="loss", digits=".4f"),
     Quantity("behind_closest", "1", "error beyond that of the closest model: value, low, high"),
     Quantity("measurements", "1", "number of measurements"),
     Quantity("rounding", "1", "half of the last printed digit of the measurements"),
@@ -521,11 +521,19 @@ _SCORES = (
 )
 _LEAGUE = (
     Quantity("correlation", "1", "correlation with the measurements"),
-    Quantity("concordance", "1", "concordance with the measurements"),
-    Quantity("log_loss_rmse", "1", "root mean square error of the logarithm of the energy loss"),
-    Quantity("leave_one_out", "1", "root mean square error of measurements left out one by one"),
-    Quantity("leave_group_out", "1", "root mean square error of groups left out one by one"),
-    Quantity("bic", "1", "Bayesian information criterion"),
+    Quantity("concordance", "1", "concordance with the measurements", label="Lin", digits=".3f"),
+    Quantity(
+        "log_loss_rmse",
+        "1",
+        "root mean square error of the logarithm of the energy loss",
+        label="log loss",
+        digits=".3f",
+    ),
+    Quantity(
+        "leave_one_out", "1", "root mean square error of measurements left out one by one", label="LOO", digits=".4f"
+    ),
+    Quantity("leave_group_out", "1", "root mean square error of groups left out one by one", label="LOG", digits=".4f"),
+    Quantity("bic", "1", "Bayesian information criterion", label="BIC", digits=".1f"),
     Quantity("by_group", "1", "root mean square error of each group"),
     Quantity("by_band", "1", "root mean square error in each band of h/b"),
     Quantity("ahead_of_ked", "1", "error of KED beyond that of the model: value, low, high"),

@@ -178,11 +178,13 @@ def table(
 
 
 def answer_table(
-    caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = ""
-) -> ReportTable:
+    caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = "",
+    stem: str = "",
+) -> ReportTable:  # fmt: skip
     """Return a table of an answer; names: its columns."""
     columns = Display().table(rows, names)
-    return table(caption, [each.heading for each in columns], zip(*(each.cells for each in columns), strict=True), note)
+    cells = zip(*(each.cells for each in columns), strict=True)
+    return table(caption, [each.heading for each in columns], cells, note, stem)
 
 
 def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:

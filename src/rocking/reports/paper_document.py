@@ -22,7 +22,17 @@ from rocking.evidence.hierarchy import (
     sentence_of,
 )
 from rocking.evidence.measurements import BANDS, DataSet, all_measurements, datasets
-from rocking.reports.document import Block, Cell, Document, Paragraph, Picture, ReportSection, ReportTable, made_with
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    answer_table,
+    made_with,
+)
 from rocking.reports.document import table as report_table
 from rocking.restitution import Housner, Ked
 
@@ -207,7 +217,18 @@ def _pair(entry: Entry) -> list[Cell]:
 
 def _league(result: Reproduction) -> list[Block]:
     rows, count = result.league, len(result.data)
-    whole = ["model", "fitted", "RMSE", "95 % bootstrap", "bias", "loss", "log loss", "Lin", "LOO", "LOG", "BIC"]
+    names = (
+        "model",
+        "fitted",
+        "rmse",
+        "bias",
+        "loss_rmse",
+        "log_loss_rmse",
+        "concordance",
+        "leave_one_out",
+        "leave_group_out",
+        "bic",
+    )
     groups = ["Table 1" if name == "table1" else name for name in rows[0].by_group]
     split = ["model", *groups, *(name for name, _, _ in BANDS), "RMSE minus KED's, 95 %"]
     return [
@@ -216,15 +237,10 @@ def _league(result: Reproduction) -> list[Block]:
             "Lin's concordance; leave-one-out (LOO) and leave-one-data-set-out (LOG) RMSE; BIC with the rounding in "
             "the likelihood and a scatter that grows with the loss (lower is better)."
         ),
-        report_table(
+        answer_table(
             f"All models, all {count} measurements",
-            whole,
-            [
-                (row.name, row.fitted, f"{row.rmse:.4f}", f"{row.rmse_low:.4f} - {row.rmse_high:.4f}",
-                 f"{row.bias:+.4f}", f"{row.loss_rmse:.4f}", f"{row.log_loss_rmse:.3f}", f"{row.concordance:.3f}",
-                 f"{row.leave_one_out:.4f}", f"{row.leave_group_out:.4f}", f"{row.bic:.1f}")
-                for row in rows
-            ],
+            [{**row.answer().values, "model": row.name, "fitted": row.fitted} for row in rows],
+            names,
             "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed; fitted values are kept.",
             "league",
         ),
