@@ -15,6 +15,7 @@ from rocking.messages import Message
 if TYPE_CHECKING:
     from rocking.answers import Answer, AnswerRows, Display
     from rocking.cli.exports import Exports
+    from rocking.reports.document import ReportTable
 
 Facts = Iterable[tuple[str, str]]
 MOST_ROWS = 12  # rows of a table of an answer that are printed
@@ -83,6 +84,10 @@ class Page:
         for k, row in enumerate(rows):
             table.add_row(*map(Text, row), style="bold" if k in bold else None)
         self._console.print(table)
+
+    def reported(self, table: "ReportTable") -> None:
+        """Write a table of a report."""
+        self.table(table.header, [[cell.text for cell in row] for row in table.rows], table.header[:1])
 
     def rows(
         self,

@@ -15,9 +15,7 @@ from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.study import source_lines
-from rocking.conventions import g, percent
 from rocking.errors import located
-from rocking.motions.summary import peak_names
 from rocking.prediction.likelihood import scale_words
 
 if TYPE_CHECKING:
@@ -121,19 +119,14 @@ class PredictionAnswer:
         return prediction_picture(self.found)
 
     def show(self, page: Page) -> None:
+        from rocking.reports.motion_sources import motion_table
+
         found = self.found
         page.line(found.verdict, style="bold")
         for line in found.sentences[1:]:
             page.line(line)
         page.line()
-        peak, speed = peak_names([motion.support for motion in found.motions])
-        head = ("motion", f"{peak} g", f"{speed} m/s", *found.chances)
-        rows = [
-            (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}",
-             *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
-            for k, motion in enumerate(found.motions)
-        ]  # fmt: skip
-        page.table(head, rows, head[:1])
+        page.reported(motion_table(found))
         page.line()
         if found.decides:
             page.line(found.decides)

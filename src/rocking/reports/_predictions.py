@@ -2,7 +2,6 @@
 
 from functools import partial
 
-from rocking.conventions import g, percent
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.prediction import Prediction, Validation
 from rocking.prediction.likelihood import scale_words
@@ -17,7 +16,7 @@ from rocking.reports.document import (
     judged,
     table,
 )
-from rocking.reports.motion_sources import motion_sources, peak_heads
+from rocking.reports.motion_sources import motion_sources, motion_table
 from rocking.spec.validation import FolderValidation
 from rocking.version import SOFTWARE
 
@@ -48,7 +47,7 @@ def prediction_content(found: Prediction, *, name: str, date: str) -> Content:
     decides = Paragraph(found.decides) if found.decides else _shares(found)
     body, drawn = body_blocks(found.body, found.gravity)
     sections = [
-        ReportSection("Probabilities", [*map(Paragraph, found.sentences[1:]), picture, _motions(found)]),
+        ReportSection("Probabilities", [*map(Paragraph, found.sentences[1:]), picture, motion_table(found)]),
         ReportSection("Contributions to the variance", [decides]),
         ReportSection("The body", body),
         ReportSection("Ground motions: source and processing", [motion_sources(found.motions)]),
@@ -91,16 +90,6 @@ def _assumed(found: Prediction) -> ReportSection:
 
 def _count(found: Prediction) -> str:
     return f"{found.count} bodies under each motion, {found.histories} histories in all"
-
-
-def _motions(found: Prediction) -> ReportTable:
-    rows = [
-        (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}", f"{motion.duration:.3g}",
-         *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
-        for k, motion in enumerate(found.motions)
-    ]  # fmt: skip
-    head = ["motion", *peak_heads(found.motions), "duration [s]", *found.chances]
-    return table("Probabilities under each motion", head, rows)
 
 
 def _shares(found: Prediction) -> ReportTable:
