@@ -129,8 +129,8 @@ class StudyQuestion(JobTable):
         return {}
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Compute the study in memory; return what the function of `rocking.studies` does, or a comparison."""
-        raise InvalidValueError(f'kind = "{self.kind}" is computed by rocking campaign run')
+        """Compute the study in memory; return the result of the same function of `rocking.studies`, or a comparison."""
+        return self.study(problem).computed(progress, threads)
 
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the histories of the study, their dimensions, and the evaluation of their results."""

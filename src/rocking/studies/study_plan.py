@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any, Protocol
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -12,14 +12,17 @@ from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.rows import Rows
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.outcome import flags
-from rocking.quantities import HISTORY
-from rocking.studies.histories import Histories, HistoryTable
+from rocking.quantities import HISTORY, attributes
+from rocking.studies.histories import Histories, HistoryTable, results_of
 from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.question import Question, modes_of, peak_ratio
 from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column, Table, text_array
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 TYPES: dict[str, Any] = {
     name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
@@ -90,6 +93,26 @@ class Study:
         ratio = peak_ratio(own["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         whole = {**own, **flags(own), "mode": modes_of(own), "peak_ratio": ratio}
         return {name: whole[name] for name in HISTORY}
+
+    def dataset(self, results: Mapping[str, Any]) -> "xr.Dataset":
+        """Return results of all histories over the dimensions, with units."""
+        xarray: Any = extra("xarray", "a dataset of histories")
+        dims = tuple(self.dims)
+        data = {name: (dims, values.reshape(self.shape), attributes(name)) for name, values in results.items()}
+        coords = {name: (each.dims, each.values, each.attributes) for name, each in self.coordinates.items()}
+        dataset: xr.Dataset = xarray.Dataset(data, coords, self.attributes)
+        return dataset
+
+    def computed(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
+        """Compute the study in memory; return the value of its search, its evaluation, or the dataset of histories."""
+        compute = partial(results_of, progress=progress, threads=threads)
+        if self.search is not None:
+            return self.search(compute).value
+        results = compute(self.histories)
+        evaluate = self.finish or self.assess
+        if evaluate is not None:
+            return evaluate(results)
+        return self.dataset(self.derived(0, self.histories.count, results))
 
 
 def along(dim: str, values: Any, unit: str = "1", meaning: str = "") -> Column:

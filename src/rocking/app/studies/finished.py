@@ -90,18 +90,9 @@ class OpenStudy:
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
         """Return the results with one restitution as the page takes them."""
-        import xarray as xr
-
-        study = self.job.study
-        several = len(self.axes) < len(study.dims)
         label = list(self.job.problem.restitutions)[restitution]
-        arrays = {name: (tuple(study.dims), values) for name, values in self.results.items()}
-        coordinates = {
-            name: (one.dims, one.values, {"units": one.unit, "long_name": one.meaning})
-            for name, one in study.coordinates.items()
-        }
-        dataset = xr.Dataset(arrays, coords=coordinates, attrs={**study.attributes, "restitution": label})
-        return dataset.isel(restitution=restitution) if several else dataset
+        dataset = self.job.study.dataset(self.results).assign_attrs(restitution=label)
+        return dataset.isel(restitution=restitution) if len(self.axes) < len(self.job.study.dims) else dataset
 
     @property
     def size(self) -> int:

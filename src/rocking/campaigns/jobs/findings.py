@@ -12,8 +12,7 @@ from rocking.campaigns.jobs.folder import JobFolder, job_status
 from rocking.campaigns.jobs.rounds import replayed, resume
 from rocking.campaigns.ledger import HistoryRange
 from rocking.dynamics.plane.fast_engine import Arrays
-from rocking.errors import InvalidValueError, extra
-from rocking.quantities import attributes
+from rocking.errors import InvalidValueError
 from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
@@ -172,15 +171,12 @@ def pieces_of(
 
 def datasets(folder: JobFolder, names: Collection[str] = tuple(TYPES)) -> "dict[str, xr.Dataset]":
     """Return results of all histories by label of the restitution, as the studies' functions return them."""
-    xarray: Any = extra("xarray", "comparing restitutions")
     study, labels = folder.job.study, list(folder.job.problem.restitutions)
     flat = {name: np.empty(study.histories.count, TYPES[name]) for name in names}
     for first, last, results in pieces_of(study, folder.campaign.pieces()):
         for name, values in flat.items():
             values[first:last] = results[name]
-    data = {name: (tuple(study.dims), values.reshape(study.shape), attributes(name)) for name, values in flat.items()}
-    coords = {name: (each.dims, each.values, each.attributes) for name, each in study.coordinates.items()}
-    every = xarray.Dataset(data, coords, study.attributes)
+    every = study.dataset(flat)
     if len(labels) == 1:
         return {labels[0]: every.assign_attrs(restitution=labels[0])}
     return {
