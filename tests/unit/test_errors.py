@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 import rocking as rk
-from rocking.bodies.formats import read_body
 from rocking.errors import _EXTRAS, BodyFileError, InvalidValueError, RecordError, located
 from rocking.messages import Amount, Index, Message, Option, Range, by_key
 
@@ -38,7 +37,7 @@ def test_tables_and_files_make_the_path(tmp_path):
     """A key of a file is named with its tables, in metres where the file is; pydantic's errors have the same form."""
     file = tmp_path / "pier.toml"
     file.write_text('units = "cm"\n[block]\nwidth = -50\nheight = 200\n', encoding="utf-8")
-    error = caught(read_body, file)
+    error = caught(rk.read_body, file)
     assert (type(error), error.parameter, error.value, error.unit) == (BodyFileError, "block.width", -50, "cm")
     with pytest.raises(InvalidValueError) as stop, located("body"), located("pier.toml", "file"), located("block"):
         raise InvalidValueError(parameter="width", allowed=Range(0.0, math.inf, "m", low_open=True), value=0.0)

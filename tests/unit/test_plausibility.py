@@ -9,7 +9,6 @@ import pytest
 
 import rocking as rk
 from rocking import plausibility
-from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Solid, box
 from rocking.dynamics import SpatialStart
 from rocking.errors import PlausibilityWarning
@@ -152,7 +151,7 @@ def test_assumed_density_is_said(tmp_path):
     assert Solid(Part(box(0.8, 0.8, 1.8), 300.0)).assumed == ()
     solid = tmp_path / "solid.toml"
     solid.write_text('units = "m"\n[solid]\n[[solid.part]]\nbox = { width = 0.8, depth = 0.8, height = 1.8 }\n')
-    assert read_body(solid).assumed == plain.assumed
+    assert rk.read_body(solid).assumed == plain.assumed
 
 
 def test_command_line_says_it(run):

@@ -11,7 +11,6 @@ from rocking.dynamics import SpatialStart
 from rocking.dynamics.hull import histories
 from rocking.dynamics.hull.body import HullBody
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
 needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
@@ -32,7 +31,7 @@ def test_a_body_that_is_dropped_flat_lands_after_the_time_of_a_fall(engine):
     solid, height = _body(), 0.03
     start = SpatialStart(height=height)
     found = rk.free_rocking(solid, restitution="housner", friction=0.6, start=start, engine=engine, duration=0.3)
-    assert found.outcome is Outcome.FLEW
+    assert found.outcome is rk.Outcome.FLEW
     assert found.impacts.size == 1
     assert found.impacts["time"][0] == pytest.approx(math.sqrt(2.0 * height / G), rel=1e-9)
     assert found.impacts["energy_before"][0] == pytest.approx(solid.mass * G * height, rel=1e-9)
@@ -97,7 +96,7 @@ def test_a_pushed_body_slides_to_a_stop():
     low, mu, speed = Solid(box(0.8, 0.9, 0.3)), 0.3, 0.7
     start = SpatialStart(velocity=(speed, 0.0, 0.0))
     found = rk.free_rocking(low, restitution="housner", friction=mu, start=start)
-    assert found.outcome is Outcome.SLID
+    assert found.outcome is rk.Outcome.SLID
     assert found.sliding_distance == pytest.approx(speed**2 / (2.0 * mu * G), rel=1e-6)
 
 

@@ -18,7 +18,6 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics.plane import equations
-from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
@@ -262,7 +261,7 @@ def test_energies_by_a_general_purpose_integrator(engine):
     state, lost = independent(4.0, 0.45, response.time[-1], 0.85)
     energy = response.energy
     assert response.impacts.size >= 2
-    assert response.outcome is Outcome.ROCKED
+    assert response.outcome is rk.Outcome.ROCKED
     assert response.rotation[-1] == pytest.approx(state[0], abs=1e-10)
     assert response.angular_velocity[-1] == pytest.approx(state[1], abs=1e-9)
     assert energy.work[-1] == pytest.approx(state[2], rel=1e-10, abs=0.0)

@@ -21,7 +21,6 @@ from rocking.dynamics import PlaneSettings, RockingParameters
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.plane.fast_engine import run
 from rocking.motions import Segments
-from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
@@ -185,7 +184,7 @@ def test_time_of_rest(engine, linear, expected):
     for rest_speed, most in ((1e-8, 250), (0.01, 60)):
         response = released(0.5, engine, linear=linear, rest_speed=rest_speed)
         last = response.trajectory.events[-1]
-        assert response.outcome is Outcome.ROCKED
+        assert response.outcome is rk.Outcome.ROCKED
         assert last.kind is EventKind.REST
         assert response.impacts.size < most
         # flights of a low speed last 2 y / p, y over p sin(alpha), and the next ones r, r^2, ... times as long
@@ -274,11 +273,11 @@ def pushed(speed, engine, *, linear, stretches, r=0.9):
 def test_overturning_by_an_impulse(engine, stretches, bound, agreement):
     """REF: an impulse overturns from p dU cos(alpha) / g = 2 sin(alpha / 2) on; linear p dU / g = alpha."""
     exact = threshold(
-        lambda y: pushed(y, engine, linear=False, stretches=stretches).outcome is Outcome.OVERTURNED, 0.1, 0.4
+        lambda y: pushed(y, engine, linear=False, stretches=stretches).outcome is rk.Outcome.OVERTURNED, 0.1, 0.4
     )
     agreement(abs(exact / 0.244366527391408932 - 1.0), bound)
     linear = threshold(
-        lambda y: pushed(-y, engine, linear=True, stretches=stretches).outcome is Outcome.OVERTURNED, 0.1, 0.4
+        lambda y: pushed(-y, engine, linear=True, stretches=stretches).outcome is rk.Outcome.OVERTURNED, 0.1, 0.4
     )
     agreement(abs(linear / ALPHA - 1.0), bound)
     assert exact != pytest.approx(linear, rel=1e-3)  # negative control
@@ -294,6 +293,6 @@ def test_overturning_by_a_double_impulse(engine, r):
         first = pushed(y * ALPHA, engine, linear=True, stretches=150, r=r)
         impact = next(e for e in first.events if e.kind is EventKind.IMPACT)
         second = pushed(impact.after / P - y * ALPHA, engine, linear=True, stretches=150, r=r)
-        return second.outcome is Outcome.OVERTURNED
+        return second.outcome is rk.Outcome.OVERTURNED
 
     assert threshold(overturns, 0.3, 0.9) == pytest.approx(1.0 / (1.0 + r), rel=3e-11, abs=0.0)

@@ -27,7 +27,6 @@ from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
-from rocking.motions import GroundMotion
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
@@ -80,7 +79,7 @@ def _upright(body, facet=None):
 
 def _noise(rng, count, size):
     """A ground with three components of noise, the vertical one a third."""
-    return HullGround(*(GroundMotion(rng.normal(size=count) * a, 0.02) for a in (size, size, size / 3.0)))
+    return HullGround(*(rk.GroundMotion(rng.normal(size=count) * a, 0.02) for a in (size, size, size / 3.0)))
 
 
 # ---- steps ----------------------------------------------------------------------------------------------------------
@@ -112,7 +111,7 @@ def test_free_flight_is_a_parabola_and_keeps_momentum_and_energy():
     """Thrown up while the ground accelerates linearly in time: the centre's cubic path, momentum and energy kept."""
     body = _hull_of(np.random.default_rng(1))
     start = State((0.0, 0.0, 3.0), (1.0, 0.0, 0.0, 0.0), (0.3, -0.2, 2.0), (3.0, -2.0, 5.0))
-    ground = HullGround(GroundMotion([0.0, 4.0], 0.5))
+    ground = HullGround(rk.GroundMotion([0.0, 4.0], 0.5))
     engine = HullEngine(body, ground, settings=HullSettings(tolerance=1e-13))
     history = engine.run(start)
     k = int(np.searchsorted(history.time, 0.5 - 1e-12))
@@ -168,7 +167,7 @@ def _until(engine, state, end):
 def test_a_shaken_prism_is_that_of_the_engine_in_space():
     """Lifted from rest by two components: attitude to 1e-10 over the motion; without the second one it is another."""
     time = 0.02 * np.arange(41)
-    x, y = (GroundMotion(a * np.sin(w * time), 0.02) for a, w in ((4.0, 8.0), (3.6, 5.0)))
+    x, y = (rk.GroundMotion(a * np.sin(w * time), 0.02) for a, w in ((4.0, 8.0), (3.6, 5.0)))
     space = SpatialBody.box(*TOWER)
     body = _box(*TOWER, mass=space.mass)
     history = _until(HullEngine(body, HullGround(x, y), settings=FINE), standing(body), 0.8)
@@ -284,7 +283,7 @@ def test_a_block_slides_down_a_slope_and_stands_on_a_rough_one():
 def test_a_block_slides_before_it_rocks_where_friction_is_below_its_slenderness():
     """b/h = .25: with mu = .2 it slides and never lifts, with mu = .6 it lifts and never slides."""
     body = _box(1.0, 1.0, 4.0, 100.0)
-    motion = GroundMotion([0.0, 4.0, 4.0, 0.0, -2.0, 0.0], 0.05)
+    motion = rk.GroundMotion([0.0, 4.0, 4.0, 0.0, -2.0, 0.0], 0.05)
     slid = HullEngine(body, HullGround(motion), friction=0.2).run(standing(body))
     rocked = HullEngine(body, HullGround(motion), friction=0.6, settings=HullSettings(rest_speed=1e-3))
     lifted = _until(rocked, standing(body), 0.5)
@@ -404,7 +403,7 @@ def test_random_hulls_have_a_result_under_every_motion(seed):
     body = _hull_of(rng)
     facet = body.under((0.0, 0.0, 1.0))
     for friction, restitution in ((math.inf, "housner-3d"), (0.7, 0.9), (0.3, "housner-3d")):
-        x, y, z = (GroundMotion(rng.normal(size=20) * size, 0.02) for size in (6.0, 6.0, 2.0))
+        x, y, z = (rk.GroundMotion(rng.normal(size=20) * size, 0.02) for size in (6.0, 6.0, 2.0))
         settings = HullSettings(tolerance=1e-7, rest_speed=1e-3)
         history = HullEngine(body, HullGround(x, y, z), restitution, friction, settings).run(
             standing(body, facet=facet)
@@ -616,7 +615,7 @@ def test_a_drum_of_many_corners_slides_as_one_of_few():
     rng = np.random.default_rng(3)
     envelope = np.exp(-((np.linspace(0.0, 4.0, 500) - 4.0 / 3.0) ** 2))
     rows = [np.convolve(rng.normal(size=500), np.exp(-np.arange(10) / 3.0))[:500] for _ in range(3)]
-    x, y, z = (GroundMotion(c * envelope * f, 0.02) for c, f in zip(rows, (3.5, 2.8, 1.4), strict=True))
+    x, y, z = (rk.GroundMotion(c * envelope * f, 0.02) for c, f in zip(rows, (3.5, 2.8, 1.4), strict=True))
     ground = HullGround(x, y, z)
     choices = {"friction": [0.3, 0.5], "settings": HullSettings(tolerance=1e-8), "engine": "fast"}
     few, many = (hull_histories(_drum(count, 1.2), ground, **choices) for count in (6, 360))
@@ -647,7 +646,7 @@ def test_a_base_of_many_corners_slides_alike_in_both_engines(monkeypatch):
     body = HullBody(points, 1.0, (0.15, -0.1, 0.6), np.diag([0.18, 0.2, 0.08]))
     rng = np.random.default_rng(3)
     rows = [np.convolve(rng.normal(size=60), np.exp(-np.arange(10) / 3.0))[:60] for _ in range(3)]
-    ground = HullGround(*(GroundMotion(c * f, 0.02) for c, f in zip(rows, (5.0, 4.0, 1.4), strict=True)))
+    ground = HullGround(*(rk.GroundMotion(c * f, 0.02) for c, f in zip(rows, (5.0, 4.0, 1.4), strict=True)))
     settings, whole, started = HullSettings(tolerance=1e-9), sliding_module._turned_whole, []
 
     def start(problem, begun, free, still):

@@ -26,7 +26,6 @@ from rocking.dynamics.hull.restitution import place_of
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import PlausibilityWarning
-from rocking.motions import GroundMotion
 
 pytestmark = [
     pytest.mark.verifies(room="rocking in space"),
@@ -72,7 +71,7 @@ class _Cut(HullEngine):
 
 def _run(body, start, duration, **choices):
     """A history on ground at rest with a step that ends at the duration."""
-    ground = HullGround(GroundMotion(np.zeros(2), duration))
+    ground = HullGround(rk.GroundMotion(np.zeros(2), duration))
     history = _Cut(body, ground, settings=HullSettings(tolerance=1e-11), **choices).run(start, duration)
     assert history.time[-1] == pytest.approx(duration, rel=1e-12)
     return history
@@ -218,8 +217,8 @@ def test_the_peak_of_a_shaken_body_tends_to_that_of_the_rim_with_order_one(name,
     Orders within 0.4, as the scatter of eight orientations is a third. Against a peak 5 % off there is no order.
     """
     time = np.linspace(0.0, 0.6, 61)
-    x = GroundMotion(size * np.sin(math.pi * time / 0.6), 0.01)
-    y = GroundMotion(-0.8 * size * np.sin(2.0 * math.pi * time / 0.6) ** 2 * np.sign(time - 0.1), 0.01)
+    x = rk.GroundMotion(size * np.sin(math.pi * time / 0.6), 0.01)
+    y = rk.GroundMotion(-0.8 * size * np.sin(2.0 * math.pi * time / 0.6) ** 2 * np.sign(time - 0.1), 0.01)
     peak = rk.simulate(ROUND[name], {"x": x, "y": y}, restitution="housner-3d").peak_tilt
     assert 0.03 < peak < 0.3
     errors, wrong = [], []
@@ -277,7 +276,7 @@ def test_energy_is_closed_to_a_billionth_of_the_barrier_where_nothing_is_lost(na
     friction, start = MOTIONS[name]
 
     def change(mu):
-        ground = HullGround(GroundMotion(np.zeros(2), 0.25))
+        ground = HullGround(rk.GroundMotion(np.zeros(2), 0.25))
         history = _Cut(body, ground, friction=mu).run(start(body), 0.25)
         struck = [e.time for e in history.events if e.kind is HullEventKind.IMPACT]
         last = sum(t < min(struck, default=math.inf) for t in history.time) - 1

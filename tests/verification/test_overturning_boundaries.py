@@ -16,13 +16,7 @@ from pulse_boundaries import (
 )  # fmt: skip
 
 import rocking as rk
-from rocking.studies import (
-    boundary,
-    minimum_overturning_acceleration,
-    overturning_map,
-    safe_beyond_overturning,
-    safe_islands,
-)
+from rocking.studies import boundary, safe_beyond_overturning, safe_islands
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -33,7 +27,7 @@ P = BLOCK.frequency_parameter
 
 def crossings(pulse, r, **options):
     """All crossings of the linear equations."""
-    return minimum_overturning_acceleration(BLOCK, pulse, r, linear=True, threads=1, **options)
+    return rk.minimum_overturning_acceleration(BLOCK, pulse, r, linear=True, threads=1, **options)
 
 
 def period(omega):
@@ -128,9 +122,9 @@ def test_nonlinear_rectangles(tangent, ratio, p_time):
     """REF: by the exact equations the crossing is at the ratio whose critical duration the pulse has."""
     block = rk.Block.from_angle(math.atan(tangent), 1.1)
     pulse = rk.pulses.rectangular(1.0, p_time / block.frequency_parameter)
-    found = minimum_overturning_acceleration(block, pulse, 0.9, threads=1)
+    found = rk.minimum_overturning_acceleration(block, pulse, 0.9, threads=1)
     assert found.ratio == pytest.approx([ratio], rel=1e-10, abs=0.0)
-    linear = minimum_overturning_acceleration(block, pulse, 0.9, threads=1, linear=True)
+    linear = rk.minimum_overturning_acceleration(block, pulse, 0.9, threads=1, linear=True)
     assert linear.ratio != pytest.approx([ratio], rel=1e-5)  # negative control
 
 
@@ -141,7 +135,7 @@ def test_nonlinear_full_sine():
     """REF: full sine, Omega = 3, tan alpha = 1/3, r = 0.85: all three crossings by the exact equations."""
     block = rk.Block.from_angle(math.atan(1.0 / 3.0), 0.7)
     pulse = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
-    found = minimum_overturning_acceleration(block, pulse, 0.85, threads=1)
+    found = rk.minimum_overturning_acceleration(block, pulse, 0.85, threads=1)
     assert found.ratio[0] == pytest.approx(1.43078991141167367, rel=1e-10, abs=0.0)
     assert found.ratio[1:] == pytest.approx([3.4697991, 3.6856831], rel=1e-7)
     assert found.modes.tolist() == [[-1, 1], [1, -1], [-1, 0]]
@@ -193,7 +187,7 @@ def test_polylines_name_both_sides(lines):
 @pytest.fixture(scope="module")
 def sines():
     """Map of the full sine, r = 0.9, linear."""
-    return overturning_map(
+    return rk.overturning_map(
         BLOCK, rk.pulses.sine(1.0, 0.5), ("frequency_ratio", np.linspace(1.0, 7.0, 121)),
         ("amplitude_ratio", np.linspace(0.5, 12.0, 231)), 0.9, linear=True, threads=1,
     )  # fmt: skip
@@ -223,7 +217,7 @@ def test_the_safe_region_between_the_modes(sines):
     narrow = sines.sel(frequency_ratio=slice(2.5, 6.0))
     assert max(island.cells for island in safe_islands(narrow, enclosed=False).islands) > 100
     assert len(safe_islands(narrow)) == 0  # it opens at the edge of the map
-    elastic = overturning_map(
+    elastic = rk.overturning_map(
         BLOCK, rk.pulses.sine(1.0, 0.5), ("frequency_ratio", np.linspace(1.0, 7.0, 61)),
         ("amplitude_ratio", np.linspace(0.5, 12.0, 116)), 1.0, linear=True, threads=1,
     )  # fmt: skip
@@ -235,7 +229,7 @@ def test_survivors_lean_beyond_the_top(sines):
     """REF: below mode II survivors lean to 1.61, 1.51 and 1.39 alpha at Omega = 2, 3, 5: beyond 1 is no overturning."""
     for omega, published in ((2, 1.61), (3, 1.51), (5, 1.39)):
         scale = mode_two(omega) * (1.0 - 1e-9)
-        point = overturning_map(
+        point = rk.overturning_map(
             BLOCK, rk.pulses.sine(1.0, 0.5), ("frequency_ratio", [omega]), ("amplitude_ratio", [scale]), 0.9,
             linear=True, threads=1,
         )  # fmt: skip

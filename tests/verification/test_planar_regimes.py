@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.bodies import Block, Region, Section
-from rocking.dynamics import simulate
 from rocking.dynamics.contact import (
     Regime,
     Start,
@@ -16,13 +14,12 @@ from rocking.dynamics.contact import (
     regime_at_start,
     regime_map,
 )
-from rocking.motions import GroundMotion
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
 
 G = 9.80665
-SLENDER = Block(width=1.0, height=4.0)
+SLENDER = rk.Block(width=1.0, height=4.0)
 HAIR = 1e-9
 """Distance from a boundary, over the value, within which a cell of the map is not asked."""
 
@@ -32,7 +29,7 @@ def _noise(count=400, vertical=0.0, seed=3, factor=1.0):
     rng, time = np.random.default_rng(seed), np.arange(count) * 0.02
     row = 3.2 * np.sin(4.0 * time) * np.exp(-(((time - 4.0) / 2.5) ** 2)) + 0.8 * rng.standard_normal(count)
     up = vertical * np.sin(17.0 * time) * np.exp(-(((time - 4.0) / 2.0) ** 2))
-    return GroundMotion(factor * row, 0.02, vertical=up)
+    return rk.GroundMotion(factor * row, 0.02, vertical=up)
 
 
 def _knock(block, friction, bounce=0.0, restitution=None):
@@ -113,7 +110,7 @@ def test_ground_that_falls_faster_than_the_body_lets_it_fly():
 @pytest.mark.verifies("closed form", "b / h of each foot")
 def test_a_body_that_leans_rocks_sooner_onto_its_near_foot():
     """Feet at 0.1 and 0.7 m under a centre at 0.5 m: b / h is 0.1 to the right and 0.2 to the left."""
-    body = Section([Region([(0, 0), (1, 0), (1, 4), (0, 4)], 1.0)], feet=(0.1, 0.7))
+    body = rk.Section([rk.Region([(0, 0), (1, 0), (1, 4), (0, 4)], 1.0)], feet=(0.1, 0.7))
     assert regime_at_start(body, -0.15, 1.0) is Regime.ROCK
     assert regime_at_start(body, 0.15, 1.0) is Regime.REST
     assert analytic_regime(body, -0.15, 1.0) is Regime.ROCK
@@ -126,7 +123,7 @@ def test_a_body_that_leans_rocks_sooner_onto_its_near_foot():
 @pytest.mark.parametrize("slenderness", [0.75, 1.0, 2.0, 4.0, 8.0])
 def test_much_friction_gives_housner(slenderness):
     """Above 1 / sqrt(2), r = (2 lambda^2 - 1) / (2 lambda^2 + 2), one foot takes the blow."""
-    _, impact = _knock(Block(width=1.0, height=slenderness), 10.0)
+    _, impact = _knock(rk.Block(width=1.0, height=slenderness), 10.0)
     r = (2.0 * slenderness**2 - 1.0) / (2.0 * slenderness**2 + 2.0)
     assert impact["velocity_after"] / impact["velocity_before"] == pytest.approx(r, rel=1e-9, abs=0.0)
     assert impact["normal_left"] == 0.0
@@ -137,7 +134,7 @@ def test_much_friction_gives_housner(slenderness):
 @pytest.mark.parametrize("slenderness", [0.3, 0.6, 0.7])
 def test_squat_bodies_stop(slenderness):
     """Below 1 / sqrt(2) both feet take a blow and the body stops."""
-    response, impact = _knock(Block(width=1.0, height=slenderness), 10.0)
+    response, impact = _knock(rk.Block(width=1.0, height=slenderness), 10.0)
     assert impact["velocity_after"] == 0.0
     assert impact["normal_left"] > 0.0
     assert impact["normal_right"] > 0.0
@@ -148,7 +145,7 @@ def test_squat_bodies_stop(slenderness):
 @pytest.mark.parametrize(("mu", "r"), [(0.0, 0.25), (6.0 / 17.0, 0.7), (0.5, 0.7)])
 def test_impact_with_friction_is_the_reference_value(mu, r):
     """Impact with friction, REF, lambda = 2: r(0) = 0.25, r(6/17) = 0.7, and 0.7 beyond."""
-    _, impact = _knock(Block(width=1.0, height=2.0), mu)
+    _, impact = _knock(rk.Block(width=1.0, height=2.0), mu)
     assert impact["velocity_after"] / impact["velocity_before"] == pytest.approx(r, rel=1e-9, abs=0.0)
 
 
@@ -156,7 +153,7 @@ def test_impact_with_friction_is_the_reference_value(mu, r):
 @pytest.mark.parametrize("mu", [0.05, 0.2, 0.34])
 def test_impact_that_slips_is_the_closed_form(mu):
     """An impact that slips: r = (I - m b^2 + mu m b h) / (I + m b^2 - mu m b h); the frictionless one is told apart."""
-    block = Block(width=1.0, height=2.0)
+    block = rk.Block(width=1.0, height=2.0)
     inertia, lever, height = 5.0 / 12.0, 0.5, 1.0
     r = (inertia - lever**2 + mu * lever * height) / (inertia + lever**2 - mu * lever * height)
     _, impact = _knock(block, mu)
@@ -169,14 +166,14 @@ def test_impact_that_slips_is_the_closed_form(mu):
 @pytest.mark.parametrize(("mu", "slips"), [(0.6 * (1.0 + HAIR), False), (0.6 * (1.0 - HAIR), True)])
 def test_friction_of_the_impact_without_slip(mu, slips):
     """Impact without slip, REF: lambda = 1 takes mu = 0.6, to 1e-9."""
-    assert bool(_knock(Block(width=1.0, height=1.0), mu)[1]["slips"]) is slips
+    assert bool(_knock(rk.Block(width=1.0, height=1.0), mu)[1]["slips"]) is slips
 
 
 @pytest.mark.verifies("closed form", "1 - 3/2 (1 + e) sin^2 alpha", within="1e-9")
 @pytest.mark.parametrize(("slenderness", "bounce"), [(4.0, 0.3), (2.0, 0.5), (2.0, 0.05)])
 def test_bouncing_impact_is_the_closed_form(slenderness, bounce):
     """Bouncing: r = 1 - 3/2 (1 + e) sin^2 alpha; the new foot leaves with 2 b e theta'."""
-    block = Block(width=1.0, height=slenderness)
+    block = rk.Block(width=1.0, height=slenderness)
     response, impact = _knock(block, 5.0, bounce)
     r = 1.0 - 1.5 * (1.0 + bounce) * math.sin(block.slenderness_angle) ** 2
     assert impact["velocity_after"] / impact["velocity_before"] == pytest.approx(r, rel=1e-9, abs=0.0)
@@ -220,7 +217,7 @@ def test_bounces_accumulate_to_rest():
 @pytest.mark.verifies("invariant", "the complementarity problem", within="1e-12")
 def test_imposed_housner_is_complementarity_with_any_friction():
     """With Housner's r imposed, impacts that stick and that slip are those of the complementarity problem."""
-    block = Block(width=1.0, height=2.0)
+    block = rk.Block(width=1.0, height=2.0)
     for mu in (0.0, 0.2, 0.6):
         given, free = (_knock(block, mu, restitution=r)[1] for r in ("housner", None))
         assert given["velocity_after"] == pytest.approx(free["velocity_after"], rel=1e-12, abs=0.0)
@@ -230,7 +227,7 @@ def test_imposed_housner_is_complementarity_with_any_friction():
 @pytest.mark.verifies("closed form", "(h / b) (1 - r) / (1 + r)", within="1e-9", control="within")
 def test_imposed_coefficient_is_kept_while_the_foot_sticks():
     """r = 0.85 takes mu = (h / b) (1 - r) / (1 + r): above it r comes out, below it the body loses more."""
-    block, r = Block(width=1.0, height=2.0), 0.85
+    block, r = rk.Block(width=1.0, height=2.0), 0.85
     need = 2.0 * (1.0 - r) / (1.0 + r)
     # with less than 0.353 the foot slides before the impact already
     kept, lost = (_knock(block, mu, restitution=r)[1] for mu in (0.5, 0.5 * need))
@@ -249,7 +246,7 @@ def test_imposed_coefficient_is_kept_while_the_foot_sticks():
 def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
     """A pulse A for T: slid (A - mu g) A T^2 / (2 mu g), back to the left; 1 % more friction is told apart."""
     push, duration, mu = 4.0, 0.5, 0.3
-    response = rk.simulate(Block(width=1.0, height=1.0), rk.pulses.rectangular(push, duration), None, friction=mu)
+    response = rk.simulate(rk.Block(width=1.0, height=1.0), rk.pulses.rectangular(push, duration), None, friction=mu)
     grip = mu * G
     expected = (push - grip) * push * duration**2 / (2.0 * grip)
     assert response.sliding_distance == pytest.approx(expected, rel=1e-12, abs=0.0)
@@ -262,7 +259,7 @@ def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
 @pytest.mark.verifies("closed form", "v^2 / (2 mu g)", within="1e-12")
 def test_block_that_is_pushed_stops_where_friction_stops_it():
     """Let go at v on ground at rest it slides v^2 / (2 mu g), and friction takes m v^2 / 2."""
-    body, mu, v = Block(width=1.0, height=1.0), 0.25, 1.7
+    body, mu, v = rk.Block(width=1.0, height=1.0), 0.25, 1.7
     response = rk.free_rocking(body, restitution=None, friction=mu, start=Start(horizontal_velocity=v), duration=3.0)
     assert response.displacement[-1] == pytest.approx(v**2 / (2.0 * mu * G), rel=1e-12, abs=0.0)
     assert response.energy.lost_in_friction[-1] == pytest.approx(0.5 * body.mass * v**2, rel=1e-12, abs=0.0)
@@ -290,7 +287,7 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
     """Under a_z = -2 g for 0.1 s the body flies: it rises g t^2 / 2 above the ground in that time."""
     samples = np.zeros(60)
     vertical = np.where(np.arange(60) <= 10, -2.0 * G, 0.0)
-    motion = GroundMotion(samples, 0.01, vertical=vertical)
+    motion = rk.GroundMotion(samples, 0.01, vertical=vertical)
     response = rk.simulate(SLENDER, motion, None, friction=0.4, duration=0.5)
     assert response.rise[10] == pytest.approx(0.5 * G * 0.1**2, rel=1e-12, abs=0.0)
     assert response.outcome is Outcome.FLEW
@@ -305,9 +302,9 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
 @pytest.mark.parametrize("restitution", ["housner", "ked", None])
 def test_much_friction_is_the_pure_rocking_engine(restitution, agreement):
     """mu = 1e6 and no bounce: rotations equal the reference engine's to 1e-9 rad over 30 impacts, lifted ground too."""
-    body, motion = Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
+    body, motion = rk.Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
     planar = rk.simulate(body, motion, restitution, friction=1e6, duration=8.0)
-    pure = simulate(body, motion, restitution or "housner", engine="reference", duration=8.0, rest_speed=1e-7)
+    pure = rk.simulate(body, motion, restitution or "housner", engine="reference", duration=8.0, rest_speed=1e-7)
     assert pure.impacts.size > 30
     assert pure.peak_rotation > 0.01
     agreement(np.max(np.abs(planar.rotation - pure.rotation)), 1e-9)
@@ -318,10 +315,10 @@ def test_much_friction_is_the_pure_rocking_engine(restitution, agreement):
 @pytest.mark.verifies("negative control", "0.9 of the coefficient")
 def test_another_coefficient_is_told_apart_from_the_pure_rocking_engine():
     """Negative control: with r = 0.9 times Housner's the same comparison fails by more than 1e-6 rad."""
-    body, motion = Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
+    body, motion = rk.Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
     r = 0.9 * (1.0 - 1.5 * math.sin(body.slenderness_angle) ** 2)
     planar = rk.simulate(body, motion, r, friction=1e6, duration=8.0)
-    pure = simulate(body, motion, "housner", engine="reference", duration=8.0)
+    pure = rk.simulate(body, motion, "housner", engine="reference", duration=8.0)
     assert np.max(np.abs(planar.rotation - pure.rotation)) > 1e-6
 
 
@@ -330,14 +327,14 @@ CASES = [(0.8, 0.5, 0.0), (1.5, 0.8, 0.3), (1.5, 1.4, 0.0), (0.5, 0.2, 0.6), (0.
 
 def _strong():
     motion = _noise(vertical=12.0)
-    return GroundMotion(2.2 * motion.acceleration, 0.02, vertical=motion.vertical)
+    return rk.GroundMotion(2.2 * motion.acceleration, 0.02, vertical=motion.vertical)
 
 
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-10", control="within")
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_energy_adds_up(width, mu, bounce, agreement):
     """Kinetic + potential + lost = work + initial to 1e-10, through every regime; losses only grow."""
-    response = rk.simulate(Block(width=width, height=2.0), _strong(), None, friction=mu, bounce=bounce)
+    response = rk.simulate(rk.Block(width=width, height=2.0), _strong(), None, friction=mu, bounce=bounce)
     assert response.status is Status.GOOD
     agreement(response.energy.closure, 1e-10)
     for lost in (response.energy.lost_in_impacts, response.energy.lost_in_friction):
@@ -350,8 +347,8 @@ def test_energy_adds_up(width, mu, bounce, agreement):
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_mirror_is_exact(width, mu, bounce):
     """The body in a mirror under the motion in a mirror moves as the mirror shows, to the last bit."""
-    body, motion = Block(width=width, height=2.0), _strong()
-    turned = GroundMotion(-motion.acceleration, 0.02, vertical=motion.vertical)
+    body, motion = rk.Block(width=width, height=2.0), _strong()
+    turned = rk.GroundMotion(-motion.acceleration, 0.02, vertical=motion.vertical)
     one = rk.simulate(body, motion, None, friction=mu, bounce=bounce)
     other = rk.simulate(body.mirrored(), turned, None, friction=mu, bounce=bounce)
     assert np.array_equal(one.rotation, -other.rotation)
@@ -366,7 +363,7 @@ def test_mirror_is_exact(width, mu, bounce):
 )
 def test_contact_forces_obey_their_laws_at_every_sample():
     """Feet press, never pull, |F_t| <= mu F_n, no foot is below the ground, and friction acts against sliding."""
-    body, mu = Block(width=1.5, height=2.0), 0.8
+    body, mu = rk.Block(width=1.5, height=2.0), 0.8
     response = rk.simulate(body, _strong(), None, friction=mu)
     forces, scale = response.forces, body.mass * G
     assert forces.left.min() >= -1e-9 * scale
@@ -381,7 +378,7 @@ def test_contact_forces_obey_their_laws_at_every_sample():
 @pytest.mark.verifies("invariant", "tolerances of 1e-12 and 1e-15", within="1e-8 rad")
 def test_tolerance_does_not_change_a_history():
     """A tolerance of 1e-12 instead of 1e-15 moves rotations by less than 1e-8 rad through sliding and rocking."""
-    body = Block(width=1.2, height=2.0)
+    body = rk.Block(width=1.2, height=2.0)
     pulse = rk.pulses.sine(amplitude=9.0, period=0.9)
     fine, coarse = (rk.simulate(body, pulse, None, friction=0.65, tolerance=t, duration=2.5) for t in (1e-15, 1e-12))
     assert fine.regimes["regime"].tolist() == coarse.regimes["regime"].tolist()
@@ -392,7 +389,7 @@ def test_tolerance_does_not_change_a_history():
 @pytest.mark.verifies("closed form", "Painleve's limit, mu = 4/3 at h/b = 2", within="0.1")
 def test_a_foot_dragged_behind_the_paradox_is_struck():
     """Painleve: lambda = 2 sliding forward with mu > 4 / 3 has no force, and sticks in a shock; below not."""
-    block = Block(width=1.0, height=2.0)
+    block = rk.Block(width=1.0, height=2.0)
     start = Start(rotation=1e-6, horizontal_velocity=1.0)
     stuck, fine = (
         rk.free_rocking(block, restitution=None, friction=4.0 / 3.0 + d, start=start, duration=0.01)
@@ -439,7 +436,7 @@ def _peer(width, height, mu, push, duration, total):
 def test_a_general_purpose_engine_agrees(width, height, mu, push, duration, total, regime):
     """MuJoCo (0.1 ms, soft contacts) agrees to 2e-5 of the distance slid, to 2e-3 in sliding and rocking."""
     response = rk.simulate(
-        Block(width=width, height=height), rk.pulses.rectangular(push, duration), None, friction=mu, duration=total
+        rk.Block(width=width, height=height), rk.pulses.rectangular(push, duration), None, friction=mu, duration=total
     )
     assert regime in response.regimes["regime"]
     x, _, rotation = response.at(total)

@@ -23,7 +23,6 @@ from rocking.dynamics import PlaneSettings
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.plane.equations import EventKind
 from rocking.dynamics.rows import Rows
-from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
@@ -71,13 +70,13 @@ def boundary(pulse, unit, guess, r, engine, *, width=0.01, **body):
     while high - low > 4.0 * math.ulp(high):
         grid = np.linspace(low, high, parts + 1)
         found = outcomes(pulse, grid * unit, r, engine, **body)
-        over = found["outcome"] == Outcome.OVERTURNED.code
+        over = found["outcome"] == rk.Outcome.OVERTURNED.code
         assert (found["status"] == 0).all()
         assert over[0] != over[-1]
         k = int(np.flatnonzero(over != over[0])[0])
         low, high = grid[k - 1], grid[k]
     near = outcomes(pulse, np.array([low * (1.0 - 1e-9), high * (1.0 + 1e-9)]) * unit, r, engine, **body)
-    over = near["outcome"] == Outcome.OVERTURNED.code
+    over = near["outcome"] == rk.Outcome.OVERTURNED.code
     return 0.5 * (low + high), near["impacts"][over].tolist()
 
 
@@ -105,7 +104,7 @@ def test_following_the_body_afterwards_changes_nothing(engine):
         pulse, r, expected, _ = LINEAR[case]
         scales = ALPHA * expected * np.array([1.0 - 1e-10, 1.0 + 1e-10])
         found = outcomes(unit_pulse(*pulse), scales, r, engine, after=25.0)
-        over = (found["outcome"] == Outcome.OVERTURNED.code).tolist()
+        over = (found["outcome"] == rk.Outcome.OVERTURNED.code).tolist()
         assert over == ([True, False] if "upper" in case else [False, True])
 
 
@@ -135,7 +134,7 @@ def test_the_reported_formula_is_unconservative():
         assert reported > 1.06 * exact
         for engine in ENGINES:
             found = outcomes(unit_pulse("half_sine", omega), [0.99 * reported * ALPHA] * 2, 0.9, engine)
-            assert (found["outcome"] == Outcome.OVERTURNED.code).all()
+            assert (found["outcome"] == rk.Outcome.OVERTURNED.code).all()
 
 
 def critical_duration(tangent, ratio):
@@ -219,7 +218,7 @@ def test_survival_between_the_modes(omega, engine):
         ]
     )
     found = outcomes(unit_pulse("sine", omega), scales, 0.9, engine)
-    over = (found["outcome"] == Outcome.OVERTURNED.code).reshape(4, 9)
+    over = (found["outcome"] == rk.Outcome.OVERTURNED.code).reshape(4, 9)
     assert over.all(axis=1).tolist() == [False, True, False, True]
     assert over.any(axis=1).tolist() == [False, True, False, True]
     assert set(found["impacts"].reshape(4, 9)[3].tolist()) == {0}
@@ -232,11 +231,11 @@ def test_modes_without_a_gap():
         second = mode_two(omega)
         scales = ALPHA * np.linspace(lower * (1.0 + 1e-9), 1.5 * second, 2001)
         found = outcomes(unit_pulse("sine", omega), scales, 1.0, "fast")
-        assert (found["outcome"] == Outcome.OVERTURNED.code).all()
+        assert (found["outcome"] == rk.Outcome.OVERTURNED.code).all()
     for omega in (8, 10):
         scales = ALPHA * np.linspace(1.0, SINE_NO_IMPACT[omega] * (1.0 - 1e-9), 2001)
         found = outcomes(unit_pulse("sine", omega), scales, 0.9, "fast")
-        assert (found["outcome"] != Outcome.OVERTURNED.code).all()
+        assert (found["outcome"] != rk.Outcome.OVERTURNED.code).all()
 
 
 def largest_below_mode_two(omega):
@@ -257,7 +256,7 @@ def test_beyond_the_top_and_back(omega, published, engine):
     scale = ALPHA * mode_two(omega) * (1.0 - 1e-9)
     found = outcomes(unit_pulse("sine", omega), [scale], 0.9, engine)
     reached = abs(found["peak_rotation"][0]) / ALPHA
-    assert found["outcome"][0] == Outcome.ROCKED.code
+    assert found["outcome"][0] == rk.Outcome.ROCKED.code
     assert reached == pytest.approx(published, abs=0.006)  # known to three digits
     assert reached == pytest.approx(largest_below_mode_two(omega), abs=1e-7)
 

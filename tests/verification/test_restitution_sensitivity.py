@@ -13,7 +13,6 @@ from scipy import optimize, stats
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import PlaneSettings, RandomRestitution, RockingParameters
-from rocking.outcome import Outcome
 from rocking.studies import (
     HistoryTable,
     MotionList,
@@ -36,7 +35,7 @@ LOWER = {  # Omega: r = 0.9, r = 1
     6: (5.1641589274575678, 3.41721761686939524),
 }  # fmt: skip
 BLOCK = rk.Block(width=0.3, height=2.0)
-OVER = Outcome.OVERTURNED.code
+OVER = rk.Outcome.OVERTURNED.code
 
 
 def flips_around(omega, boundaries, margin=1e-9):

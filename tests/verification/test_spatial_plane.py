@@ -16,7 +16,6 @@ from rocking.dynamics.space import (
 )
 from rocking.dynamics.space.complementarity import SpatialState, of_impact
 from rocking.dynamics.space.impact_laws import law_of
-from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 
@@ -67,7 +66,7 @@ def test_a_sine_pulse_in_a_plane_is_the_plane_solution(axis, amplitude):
     assert space.outcome is plane.outcome
     time = plane.time[(plane.time < 5.0) & ~(plane.time > plane.overturning_time) & (plane.time < space.time[-1])]
     np.testing.assert_allclose(_signed(space.at(time), axis), plane.at(time), rtol=0.0, atol=1e-10)
-    if plane.outcome is Outcome.ROCKED:
+    if plane.outcome is rk.Outcome.ROCKED:
         assert space.peak_tilt == pytest.approx(plane.peak_rotation, abs=1e-10)
     else:
         assert space.overturning_time == pytest.approx(plane.overturning_time, abs=1e-8)

@@ -12,18 +12,7 @@ from scipy import integrate
 from scipy.spatial import ConvexHull
 
 import rocking as rk
-from rocking.bodies.solid import (
-    Corner,
-    Edge,
-    Part,
-    Polyhedron,
-    Solid,
-    box,
-    cylinder,
-    extrusion,
-    frustum,
-    rotation_about,
-)
+from rocking.bodies.solid import Corner, Edge, Part, Polyhedron, box, cylinder, extrusion, frustum, rotation_about
 from rocking.restitution.ked import ring_integral
 from rocking.restitution.space import edge_coefficient, impact_in_space, integrals, spatial_models
 from rocking.restitution.space.integrals import exact_moment, kept_moments, line_moment
@@ -31,7 +20,7 @@ from rocking.restitution.space.ked import energy_left
 
 pytestmark = pytest.mark.verifies(room="restitution in space")
 
-PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
+PRISM = rk.Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())
 PLANE = {
     "ked-3d": "ked",
@@ -58,7 +47,7 @@ ALONG = np.array([0.0, 1.0, 0.0])
 )
 def test_cylinder_over_a_diameter(height, model, value):
     """REF: a cylinder of diameter 1 that falls back over a diameter."""
-    assert edge_coefficient(Solid(cylinder(1.0, height)), model) == pytest.approx(value, rel=1e-10, abs=0.0)
+    assert edge_coefficient(rk.Solid(cylinder(1.0, height)), model) == pytest.approx(value, rel=1e-10, abs=0.0)
 
 
 @pytest.mark.verifies("computed anew", "two-dimensional quadrature by SciPy", within="1e-9")
@@ -70,7 +59,7 @@ def test_cylinder_as_a_weight_over_the_plane():
         return integrate.quad(lambda y: y**4 / (y * y + (radius - x) ** 2), 0.0, height, epsabs=1e-13)[0]
 
     top = integrate.quad(lambda x: 2.0 * math.sqrt(radius**2 - x * x) * column(x), -radius, radius, epsabs=1e-12)[0]
-    solid = Solid(cylinder(1.0, 2.0))
+    solid = rk.Solid(cylinder(1.0, 2.0))
     assert line_moment(solid, solid.base.edge(0.0)) / 2400.0 == pytest.approx(top, rel=1e-9, abs=0.0)
 
 
@@ -98,7 +87,7 @@ def test_axis_operator():
 @pytest.mark.parametrize("slenderness", [1.5, 2.0, 4.0, 8.0])
 def test_housner_over_the_diagonal(slenderness):
     """Housner over the diagonal: (4 l^2 - 5)/(4 l^2 + 7) for a square prism of any slenderness."""
-    solid = Solid(box(1.0, 1.0, slenderness))
+    solid = rk.Solid(box(1.0, 1.0, slenderness))
     result = impact_in_space(solid, [-1, 1, 0], pivot=(-0.5, -0.5), onto=(0.5, 0.5), model="housner")
     value = (4.0 * slenderness**2 - 5.0) / (4.0 * slenderness**2 + 7.0)
     assert result.raw_velocity @ [-1, 1, 0] / 2.0 == pytest.approx(value, rel=1e-13, abs=0.0)
@@ -172,7 +161,7 @@ LAYERED = rk.Section(
 @pytest.mark.parametrize("section", [TRAPEZOID, HOLED, LAYERED], ids=["trapezoid", "holed", "layered"])
 def test_prisms_of_any_polygon_equal_the_plane(section, onto, model):
     """The edge operator in space is the plane model for every extruded polygon, to 1e-12."""
-    solid = Solid.from_section(section)
+    solid = rk.Solid.from_section(section)
     left, right = (
         Edge(np.array([x, 0.0, section.ground]), sign * ALONG)
         for x, sign in zip(section.feet, (-1.0, 1.0), strict=True)
@@ -187,15 +176,15 @@ def test_prisms_of_any_polygon_equal_the_plane(section, onto, model):
 @pytest.mark.verifies("computed anew", "the coefficient to 16 digits", within="1e-12")
 def test_known_trapezoid():
     """REF: KED 0.8704740952680223 for the trapezoid, here as a solid."""
-    solid = Solid.from_section(TRAPEZOID)
+    solid = rk.Solid.from_section(TRAPEZOID)
     assert edge_coefficient(solid, start=1) == pytest.approx(0.8704740952680223, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.verifies("computed anew", "quadrature over the faces of the same prism", within="1e-12")
 def test_exact_extrusion_equals_surface_quadrature():
     """The polygon's boundary sum and the quadrature over the faces of the same prism agree to 1e-12."""
-    solid = Solid.from_section(HOLED)
-    mesh = Solid(
+    solid = rk.Solid.from_section(HOLED)
+    mesh = rk.Solid(
         [
             Part(Polyhedron(p.shape.vertices, p.shape.faces), p.density, rotation=p.rotation, translation=p.translation)
             for p in solid.parts
@@ -253,7 +242,7 @@ def test_flat_faces_exactly(seed, agreement, monkeypatch):
 @pytest.mark.parametrize("depth", [1.0, 0.1, 0.01])
 def test_thin_bodies_approach_the_plane(depth):
     """About a corner KED tends to the plane value with the square of the depth."""
-    solid = Solid(box(1.0, depth, 4.0))
+    solid = rk.Solid(box(1.0, depth, 4.0))
     result = impact_in_space(solid, ALONG, pivot=(-0.5, -0.5 * depth), onto=(0.5, -0.5 * depth))
     assert result.velocity[1] == pytest.approx(0.94736683503237, abs=0.05 * depth**2 + 1e-12)
 
@@ -266,7 +255,7 @@ def test_stepping_between_edges(model, sides):
 
     The plane motion may have any pivot: neither model cares where the old one was."""
     turn = 2.0 * np.pi * np.arange(sides) / sides
-    solid = Solid(extrusion(np.stack([np.cos(turn), np.sin(turn)], axis=1), 6.0))
+    solid = rk.Solid(extrusion(np.stack([np.cos(turn), np.sin(turn)], axis=1), 6.0))
     edges = solid.base.edges
     for i, edge in enumerate(edges[1:], 1):
         cosine = -float(edges[0].direction @ edge.direction)
@@ -278,7 +267,7 @@ def test_stepping_between_edges(model, sides):
 
 # --- invariances and bounds ------------------------------------------------------------------------
 
-COLUMN = Solid([Part(box(1.0, 1.2, 0.3), 2400.0), Part(frustum(0.8, 0.5, 2.0), 2700.0).moved(0.05, 0.0, 0.3)])
+COLUMN = rk.Solid([Part(box(1.0, 1.2, 0.3), 2400.0), Part(frustum(0.8, 0.5, 2.0), 2700.0).moved(0.05, 0.0, 0.3)])
 CASE = {"velocity": np.array([0.3, 1.0, 0.1]), "pivot": np.array([-0.5, -0.6]), "onto": np.array([0.5, -0.6])}
 
 
@@ -305,10 +294,10 @@ def test_size_density_turn_and_mirror(model):
 @pytest.mark.verifies("invariant", "the same prism in two halves, as a mesh and as an extrusion", within="1e-12")
 def test_additivity_of_parts():
     """The integrals of KED are sums over parts: a prism in two halves, and as a box, a mesh and an extrusion."""
-    halves = Solid([box(1.0, 1.0, 2.0), Part(box(1.0, 1.0, 2.0)).moved(0, 0, 2.0)])
-    whole = Solid(box(1.0, 1.0, 4.0))
-    mesh = Solid(Polyhedron(whole.parts[0].shape.vertices, whole.parts[0].shape.faces))
-    prism = Solid(extrusion([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)], 4.0))
+    halves = rk.Solid([box(1.0, 1.0, 2.0), Part(box(1.0, 1.0, 2.0)).moved(0, 0, 2.0)])
+    whole = rk.Solid(box(1.0, 1.0, 4.0))
+    mesh = rk.Solid(Polyhedron(whole.parts[0].shape.vertices, whole.parts[0].shape.faces))
+    prism = rk.Solid(extrusion([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)], 4.0))
     corner = Corner(np.array([0.5, 0.5, 0.0]))
     expected = kept_moments(whole, corner).fourth
     for other in (halves, mesh, prism):
@@ -325,7 +314,7 @@ def test_additivity_of_parts():
 )
 def test_energy_bounds(height, depth, velocity, corner):
     """No model creates energy; KED by points never turns slower than its momentum alone says (Cauchy-Schwarz)."""
-    solid = Solid(box(1.0, depth, height))
+    solid = rk.Solid(box(1.0, depth, height))
     case = {"pivot": (-0.5, -0.5 * depth), "onto": (corner[0], corner[1] * depth)}
     middle = np.array([0.5, 0.5 * depth, 0.0])
     if np.cross(velocity, middle)[2] > -1e-3:

@@ -8,7 +8,6 @@ import pytest
 
 import rocking as rk
 from rocking.cli.minimum import stretches as sentence
-from rocking.studies import minimum_overturning_acceleration
 from rocking.studies.minimum_acceleration import Transitions
 
 COMMAND = "minimum"
@@ -28,7 +27,7 @@ def test_json_is_the_python_call(answered):
     """Every crossing is that of the study, bit by bit, in g and in m/s2."""
     told = answered(*SIZE, PULSE, "--restitution", "0.85", "--highest", "5g")
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
-    found = minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
+    found = rk.minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
     assert [one["peak_ground_acceleration"] for one in told["crossings"]] == found.acceleration.tolist()
     assert [[one["mode_below"], one["mode_above"]] for one in told["crossings"]] == found.modes.tolist()
     assert told["minimum_acceleration"] == found.minimum

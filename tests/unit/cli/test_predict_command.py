@@ -9,7 +9,6 @@ import pytest
 import rocking as rk
 from rocking.answers import plain
 from rocking.cli import main
-from rocking.prediction import predict
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -38,7 +37,7 @@ def test_json_is_the_python_call(run):
         *SIZE, PULSE, "--friction", "0.6", "--restitution", "ked", *FEW, "--set", "predict.base=[0,0.01]", "--json"
     )
     assert (code, err) == (0, "")
-    found = predict(
+    found = rk.predict(
         rk.Block(width=0.5, height=2.0),
         rk.pulses.sine(4.2, 0.8),
         friction=0.6,
@@ -53,7 +52,7 @@ def test_a_file_says_everything(printed, tmp_path):
     path = tmp_path / "question.toml"
     path.write_text(FILE, "utf-8")
     out = printed(str(path), "--set", "predict.seed=3", "--json")
-    found = predict(
+    found = rk.predict(
         rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), friction={"mean": 0.5, "deviation": 0.1},
         restitution=0.9, count=16, seed=3,
     )  # fmt: skip
@@ -114,6 +113,6 @@ def test_reports_say_what_was_said(printed, tmp_path):
     assert out.splitlines()[0] in text
     assert "placement" in text
     assert "16 bodies under each motion" in text
-    found = predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, shares=False)
+    found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, shares=False)
     with pytest.raises(rk.errors.RockingError, match=r"\.pdf or \.html"):
         rk.reports.report(found, tmp_path / "found.docx")

@@ -5,7 +5,6 @@ import math
 import pytest
 
 import rocking as rk
-from rocking.bodies.formats import read_body
 from rocking.dynamics import SpatialStart, Start
 
 pytestmark = pytest.mark.verifies("behaviour", room="doors")
@@ -43,7 +42,7 @@ def test_options_file_and_python_give_one_answer(answered, body, tmp_path):
     words = ("--free", "0.3", "--friction", "0.6", "--start-height", HEIGHT)
     velocity = (0.2, -0.1, 0.4)
     found = answered(body, *words, "--start-velocity=0.2,-0.1,0.4")
-    solid = read_body(body)
+    solid = rk.read_body(body)
     start = SpatialStart(found["initial_tilt"], height=HEIGHT, velocity=velocity)
     assert found["summary"] == rk.free_rocking(solid, restitution="ked", friction=0.6, start=start).summary
     file = tmp_path / "drop.toml"

@@ -7,7 +7,6 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking.bodies.formats import read_body
 from rocking.dynamics.space import SpatialResponse
 from rocking.outcome import Status
 
@@ -47,7 +46,7 @@ def record(file):
 
 def test_json_is_python_to_the_last_digit(answered, body):
     """x by word or option, y and z by options, restitution, scale and gravity: all are rk.simulate."""
-    solid, other = read_body(body), rk.pulses.sine(2.9, 0.6)
+    solid, other = rk.read_body(body), rk.pulses.sine(2.9, 0.6)
     expected = rk.simulate(solid, {"x": MOTION, "y": other})
     assert len({c for _, _, c, _ in expected.intervals}) > 2
     for words in ((SINE,), ("--motion", SINE)):
@@ -70,14 +69,14 @@ def test_three_components_of_one_file(answered, body, record):
     along = (f"{record}#{x}", *file, "--motion", f"y={record}#{y}")
     found = answered(body, *along, "--motion", f"z={record}#{z}")
     motions = [rk.read_motion(record, units="m/s2", component=name) for name in names]
-    assert found["peak_tilt"] == rk.simulate(read_body(body), motions).peak_tilt
+    assert found["peak_tilt"] == rk.simulate(rk.read_body(body), motions).peak_tilt
     other = answered(body, *along, "--set", f"motion.vertical={z}")
     assert other["peak_tilt"] == pytest.approx(found["peak_tilt"], rel=1e-12, abs=0.0)
     # negative control: without the vertical motion it is another response
     level = answered(body, *along)
     assert level["peak_tilt"] != pytest.approx(found["peak_tilt"], rel=1e-3)
     mixed = answered(body, SINE, "--motion", f"y={record}#{y}", *file)
-    assert mixed["peak_tilt"] == rk.simulate(read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
+    assert mixed["peak_tilt"] == rk.simulate(rk.read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
 
 
 def test_page_and_files(printed, body, tmp_path):
@@ -184,7 +183,7 @@ def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answe
     file.write_text(
         'units = "m"\n[[solid.part]]\ncylinder = { diameter = 0.5, height = 2.0 }\ndensity = 1000\n', encoding="utf-8"
     )
-    solid, pulse = read_body(file), rk.pulses.sine(3.2, 0.8)
+    solid, pulse = rk.read_body(file), rk.pulses.sine(3.2, 0.8)
     landed = rk.simulate(solid, {"x": pulse}, "housner")
     assert (landed.still_rocking, landed.ends_early, int(landed.contact[-1])) == (False, False, 0)
     frequency = landed.body.frequency(9.81)

@@ -7,7 +7,6 @@ import pytest
 from outcome_folders import BODY, FEW, outcome_folder
 
 import rocking as rk
-from rocking.prediction import predict
 
 COMMAND = "validate"
 pytestmark = pytest.mark.verifies(room="studies")
@@ -67,11 +66,11 @@ def test_json_is_the_python_call(answered, copy):
     found = answered(copy, *FEW)
     record = rk.read_motion(copy / "record_0.txt", units="m/s2")
     options = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": {"mean": 0.88, "deviation": 0.04}}
-    alone = predict(BODY, [record.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
+    alone = rk.predict(BODY, [record.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
     steps = found["events"]["overturning"]["reliability"]
     assert found["trials"] == sum(step["count"] for step in steps) == 12
     other = rk.read_motion(copy / "record_1.txt", units="m/s2")
-    more = predict(BODY, [other.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
+    more = rk.predict(BODY, [other.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
     said = [*alone.chances["overturning"].per_motion, *more.chances["overturning"].per_motion]
     mean = sum((16.0 * p + 0.5) / 17.0 for p in said) / 6.0
     assert sum(step["predicted"] * step["count"] for step in steps) / 12.0 == pytest.approx(mean, rel=1e-12)

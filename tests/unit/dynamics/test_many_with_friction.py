@@ -5,7 +5,6 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 
 pytest.importorskip("xarray")
 
@@ -144,12 +143,12 @@ def test_a_continuation_that_fails_leaves_the_result_before(engine):
     slender = rk.Section([rk.Region([(-0.35, 0.0), (0.25, 0.0), (0.3, 2.5), (-0.15, 2.2)], density=2400.0)])
     pulse, how = rk.pulses.sine(3.5, 0.9), {"restitution": 0.97, "friction": 0.6, "most_events": 20}
     one = rk.simulate(slender, pulse, **how)
-    assert one.outcome is Outcome.ROCKED
+    assert one.outcome is rk.Outcome.ROCKED
     assert one.still_rocking
     many = rk.simulate_many(slender, pulse, engine=engine, **how)
-    assert many["outcome"].item() == Outcome.ROCKED.code
+    assert many["outcome"].item() == rk.Outcome.ROCKED.code
     assert many["still_rocking"].item() == 1.0
     assert many["impacts"].item() == len(one.impacts)
     limited = how | {"most_events": 10}
-    assert rk.simulate(slender, pulse, **limited).outcome is Outcome.FAILED
-    assert rk.simulate_many(slender, pulse, engine=engine, **limited)["outcome"].item() == Outcome.FAILED.code
+    assert rk.simulate(slender, pulse, **limited).outcome is rk.Outcome.FAILED
+    assert rk.simulate_many(slender, pulse, engine=engine, **limited)["outcome"].item() == rk.Outcome.FAILED.code

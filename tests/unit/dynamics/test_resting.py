@@ -9,14 +9,7 @@ from engines import every_engine
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import (
-    ConstantRestitution,
-    Outcome,
-    PlaneSettings,
-    RockingParameters,
-    RockingSide,
-    SpeedRestitution,
-)
+from rocking.dynamics import ConstantRestitution, PlaneSettings, RockingParameters, RockingSide, SpeedRestitution
 from rocking.dynamics.plane.event_functions import Push, RestoringMoments, comes_to_rest
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.reference import Reference
@@ -100,7 +93,7 @@ def test_time_of_rest_is_the_geometric_series(name: str) -> None:
     assert early.impacts.size < response.impacts.size
     # flights differ from 2 v / (p^2 alpha) by (v / p alpha)^2, far below 1e-4
     assert response.impacts["time"][-1] == pytest.approx(flights, rel=1e-4)
-    assert early.outcome is response.outcome is Outcome.ROCKED
+    assert early.outcome is response.outcome is rk.Outcome.ROCKED
     assert not early.rotation[1:].any()
 
 
@@ -155,14 +148,14 @@ def test_let_go_beyond_the_top(name: str, linear: bool) -> None:
     block = rk.Block(width=0.5, height=2.0)
     alpha = block.slenderness_angle
     over = rk.free_rocking(block, -1.01 * alpha, 0.8, engine=name, linear=linear)
-    assert (over.outcome, over.overturning_time, over.trajectory.side) == (Outcome.OVERTURNED, 0.0, -1)
-    assert rk.free_rocking(block, -0.99 * alpha, 0.8, engine=name, linear=linear).outcome is Outcome.ROCKED
+    assert (over.outcome, over.overturning_time, over.trajectory.side) == (rk.Outcome.OVERTURNED, 0.0, -1)
+    assert rk.free_rocking(block, -0.99 * alpha, 0.8, engine=name, linear=linear).outcome is rk.Outcome.ROCKED
 
 
 @every_engine
 @pytest.mark.parametrize("linear", [False, True])
-@pytest.mark.parametrize(("share", "expected"), [(0.999, Outcome.ROCKED), (1.001, Outcome.OVERTURNED)])
-def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expected: Outcome) -> None:
+@pytest.mark.parametrize(("share", "expected"), [(0.999, rk.Outcome.ROCKED), (1.001, rk.Outcome.OVERTURNED)])
+def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expected: rk.Outcome) -> None:
     """Pushed up from rest by a share of the speed that reaches the top, a history cut at once knows how it ends; so
     does one that is pushed down from 0.1 and, after an impact of r = 1, climbs the other side."""
     block = rk.Block(width=0.5, height=2.0)
@@ -174,7 +167,7 @@ def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expect
     down = rk.free_rocking(block, 0.1, 1.0, angular_velocity=-share * p * math.sqrt(2.0 * (top - start)), **options)
     assert up.outcome is down.outcome is expected
     assert up.time[-1] < 0.05 / p * 1.01
-    if expected is Outcome.ROCKED:
+    if expected is rk.Outcome.ROCKED:
         size = 1.0 - math.sqrt(1.0 - share**2) if linear else 1.0 - math.acos(1.0 - top * (1.0 - share**2)) / alpha
         assert up.peak_rotation == pytest.approx(alpha * size, rel=1e-9)
 
@@ -230,7 +223,7 @@ def test_beyond_balance_it_returns_where_a_push_to_come_is_strong_enough(
         else Reference(UNEVEN, segments, settings, to_the_ground=False).run(*start.values())
     )
     assert (history.impacts > 0) is returns
-    assert returns or history.outcome is Outcome.OVERTURNED
+    assert returns or history.outcome is rk.Outcome.OVERTURNED
     if not returns and name == "reference":
         assert np.nanmax(np.abs(history.rotation)) < UNEVEN.side(sign).slenderness_angle + 0.06
 
@@ -334,8 +327,10 @@ def test_what_holds_over_stretches_of_a_smooth_motion(sign: int, linear: bool) -
 @every_engine
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("linear", [False, True])
-@pytest.mark.parametrize(("share", "expected"), [(0.999, Outcome.OVERTURNED), (1.001, Outcome.ROCKED)])
-def test_energy_decides_far_beyond_balance(name: str, sign: int, linear: bool, share: float, expected: Outcome) -> None:
+@pytest.mark.parametrize(("share", "expected"), [(0.999, rk.Outcome.OVERTURNED), (1.001, rk.Outcome.ROCKED)])
+def test_energy_decides_far_beyond_balance(
+    name: str, sign: int, linear: bool, share: float, expected: rk.Outcome
+) -> None:
     """Let go at 2.6 alpha and thrown back by a share of the speed that reaches the top, a history cut at once knows
     whether it comes back."""
     block = rk.Block(width=0.5, height=2.0)

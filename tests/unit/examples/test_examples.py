@@ -10,8 +10,6 @@ import pytest
 import shapely
 
 import rocking as rk
-from rocking.bodies import Solid
-from rocking.bodies.formats import read_body
 from rocking.errors import InvalidValueError
 from rocking.examples import table
 from rocking.motions import GroundMotion, measures, spectral_acceleration
@@ -20,7 +18,7 @@ from rocking.restitution.space import edge_coefficient, spatial_models
 
 ALL = rk.examples.catalogue()
 BODIES, MOTIONS = (list(rk.examples.catalogue(kind)) for kind in ("body", "motion"))
-PLANE = [name for name in BODIES if not isinstance(rk.examples.body(name), Solid)]
+PLANE = [name for name in BODIES if not isinstance(rk.examples.body(name), rk.Solid)]
 SCALED = {"far-field": 0.35, "long": 0.35, "soft-soil": 0.35, "pulse": 0.5}
 """Peak ground accelerations that titles state [g]."""
 
@@ -112,7 +110,7 @@ def test_mass_and_centre_of_sections(name):
 def test_titles_state_the_height(name):
     """The highest point of the body, to the digits of the title."""
     body, said = rk.examples.body(name), re.search(r"([\d.]+) m high", ALL[name].title)
-    if isinstance(body, Solid):
+    if isinstance(body, rk.Solid):
         highest = max(part.box()[1, 2] for part in body.parts)
     elif isinstance(body, rk.Block):
         highest = body.height
@@ -221,7 +219,7 @@ def test_a_file_of_the_user_is_not_written_over(tmp_path):
     assert mine.read_text() == "my own record"
     written = rk.examples.write("statue", tmp_path, force=True)
     assert rk.examples.write("statue", tmp_path) == written
-    assert read_body(written[0]).mass == rk.examples.body("statue").mass
+    assert rk.read_body(written[0]).mass == rk.examples.body("statue").mass
     with pytest.raises(InvalidValueError, match="no folder"):
         rk.examples.write("statue", tmp_path / "none")
 

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 import rocking
 import rocking as rk
-from rocking import Block, MassPoints, Section
 from rocking.errors import RockingError
 from rocking.evidence import coefficient_table, datasets
 from rocking.plots import body_picture, coefficient_picture, energy_stages_picture, paper_figure, write
@@ -59,7 +58,7 @@ def test_figure_7_and_8_hold_every_block():
 
 def test_figure_2_prints_the_shares():
     """Titles of Figure 2 give the shares of the balance; landing on the other foot of a block gives the same."""
-    block = Block(width=1.0, height=2.0)
+    block = rk.Block(width=1.0, height=2.0)
     for onto in ("left", "right"):
         titles = [axes.get_title() for axes in energy_stages_picture(block, onto=onto).axes[:4]]
         for title, share in zip(titles, energy_balance(block, onto=onto).shares.values(), strict=True):
@@ -70,11 +69,11 @@ def test_figure_2_prints_the_shares():
 @pytest.mark.parametrize(
     "body",
     [
-        Block(width=0.001, height=0.004),
-        Block(width=25.0, height=100.0),
-        Section.from_points([(1e6, 0.0), (1e6 + 1.0, 0.0), (1e6 + 0.8, 3.0)]),
-        Section.from_trapezoid(1.0, 0.5, 2.0, holes=[[(0.4, 0.5), (0.6, 0.5), (0.5, 1.0)]]),
-        MassPoints([(0.0, 2.0), (0.3, 1.0)], [1.0, 2.0], feet=(-1.0, 1.0)),
+        rk.Block(width=0.001, height=0.004),
+        rk.Block(width=25.0, height=100.0),
+        rk.Section.from_points([(1e6, 0.0), (1e6 + 1.0, 0.0), (1e6 + 0.8, 3.0)]),
+        rk.Section.from_trapezoid(1.0, 0.5, 2.0, holes=[[(0.4, 0.5), (0.6, 0.5), (0.5, 1.0)]]),
+        rk.MassPoints([(0.0, 2.0), (0.3, 1.0)], [1.0, 2.0], feet=(-1.0, 1.0)),
     ],
     ids=["1 mm", "100 m", "far away", "hole", "mass points"],
 )
@@ -97,7 +96,7 @@ def drawn_at(axes, rows, marker):
 
 def test_each_foot_at_its_own_slenderness():
     """Coefficients onto a foot stand over h/b of that foot, 3 and 1.5 for this triangle, and say which foot it is."""
-    body = Section.from_points([(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)])
+    body = rk.Section.from_points([(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)])
     tables = {foot: coefficient_table(body, onto=foot) for foot in ("left", "right")}
     figure = coefficient_picture(body, tables)
     left, right = (drawn_at(figure.axes[2], tables[f], m) for f, m in (("left", "<"), ("right", ">")))

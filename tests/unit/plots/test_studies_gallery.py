@@ -21,14 +21,7 @@ from rocking.plots import (
     sensitivity_picture,
     transitions_of_many_picture,
 )
-from rocking.studies import (
-    SyntheticSet,
-    boundary,
-    fragility_analysis,
-    map_sensitivity,
-    minimum_overturning_acceleration,
-    refined_map,
-)
+from rocking.studies import SyntheticSet, boundary, fragility_analysis, map_sensitivity, refined_map
 from rocking.studies.inventory import Inventory, InventoryObject, Thresholds, assess
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
@@ -143,7 +136,7 @@ def test_cloud_refuses():
 def test_crossings_of_many():
     """Bars are the overturning stretches in g, lanes are by the least of the first panel, wrong counts are refused."""
     pulses = [rk.pulses.sine(3.0, period) for period in (0.5, 0.8, 0.65)]
-    found = {f"r = {r}": [minimum_overturning_acceleration(BLOCK, p, r) for p in pulses] for r in (0.85, 0.95)}
+    found = {f"r = {r}": [rk.minimum_overturning_acceleration(BLOCK, p, r) for p in pulses] for r in (0.85, 0.95)}
     figure = drawn(transitions_of_many_picture(found, ["0.5", "0.8", "0.65"], words="period [s]"))
     first = figure.axes[0]
     assert [label.get_text() for label in first.get_yticklabels()] == ["0.8", "0.65", "0.5"]

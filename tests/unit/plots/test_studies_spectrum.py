@@ -11,7 +11,6 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots import rocking_spectrum_picture, sensitivity_picture
 from rocking.plots.rocking_spectrum import fractiles
-from rocking.studies import rocking_spectrum
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity, sensitivity, spectrum_sensitivity
 
 G = 9.80665
@@ -22,14 +21,14 @@ ANGLES = [0.15, 0.2, 0.3]
 @pytest.fixture(scope="module")
 def one():
     """Spectra of one pulse."""
-    return rocking_spectrum(rk.pulses.sine(5.0, 0.8), ANGLES, PERIODS, 0.9)
+    return rk.rocking_spectrum(rk.pulses.sine(5.0, 0.8), ANGLES, PERIODS, 0.9)
 
 
 @pytest.fixture(scope="module")
 def many():
     """Spectra of five pulses."""
     pulses = [rk.pulses.sine(5.0, period) for period in (0.4, 0.6, 0.8, 1.0, 1.2)]
-    return rocking_spectrum(pulses, ANGLES, np.linspace(1.0, 9.0, 30), 0.9)
+    return rk.rocking_spectrum(pulses, ANGLES, np.linspace(1.0, 9.0, 30), 0.9)
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +120,7 @@ def test_shares_of_many(many, pictures):
 
 def test_nothing_lifts():
     """A pulse below g tan(alpha) gives a picture of zeros, without warnings."""
-    made = rocking_spectrum(rk.pulses.sine(0.5, 0.8), [0.2], [2.0, 3.0, 4.0, 5.0], 0.9)
+    made = rk.rocking_spectrum(rk.pulses.sine(0.5, 0.8), [0.2], [2.0, 3.0, 4.0, 5.0], 0.9)
     figure = rocking_spectrum_picture(made)
     FigureCanvasAgg(figure).draw()
     assert not np.any(_curves(figure.axes[0])["0.2"][1])

@@ -11,7 +11,6 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots import transitions_picture
 from rocking.plots.overturning_map import CLASSES, FIRST, SECOND
-from rocking.studies import minimum_overturning_acceleration
 
 G = 9.80665
 BLOCK, SINE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
@@ -20,7 +19,7 @@ BLOCK, SINE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
 @pytest.fixture(scope="module")
 def found():
     """Overturned after an impact, safe again, overturned without impact."""
-    return minimum_overturning_acceleration(BLOCK, SINE, 0.85)
+    return rk.minimum_overturning_acceleration(BLOCK, SINE, 0.85)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +70,7 @@ def test_names_are_inside_the_panel_and_apart(axes):
 
 def test_nothing_overturns():
     """Without crossings there is the curve over the whole range and no shade."""
-    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=0.3 * G)
+    found = rk.minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=0.3 * G)
     axes = transitions_picture(found, BLOCK, SINE, 0.85, points=50).axes[0]
     assert not axes.patches
     assert axes.get_xlim() == pytest.approx((0.25, 0.3), rel=1e-9)
@@ -82,7 +81,7 @@ def test_stretches_too_narrow_for_words_have_a_legend():
     time = np.arange(1500) * 0.01
     row = np.sin(4.5 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2)) + 0.3 * np.sin(12.0 * time)
     record, block = rk.GroundMotion(row, 0.01, name="made up, 5 $"), rk.Block.from_angle(0.2, 1.0)
-    found = minimum_overturning_acceleration(block, record, 0.9, points=100, levels=1)
+    found = rk.minimum_overturning_acceleration(block, record, 0.9, points=100, levels=1)
     figure = transitions_picture(found, block, record, 0.9)
     words = [text.get_text() for text in figure.axes[0].texts]
     assert len(words) == len(set(words))

@@ -9,7 +9,6 @@ from scipy.stats import beta, binom, norm
 
 import rocking as rk
 from rocking.errors import RockingError
-from rocking.prediction import predict
 from rocking.prediction._predict import _chance, _growth
 from rocking.prediction.likelihood import TERMS, likelihood, scale_words
 from rocking.prediction.mechanics import Uncertain
@@ -217,7 +216,7 @@ def test_a_term_holds_the_whole_interval():
 @pytest.mark.verifies("closed form", "1 - 0.025**(1/16)", within="1e-12")
 def test_none_of_sixteen_is_not_almost_certain():
     """0 of 16 histories: the Clopper-Pearson interval ends at 20.6 %, and the word is "unlikely"."""
-    found = predict(BLOCK, WEAK, count=16, shares=False)
+    found = rk.predict(BLOCK, WEAK, count=16, shares=False)
     chance = found.chances["overturning"]
     assert (chance.low, chance.high) == pytest.approx((0.0, 1.0 - 0.025 ** (1.0 / 16.0)), abs=1e-12)
     assert found.verdict == (
@@ -233,7 +232,7 @@ def test_none_of_sixteen_is_not_almost_certain():
 def test_sentences_of_one_answer_agree():
     """Where a sentence says that an input changes the probability, none says that all histories end alike."""
     for seed, amplitude in itertools.product(range(4), (1.0, 2.75, 2.9, 3.4)):
-        found = predict(BLOCK, rk.pulses.sine(amplitude, 0.8), count=4, seed=seed, friction=(0.1, 0.8))
+        found = rk.predict(BLOCK, rk.pulses.sine(amplitude, 0.8), count=4, seed=seed, friction=(0.1, 0.8))
         alike = found.outcomes == 1
         assert ("same outcome" in found.decides) == alike
         value = found.chances["overturning"].value
@@ -242,7 +241,7 @@ def test_sentences_of_one_answer_agree():
 
 
 def test_every_probability_has_its_condition():
-    found = predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, shares=False)
+    found = rk.predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, shares=False)
     assert "PGA 0.204 g, 0.102 to 0.306 g; PGV" in found.verdict
     assert found.condition in found.verdict
     assert found.answer().plain()["condition"] == found.condition
@@ -256,17 +255,17 @@ def test_scaled_to_a_pga():
 
     strong = rk.GroundMotion(np.sin(0.1 * np.arange(200.0)), 0.01)
     weak = strong.scaled(0.4)
-    by_hand = predict(BLOCK, strong.scaled(3.0 / strong.peak), count=16, shares=False)
-    found = predict(BLOCK, strong, pga=3.0, count=16, shares=False)
+    by_hand = rk.predict(BLOCK, strong.scaled(3.0 / strong.peak), count=16, shares=False)
+    found = rk.predict(BLOCK, strong, pga=3.0, count=16, shares=False)
     assert found.chances["overturning"].value == by_hand.chances["overturning"].value
     assert found.motions[0].peak == pytest.approx(3.0, rel=1e-12)
     assert "so that PGA is 3 m/s2" in found.motions[0].provenance[-1]
-    pair = predict(BLOCK, {"x": weak, "y": strong}, pga=3.0, count=16, shares=False)
+    pair = rk.predict(BLOCK, {"x": weak, "y": strong}, pga=3.0, count=16, shares=False)
     assert pair.motions[0].peak == pytest.approx(3.0, rel=1e-12)
-    assert predict(BLOCK, rk.pulses.sine(1.0, 0.8), pga=3.0, count=16, shares=False).motions[0].peak == 3.0
+    assert rk.predict(BLOCK, rk.pulses.sine(1.0, 0.8), pga=3.0, count=16, shares=False).motions[0].peak == 3.0
     for motion, pga, why in (
         (on_floor(strong, 2, 3, 0.5), 3.0, "floor 2 of 3"), (strong, -1.0, "pga"), (strong, np.nan, "pga"),
         (strong.scaled(0.0), 3.0, "zero throughout"),
     ):  # fmt: skip
         with pytest.raises(RockingError, match=why):
-            predict(BLOCK, motion, pga=pga, count=16)
+            rk.predict(BLOCK, motion, pga=pga, count=16)

@@ -14,7 +14,6 @@ from rocking.dynamics.hull.histories import hull_histories
 from rocking.dynamics.hull.restitution import FixedPosition
 from rocking.dynamics.space import SpatialStart
 from rocking.errors import RockingError
-from rocking.prediction import predict
 from rocking.prediction.space import SampledInSpace
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -136,7 +135,7 @@ def test_a_prediction_of_a_solid():
     """Probabilities grow with the motion; the same seed gives the same answer on one and on two threads."""
     motions = [rk.pulses.sine(amplitude, 0.9) for amplitude in (0.5, 4.0, 8.0)]
     given = {"count": 16, "friction": 0.6, "shares": False, "seed": 3}
-    one, two = (predict(stone(), motions, threads=threads, **given) for threads in (1, 2))
+    one, two = (rk.predict(stone(), motions, threads=threads, **given) for threads in (1, 2))
     assert one.answer().plain()["probability"]["uplift"]["per_motion"][0] == 0.0
     assert one.chances["overturning"].per_motion.tolist() == two.chances["overturning"].per_motion.tolist()
     assert np.all(np.diff(one.chances["overturning"].per_motion) >= 0.0)
@@ -189,7 +188,7 @@ def test_a_body_given_at_a_slant_has_the_impacts_of_its_base():
 def test_what_cannot_be_meant_is_refused(given, words):
     """Names that do not exist in space, ranges in other units, with the words that say so."""
     with pytest.raises(RockingError, match=words):
-        predict(stone(), shaking(), count=4, **given)
+        rk.predict(stone(), shaking(), count=4, **given)
 
 
 @pytest.mark.verifies("computed anew", "a section of the same shape")

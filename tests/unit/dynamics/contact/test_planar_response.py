@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
-from rocking.bodies import Block
 from rocking.dynamics import ContactSettings, SpeedRestitution, simulate
 from rocking.dynamics.contact import (
     GroundContact,
@@ -28,13 +27,13 @@ from rocking.outcome import Outcome, Status
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
 
 G = 9.80665
-BODY = Block(width=1.0, height=2.0)
+BODY = rk.Block(width=1.0, height=2.0)
 
 
 @pytest.fixture(scope="module")
 def rocked():
     """Sliding, rocking and impacts under a sine pulse."""
-    return rk.simulate(Block(width=1.2, height=2.0), rk.pulses.sine(amplitude=9.0, period=0.9), None, friction=0.62)
+    return rk.simulate(rk.Block(width=1.2, height=2.0), rk.pulses.sine(amplitude=9.0, period=0.9), None, friction=0.62)
 
 
 def test_of_two_changes_at_one_time_the_last_counts():
@@ -53,7 +52,7 @@ def test_outcomes_of_five_bodies(rocked):
         rk.simulate(BODY, pulse, None, friction=0.3),
         rk.simulate(BODY, rk.pulses.rectangular(6.0, 0.1), None, friction=1.0),
         rocked,
-        rk.simulate(Block(width=0.2, height=2.0), pulse, None, friction=0.6),
+        rk.simulate(rk.Block(width=0.2, height=2.0), pulse, None, friction=0.6),
     ]
     expected = [
         Outcome.NO_UPLIFT,
@@ -172,7 +171,7 @@ def test_long_steps_are_cut_where_series_need_it():
     coarse = GroundMotion([0.0, 7.0, -6.0, 0.0], 2.0)
     fine = GroundMotion(np.interp(np.arange(301) * 0.02, [0.0, 2.0, 4.0, 6.0], [0.0, 7.0, -6.0, 0.0]), 0.02)
     long, short = (
-        rk.simulate(Block(width=2.2, height=3.0), m, None, friction=0.66, duration=3.0) for m in (coarse, fine)
+        rk.simulate(rk.Block(width=2.2, height=3.0), m, None, friction=0.66, duration=3.0) for m in (coarse, fine)
     )
     times = np.linspace(0.0, 3.0, 50)
     assert "SLIDE" in long.regimes["regime"]
@@ -222,7 +221,7 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
     width, friction, bounce, amplitude, period, restitution
 ):
     """Random bodies and pulses: a result, energy closed to 1e-10, feet never under the ground, forces that press."""
-    body = Block(width=width, height=2.0)
+    body = rk.Block(width=width, height=2.0)
     pulse = rk.pulses.sine(amplitude=amplitude, period=period)
     response = rk.simulate(body, pulse, restitution, friction=friction, bounce=bounce, duration=period + 1.0)
     assert response.status is Status.GOOD
@@ -299,6 +298,6 @@ def test_an_asymmetric_body_passes_its_own_feet(side):
 
     The former way, a line between the ends of a step, was .1 and .5 ms off.
     """
-    body, push = Block(width=1.0, height=3.0).with_feet(0.15, 0.8), rk.pulses.rectangular(5.0 * side, 1.0)
+    body, push = rk.Block(width=1.0, height=3.0).with_feet(0.15, 0.8), rk.pulses.rectangular(5.0 * side, 1.0)
     found = rk.simulate(body, push, 0.6, friction=20.0)
     assert found.overturning_time == pytest.approx(simulate(body, push, 0.6).overturning_time, abs=1e-11)

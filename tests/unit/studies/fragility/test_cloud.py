@@ -13,7 +13,6 @@ from scipy import stats
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 from rocking.statistics import regression
 from rocking.studies import fragility_analysis
 from rocking.studies.fragility.question import FragilityQuestion
@@ -45,7 +44,7 @@ def test_outcomes_are_those_of_the_motions_as_they_are(found):
     for k in range(0, 80, 10):
         one = rk.simulate(BLOCK, MOTIONS[k], restitution=0.9, engine="reference")
         assert found.responses.outcome[k] == one.outcome.code
-        if one.outcome is Outcome.ROCKED:
+        if one.outcome is rk.Outcome.ROCKED:
             assert found.responses.rotation[k] == pytest.approx(one.peak_rotation / alpha, rel=1e-6)
     assert found.responses.overturned.sum() > 5
 
@@ -85,7 +84,7 @@ def barely(count):
     """A cloud whose first histories above the threshold are lifted by 1e-7 alpha only, and where they are."""
     question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), "cloud")
     arrays = question.histories.run(0, 80)
-    chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[::2][:count]
+    chosen = np.flatnonzero(arrays["outcome"] == rk.Outcome.ROCKED.code)[::2][:count]
     arrays["peak_rotation"][chosen] = 1e-7 * math.atan(0.25)
     return question.answer(arrays), chosen
 
@@ -161,7 +160,7 @@ def test_plan_and_failures(found):
     arrays = question.histories.run(0, 80)
     same = question.answer(arrays)
     assert same.fits["overturned"].median == found.fits["overturned"].median
-    arrays["outcome"][79], arrays["peak_rotation"][79] = Outcome.FAILED.code, math.nan
+    arrays["outcome"][79], arrays["peak_rotation"][79] = rk.Outcome.FAILED.code, math.nan
     less = question.answer(arrays)
     assert (less.failed, int(less.trials.sum()), less.fits["overturned"].observations) == (1, 79, 79)
 
@@ -193,7 +192,7 @@ def test_dataset_and_summary(found):
 
 def test_share_of_what_was_clearly_lifted(found):
     """Of what rocked and stands: by hand where all are at one level, one where all are, and never above one."""
-    levels, codes = np.full(5, 2.0), [Outcome.ROCKED.code] * 4 + [Outcome.OVERTURNED.code]
+    levels, codes = np.full(5, 2.0), [rk.Outcome.ROCKED.code] * 4 + [rk.Outcome.OVERTURNED.code]
     rotation = np.array([0.3, 0.001, 0.2, 0.5, math.inf])
 
     def share(outcome, rotation):
@@ -204,7 +203,7 @@ def test_share_of_what_was_clearly_lifted(found):
     assert share(codes, rotation) == [0.75, 0.75]
     assert share(codes, np.maximum(rotation, 0.1)) == [1.0, 1.0]
     assert share(codes, np.minimum(rotation, 0.001)) == [0.0, 0.0]
-    assert share([Outcome.OVERTURNED.code] * 5, np.full(5, math.inf)) == [1.0, 1.0]
+    assert share([rk.Outcome.OVERTURNED.code] * 5, np.full(5, math.inf)) == [1.0, 1.0]
 
 
 def test_a_line_without_scatter():

@@ -9,7 +9,6 @@ import pytest
 import rocking as rk
 from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 from rocking.studies import fragility_analysis
 from rocking.studies.fragility.incremental_dynamic_analysis import (
     OutcomeBrackets,
@@ -47,7 +46,7 @@ def test_intervals_agree_with_levels_in_between(found):
     random = np.random.default_rng(1)
     for motion, level in zip(random.integers(0, 12, 60), random.uniform(2.0, 12.0, 60), strict=True):
         one = rk.simulate(BODY, PULSES[motion].scaled(float(level)), restitution=0.9)
-        assert (one.outcome is Outcome.OVERTURNED) == inside(found.intervals, motion, level)
+        assert (one.outcome is rk.Outcome.OVERTURNED) == inside(found.intervals, motion, level)
 
 
 def test_boundaries_are_as_close_as_wanted(found):
@@ -58,7 +57,7 @@ def test_boundaries_are_as_close_as_wanted(found):
                 continue
             over = [
                 rk.simulate(BODY, PULSES[interval.motion].scaled(end * f), restitution=0.9).outcome
-                is Outcome.OVERTURNED
+                is rk.Outcome.OVERTURNED
                 for f in (1.0 - 1e-9, 1.0 + 1e-9)
             ]
             assert over == ([False, True] if rises else [True, False])
@@ -94,7 +93,7 @@ def test_survivals_by_their_width(found):
     assert shares[0] > shares[-1]
     for motion, low, high in found.survivals:
         middle = rk.simulate(BODY, PULSES[motion].scaled(0.5 * (low + high)), restitution=0.9)
-        assert middle.outcome is not Outcome.OVERTURNED
+        assert middle.outcome is not rk.Outcome.OVERTURNED
     with pytest.raises(InvalidValueError):
         found.resurrected(-1.0)
 
@@ -132,7 +131,7 @@ def test_motions_with_a_failure_have_no_crossing_and_are_named(found):
     subject = Subject.of(BODY, PULSES, 0.9, "pga", {})
     question = FragilityQuestion.of(subject, "incremental", LEVELS, tolerance=1e-10)
     arrays = question.histories.run(0, question.histories.count)
-    arrays["outcome"][5], arrays["peak_rotation"][5] = Outcome.FAILED.code, math.nan
+    arrays["outcome"][5], arrays["peak_rotation"][5] = rk.Outcome.FAILED.code, math.nan
     hurt = question.answer(arrays)
     assert math.isnan(hurt.first_crossings[0])
     np.testing.assert_array_equal(hurt.first_crossings[1:], found.first_crossings[1:])

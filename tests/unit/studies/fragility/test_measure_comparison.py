@@ -9,7 +9,6 @@ from scipy import stats
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 from rocking.studies import compare_measures, fragility_analysis
 from rocking.studies.fragility.measure_comparison import replace_measure
 from rocking.studies.fragility.question import FragilityQuestion
@@ -74,7 +73,7 @@ def test_barely_lifted_histories_do_not_rank_measures():
     """A cloud with rotations of 1e-7 alpha ranks as the one without those histories; with them it does not."""
     question = FragilityQuestion.of(Subject.of(BODY, MOTIONS, 0.9, "pga", {}), "cloud")
     arrays = question.histories.run(0, 120)
-    chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[:20]
+    chosen = np.flatnonzero(arrays["outcome"] == rk.Outcome.ROCKED.code)[:20]
     arrays["peak_rotation"][chosen] *= 1e-7 / np.abs(arrays["peak_rotation"][chosen]) * math.atan(0.25)
     hurt = question.answer(arrays)
     kept = hurt.responses.rocked & (hurt.responses.rotation >= 0.01)

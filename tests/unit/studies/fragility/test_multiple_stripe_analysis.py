@@ -11,7 +11,6 @@ import rocking as rk
 from rocking import conventions
 from rocking.dynamics import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
-from rocking.outcome import Outcome
 from rocking.studies import MotionSet, fragility_analysis
 from rocking.studies.fragility.question import FragilityQuestion
 from rocking.studies.fragility.subject import Responses, Subject, limit_states, uplift_check
@@ -40,9 +39,9 @@ def test_counts_against_single_simulations(stripes):
     for level, target in enumerate(LEVELS):
         for record in MOTIONS:
             one = rk.simulate(BLOCK, record.scaled(target / float(np.abs(record.acceleration).max())), restitution=0.9)
-            over = one.outcome is Outcome.OVERTURNED
+            over = one.outcome is rk.Outcome.OVERTURNED
             reached = (
-                one.outcome is not Outcome.NO_UPLIFT,
+                one.outcome is not rk.Outcome.NO_UPLIFT,
                 over or one.peak_rotation > 0.2 * alpha,
                 over or one.peak_rotation > 0.5 * alpha,
                 over,
@@ -96,7 +95,7 @@ def test_failed_histories_are_left_out_and_counted(stripes):
     """One failed history lowers the trials of its level by one and touches nothing else."""
     question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, states=(0.2, 0.5))
     arrays = question.histories.run(0, question.histories.count)
-    arrays["outcome"][4] = Outcome.FAILED.code
+    arrays["outcome"][4] = rk.Outcome.FAILED.code
     arrays["peak_rotation"][4] = math.nan
     found = question.answer(arrays)
     assert found.failed == 1

@@ -7,7 +7,6 @@ import pytest
 
 import rocking as rk
 from rocking.motions import IntensityMeasure
-from rocking.outcome import Outcome
 from rocking.statistics import count_outcomes
 from rocking.statistics.counts import pooled
 from rocking.studies import MotionSet
@@ -120,7 +119,7 @@ def peak_of(kind, count):
     capacity = np.exp(np.random.default_rng(0).normal(1.3, 0.4, (len(motions), 1) if kind == "stripes" else count))
     over = (level > capacity).ravel()
     arrays = {
-        "outcome": np.where(over, Outcome.OVERTURNED.code, Outcome.ROCKED.code).astype(np.int8),
+        "outcome": np.where(over, rk.Outcome.OVERTURNED.code, rk.Outcome.ROCKED.code).astype(np.int8),
         "peak_rotation": np.where(over, 2.0, 0.1),
     }
     tracemalloc.start()
