@@ -208,6 +208,33 @@ def test_inventory_numbers_are_shown(open_page: Callable[..., Any], shot: Callab
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
 
 
+MIXED = {
+    "en": "name;width cm;depth cm;height cm\nvase;20;20;ca. 90\n;30;30;80\nbox;12x;3;?\nTotal;;;\n",
+    "de": "Objekt;Breite cm;Tiefe cm;Höhe cm\nVase;20;20;ca. 90\n;30;30;80\nKiste;12x;3;?\nSumme;;;\n",
+}
+ENGLISH = re.compile(r"\b(the|must|of|it|is|with|not|line|and|taken)\b")
+GERMAN = re.compile(r"\b(der|die|das|muss|von|es|ist|mit|nicht|Zeile|und|angenommen)\b")
+
+
+@pytest.mark.parametrize(
+    ("listed", "locale", "foreign"), [("de", "en", GERMAN), ("en", "de", ENGLISH), ("de", "it", GERMAN)]
+)
+def test_a_list_in_another_language(open_page: Callable[..., Any], listed: str, locale: str, foreign: Any) -> None:
+    """The answer is in the language of the page, whatever that of the list is, but for what the list says itself."""
+    page = open_page(view="inventory", locale=locale)
+    section = page.locator("#view-inventory")
+    sent = {"name": "list.csv", "mimeType": "text/csv", "buffer": MIXED[listed].encode("utf-8")}
+    section.locator("input[type=file]").first.set_input_files(sent)
+    expect(section.get_by_role("listitem")).to_contain_text("list.csv")
+    section.locator("form button.primary, form button[type=submit]").first.click()
+    outcome = section.get_by_test_id("outcome")
+    expect(outcome).to_have_attribute("data-state", "done")
+    said = " ".join(outcome.locator("td:not([translate=no]), th:not([translate=no]), p, h3, caption").all_inner_texts())
+    assert len(said) > 300
+    own = re.sub(r"'[^']*'|[\w ]+ cm\b", "", said)  # cells and titles of the list
+    assert foreign.findall(own) == []
+
+
 def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     """Titles that nobody knows are named, a cell that is wrong is corrected in its line; every object has its light."""
     page = open_page(view="inventory")

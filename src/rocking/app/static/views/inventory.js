@@ -51,7 +51,7 @@ const Inventory = ({ app, questions }) => {
     const shaking = { [kind.value]: kind.value === "pga" ? `${strength}g` : `${strength}cm/s` };
     const tables = {
       campaign: { name: list.name, kind: "inventory" },
-      inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, ...shaking },
+      inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, language: app.language, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
     await questions.ask(tables, { [list.name]: list.sha }, t("Which objects stay standing? {name}", { name: list.name }));
