@@ -4,8 +4,6 @@ import json
 
 import pytest
 
-from rocking.cli import main
-
 TABLES = """[body]
 units = "cm"
 width = 50
@@ -22,21 +20,13 @@ value = 0.5
 """
 
 
-def asked(capsys, *words):
-    """Return the answer of a command as JSON, or what it refuses."""
-    with pytest.raises(SystemExit):
-        main([*map(str, words), "--json"])
-    said = capsys.readouterr()
-    return json.loads(said.out) if said.out else said.err.splitlines()[-1]
-
-
 @pytest.mark.parametrize("command", ["cor", "simulate"])
-def test_a_plane_body_in_space(tmp_path, capsys, command):
+def test_a_plane_body_in_space(tmp_path, run, command):
     """With a .glb it is the solid of its depth, on its feet; without, it stays plane; without a depth it is refused."""
     file, out = tmp_path / "cabinet.toml", tmp_path / "cabinet.glb"
     file.write_text(TABLES)
-    plane = asked(capsys, command, file)
-    answer = asked(capsys, command, file, "--out", out)
+    plane = json.loads(run(command, file, "--json")[1])
+    answer = json.loads(run(command, file, "--out", out, "--json")[1])
     assert (plane["body"]["kind"] == "Solid", answer["body"]["kind"]) == (False, "Solid")
     assert answer["body"]["mass"] == pytest.approx(0.5 * 0.4 * 2.0 * 2400.0)
     assert answer["body"]["size"] == pytest.approx([0.5, 0.4, 2.0])
@@ -45,4 +35,4 @@ def test_a_plane_body_in_space(tmp_path, capsys, command):
         corners = {tuple(round(x, 9) for x in each) for each in answer["body"]["base"]["base_vertices"]}
         assert corners == {(x, y) for x in (0.1, 0.45) for y in (-0.2, 0.2)}
     file.write_text(TABLES.replace("depth = 40\n", ""))
-    assert "whose depth is given" in asked(capsys, command, file, "--out", tmp_path / "more.glb")
+    assert "whose depth is given" in run(command, file, "--out", tmp_path / "more.glb")[2]

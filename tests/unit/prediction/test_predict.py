@@ -211,26 +211,14 @@ def test_a_normal_is_cut_where_values_make_no_sense():
         ({"sliding_beyond": 0.0}, "sliding_beyond"),
         ({"seed": -1}, "seed"),
         ({"threads": 0}, "threads"),
+        ({"body": "block"}, "body must be"),
+        *(({"motions": bad}, "motions must be") for bad in ([], "sine", [1.0])),
+        ({"motions": {"x": PULSE, "y": PULSE}}, "two records"),
     ],
 )
 def test_bad_input(given, why):
     with pytest.raises(RockingError, match=why):
-        predict(BLOCK, PULSE, **given)
-
-
-@pytest.mark.parametrize(
-    ("body", "motions", "why"),
-    [
-        ("block", PULSE, "body must be"),
-        (BLOCK, [], "motions must be"),
-        (BLOCK, "sine", "motions must be"),
-        (BLOCK, [1.0], "motions must be"),
-        (BLOCK, {"x": PULSE, "y": PULSE}, "two records"),
-    ],
-)
-def test_bad_bodies_and_motions(body, motions, why):
-    with pytest.raises(RockingError, match=why):
-        predict(body, motions)
+        predict(**({"body": BLOCK, "motions": PULSE} | given))
 
 
 def test_ked_and_housner_stand_beside_what_was_measured():
