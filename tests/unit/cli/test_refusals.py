@@ -182,7 +182,7 @@ REFUSED = {
         "a.stl --units mm --set settings.gravity=0": "settings.gravity must be a number > 0",
         "a.stl --units mm --out a.bmp": ".png, .svg or .pdf",
         "a.stl --units mm --out none/a.csv": "no folder",
-        "--width 1 --height 2 --set body.up=z": "unknown key 'up'; allowed: mass, centre, moment_of_inertia, density",
+        "--width 1 --height 2 --set body.up=z": "unknown key 'up'; allowed: mass, centre, moment_of_inertia",
         "prism.toml --set body.up=z": "states up itself",
         "bad.toml": "bad.toml: solid.part[0].box.width must be a number > 0 m, got -1",
         "CABINET --mass 300 --density 200": "not both",
