@@ -493,11 +493,9 @@ _IDENTIFICATION = (
     Quantity("residual_times", "s", "times of the residuals"),
     Quantity("number", "1", "number of the impact, from zero", label="no."),
     Quantity("speed", "rad/s", "angular velocity before the impact, without sign"),
-    Quantity("release_ratio", "1", "initial rotation over the slenderness angle", label="release / alpha", digits="g"),
+    Quantity("release_ratio", "1", "initial rotation over the slenderness angle", digits="g"),
     Quantity("timing_noise", "s", "standard deviation of a measured time", digits=".2g"),
-    Quantity(
-        "deviation", "1", "standard deviation of the mean coefficient", label="standard deviation of r", digits=".2g"
-    ),
+    Quantity("deviation", "1", "standard deviation of the mean coefficient", digits=".2g"),
     Quantity("clock", "s", "lead of the clock of the measurement over that of the motion"),
     Quantity("gain", "1", "measured over true rotation"),
     Quantity("stretches", "1", "number of measured states at which half cycles begin anew"),
@@ -522,17 +520,9 @@ _SCORES = (
 _LEAGUE = (
     Quantity("correlation", "1", "correlation with the measurements"),
     Quantity("concordance", "1", "concordance with the measurements", label="Lin", digits=".3f"),
-    Quantity(
-        "log_loss_rmse",
-        "1",
-        "root mean square error of the logarithm of the energy loss",
-        label="log loss",
-        digits=".3f",
-    ),
-    Quantity(
-        "leave_one_out", "1", "root mean square error of measurements left out one by one", label="LOO", digits=".4f"
-    ),
-    Quantity("leave_group_out", "1", "root mean square error of groups left out one by one", label="LOG", digits=".4f"),
+    Quantity("log_loss_rmse", "1", "RMSE of the logarithm of the energy loss", label="log loss", digits=".3f"),
+    Quantity("leave_one_out", "1", "RMSE of measurements left out one by one", label="LOO", digits=".4f"),
+    Quantity("leave_group_out", "1", "RMSE of groups left out one by one", label="LOG", digits=".4f"),
     Quantity("bic", "1", "Bayesian information criterion", label="BIC", digits=".1f"),
     Quantity("by_group", "1", "root mean square error of each group"),
     Quantity("by_band", "1", "root mean square error in each band of h/b"),
