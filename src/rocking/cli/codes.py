@@ -9,7 +9,7 @@ import typer
 from rocking.answers import Answer
 from rocking.bodies import Block
 from rocking.cli import options
-from rocking.cli.exports import Export, Exports, write_columns
+from rocking.cli.exports import Export, Exports, write_records
 from rocking.cli.numbers import in_unit, row
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import LENGTH_UNITS, percent
@@ -28,20 +28,18 @@ if TYPE_CHECKING:
 COUNT, SEED, LEVEL = 100, 1, "2"
 """Synthetic motions, and what they are brought to, where nobody says otherwise."""
 
-_HEAD = (
-    "method", "body", "level", "histories", "called safe", "overturned of these", "demand over capacity",
-    "capacity over truth", "never overturned", "outside its domain",
-)  # fmt: skip
-
 
 def _csv(answer: "CodesAnswer", path: "Path") -> None:
     found, rows = answer.found, []
     for method, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
         name = method.name
         called, bias, outside = found.called_safe(name, k, j), found.bias(name, k), found.outside.get(name, "")
-        counts = called.total, called.safe, called.overturned
-        rows.append((name, body, level, *counts, called.ratio, bias.median, bias.censored, outside))
-    write_columns(path, {name: (values, "") for name, values in zip(_HEAD, zip(*rows, strict=True), strict=True)})
+        rows.append({
+            "method": name, "body": body, "level": level, "histories_known": called.total, "safe": called.safe,
+            "overturned": called.overturned, "limit_ratio": called.ratio, "median": bias.median,
+            "censored": bias.censored, "outside": outside,
+        })  # fmt: skip
+    write_records(path, rows)
 
 
 EXPORTS = {"csv": Export((".csv",), _csv)}

@@ -124,7 +124,8 @@ NETCDF = Export((".nc",), lambda answer, path: answer.found.to_netcdf(path), "h5
 
 def write_dataset(dataset: Any, path: Path) -> None:
     """Write an `xarray.Dataset` by the ending of a file: as netCDF, or with all its values in rows as CSV."""
-    from rocking.tables import to_netcdf
+    from rocking.quantities import QUANTITIES
+    from rocking.tables import Column, Table, to_csv, to_netcdf
 
     if path.suffix.lower() == ".nc":
         to_netcdf(dataset, path)
@@ -133,8 +134,11 @@ def write_dataset(dataset: Any, path: Path) -> None:
     over = dataset["mode"]
     names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
+    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in map(str, names)}
     # names of restitutions have no unit
-    write_columns(path, {str(name): (row, dataset[name].attrs.get("units", "")) for name, row in rows.items()})
+    units = {name: dataset[name].attrs.get("units", "") for name in names}
+    columns = {str(name): Column(row, units[name], codes=codes[str(name)]) for name, row in rows.items()}
+    to_csv(Table("row", columns, no_unit="1"), path, blank=False)
 
 
 def _write_dataset(answer: Any, path: Path) -> None:
@@ -143,18 +147,6 @@ def _write_dataset(answer: Any, path: Path) -> None:
 
 # of answers that are a dataset
 DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf": Export((".nc",), _write_dataset)}
-
-
-def write_columns(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
-    """Write values with their units as comma-separated values, all digits kept."""
-    import numpy as np
-
-    from rocking.quantities import QUANTITIES
-    from rocking.tables import Column, Table, to_csv
-
-    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in columns}
-    table = {name: Column(np.asarray(v), unit, codes=codes[name]) for name, (v, unit) in columns.items()}
-    to_csv(Table("row", table, no_unit="1"), path, blank=False)
 
 
 def write_records(path: Path, records: list[dict[str, Any]]) -> None:

@@ -30,11 +30,11 @@ def test_a_grid_of_bodies(printed, answered, tmp_path):
         for k, body in enumerate(found["bodies"]):
             for j, level in enumerate(found["levels"]):
                 called, row = said["called_safe"][k][j], table[name, body, level]
-                assert (int(row["called safe"]), int(row["overturned of these"])) == (
+                assert (int(row["safe"]), int(row["overturned"])) == (
                     called["safe"], called["overturned"],
                 )  # fmt: skip
                 assert called["safe"] <= called["histories_known"] == 6
-                assert row["outside its domain"] == said["outside"]
+                assert row["outside"] == said["outside"]
     assert found["methods"]["italian-linear"]["called_safe"][0][1]["safe"] == 6
 
 
