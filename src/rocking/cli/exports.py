@@ -151,9 +151,9 @@ DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf":
 
 def write_records(path: Path, records: list[dict[str, Any]]) -> None:
     """Write records of the same keys as CSV."""
-    from rocking.quantities import QUANTITIES
+    from rocking.quantities import quantity
     from rocking.tables import Column, Table, text_array, to_csv
 
-    units = {name: QUANTITIES[name].unit if name in QUANTITIES else "" for name in records[0]}
+    units = {name: entry.unit if (entry := quantity(name)) else "" for name in records[0]}
     columns = {name: Column(text_array([row[name] for row in records]), unit) for name, unit in units.items()}
     to_csv(Table("coefficient", columns), path)

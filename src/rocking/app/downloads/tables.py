@@ -29,6 +29,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.plots.labels import fine_samples, traces
 from rocking.quantities import QUANTITIES
+from rocking.quantities import quantity as quantity_of
 from rocking.reports.body_facts import ImpactAnswer
 from rocking.reports.response_facts import measures_of, spectrum_answer
 from rocking.tables import Cell, Column, Table, text_array, to_csv, to_dataset, to_excel, to_mat, to_netcdf
@@ -126,8 +127,8 @@ def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
 
 def _unit(name: str) -> str:
     """Return the unit of a quantity as headings have it; empty for words."""
-    unit = QUANTITIES[name].unit
-    return "-" if unit == "1" else unit
+    entry = quantity_of(name)
+    return "" if entry is None else "-" if entry.unit == "1" else entry.unit
 
 
 def motion_table(motion: Motion, about: dict[str, str]) -> Table:
