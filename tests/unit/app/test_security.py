@@ -93,6 +93,13 @@ def test_what_nothing_of_ours_sends_is_refused(status, check, sent):
         looked_at(check, sent)
 
 
+def test_header_twice_is_refused():
+    """A header that decides something must not be there twice."""
+    twice = [(b"host", b"a"), (b"Host", b"b")]
+    with refused(400):
+        RequestHead.of({"type": "http", "method": "GET", "scheme": "http", "path": "/", "headers": twice})
+
+
 def test_without_a_session_only_the_door_is_open(app, stranger):
     """Every endpoint in the schema but the three public ones answers 401 to a stranger."""
     public = {("get", "/api/session"), ("post", "/api/session"), ("get", "/api/openapi.json")}

@@ -165,6 +165,21 @@ def test_fragility_is_that_of_python(result):
     assert mine["trials"] == [20] * 5
 
 
+@pytest.mark.parametrize(
+    ("kind", "fragility", "own"),
+    [
+        ("cloud", {"measure": "pgv"}, {"regression"}),
+        ("incremental", {"levels": [2.0, 4.0, 8.0, 12.0]}, {"first_crossings", "resurrection", "intervals"}),
+    ],
+)
+def test_other_analyses_have_their_own(kind, fragility, own, result):
+    """A cloud has its points and its line, an incremental analysis its first crossings."""
+    pulses = [f"sine:amplitude={a},period={p}" for a in (2.0, 4.0, 6.0) for p in (0.4, 0.7, 0.9)]
+    analyses = result(kind, fragility=fragility, motions={"pulse": pulses})["analyses"]
+    assert [one["restitution"] for one in analyses] == ["ked", "housner"]
+    assert own <= set(analyses[0])
+
+
 def test_plain_histories_are_counted(result):
     """Each count is what a direct simulation of every motion says."""
     pulses, scales = ["sine:amplitude=1,period=0.6", "sine:amplitude=1,period=1.2"], [1.0, 4.0, 9.0]
