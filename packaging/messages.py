@@ -90,7 +90,7 @@ def extracted() -> tuple[set[Key], set[str]]:
 def unused() -> set[Key]:
     """Return the messages of the template that no source states."""
     messages, literals = extracted()
-    return {key for key in keys(read(TEMPLATE)) - messages if plain(key[0]) not in literals}
+    return {key for key in keys(read(TEMPLATE)) - messages if key[2] or plain(key[0]) not in literals}
 
 
 def keys(catalogue: Catalog) -> set[Key]:
