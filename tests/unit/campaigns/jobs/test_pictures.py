@@ -34,7 +34,6 @@ def test_kinds_with_and_without():
     """Of the kinds there are, one has no picture; the picture of an inventory stands beside its report."""
     without = {kind for kind, question in questions().items() if question.plot is StudyQuestion.plot}
     assert without == {"histories"}
-    assert {*OF_CALL, *without, "minimum-acceleration", "inventory"} == set(questions())
 
 
 @pytest.mark.parametrize(
