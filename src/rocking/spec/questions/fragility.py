@@ -122,16 +122,14 @@ class AnalysisQuestion(BodyQuestion):
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
         """Return the analysis; stripes with several restitutions are compared."""
-        from rocking.studies.sensitivity import fragility_sensitivity
-
         motions, body = problem.kept_motions, problem.only("bodies")  # made once, for every level
         if len(problem.restitutions) == 1 or self.one_restitution:
             return self.analysis(problem, problem.only("restitutions"), motions).computed(threads, progress)
-        table, options = self.fragility, {**problem.stated, "threads": threads, "progress": progress}
-        states, levels = tuple(table.states), self.levels
-        return fragility_sensitivity(
-            body, motions, levels, problem.restitutions, measure=table.measure, states=states, **options
-        )
+        from rocking.studies.sensitivity import fragility_sensitivity
+
+        options = {**problem.stated, "threads": threads, "progress": progress}
+        options |= {"measure": self.fragility.measure, "states": tuple(self.fragility.states)}
+        return fragility_sensitivity(body, motions, self.levels, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the study over motion, level save in clouds, and several restitutions."""

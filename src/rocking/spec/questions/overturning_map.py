@@ -81,7 +81,6 @@ class MapQuestion(BodyQuestion):
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
         """Return the map as `MapArrays`; with several restitutions their comparison."""
         from rocking.studies._overturning_map import map_arrays
-        from rocking.studies.sensitivity import map_sensitivity
 
         options = {**problem.stated, "threads": threads, "progress": progress}
         x, y = self.axes
@@ -90,6 +89,8 @@ class MapQuestion(BodyQuestion):
             return map_arrays(*subject, problem.restitution, refine=self.map.refine, **options)
         if self.map.refine is not None:
             raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
+        from rocking.studies.sensitivity import map_sensitivity
+
         return map_sensitivity(*subject, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
