@@ -105,7 +105,8 @@ def test_the_verdict_names_who_says_what():
         ({"a": rests, "b": cut, "c": rests}, False, f"{stands} Still rocking when the computation ends: with b."),
         ({"a": rests}, False, stands),
     ):  # fmt: skip
-        assert ModelAgreement.of(responses) == ModelAgreement(decides, words)
+        found = ModelAgreement.of(responses)
+        assert (found.decides, found.sentence) == (decides, words)
     both = ModelAgreement.of({"a": rests, "b": torn}).sentence
     assert both.endswith("The ground would have to pull, and the verdict assumes contact: with b.")
 
