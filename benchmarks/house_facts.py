@@ -150,7 +150,7 @@ def _declares(node: ast.AST) -> bool:
         return options >= _SIZES
     if isinstance(node, ast.Dict):
         pairs = zip(node.keys, node.values, strict=True)
-        described = {getattr(key, "value", None) for key, value in pairs if not _is_number(value)}
+        described = {getattr(key, "value", None) for key, value in pairs if _is_described(value)}
         return described >= _SIZES
     if isinstance(node, ast.Tuple | ast.Set | ast.List):
         names = [getattr(each, "value", None) for each in node.elts]
@@ -158,5 +158,6 @@ def _declares(node: ast.AST) -> bool:
     return False
 
 
-def _is_number(value: ast.AST) -> bool:
-    return isinstance(value, ast.Constant) and isinstance(value.value, int | float)
+def _is_described(value: ast.AST) -> bool:
+    is_text = isinstance(value, ast.Constant) and isinstance(value.value, str)
+    return is_text or isinstance(value, ast.Call | ast.Tuple | ast.Dict)

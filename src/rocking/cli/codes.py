@@ -1,6 +1,7 @@
 """`rocking codes`: what published rules say of bodies, and what their histories show."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -45,7 +46,7 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
 EXPORTS = {"csv": Export((".csv",), _csv)}
 
 
-@options.sized
+@partial(options.sized, listed=("width", "height"))
 def codes(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -65,12 +66,6 @@ def codes(
         ),
     ] = None,
     restitution: options.Restitution = "ked",
-    width: Annotated[
-        str | None, typer.Option(help=r"Full widths of blocks \[m, or --units]: A,B,C.", rich_help_panel=options.SIZE)
-    ] = None,
-    height: Annotated[
-        str | None, typer.Option(help=r"Full heights of blocks \[m, or --units]: A,B,C.", rich_help_panel=options.SIZE)
-    ] = None,
     slenderness: Annotated[
         str | None,
         typer.Option(

@@ -1,6 +1,6 @@
 """Options of the commands; what they mean is said once, by the tables of `rocking.spec`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from typing import Annotated, Any
@@ -31,20 +31,26 @@ Units = Annotated[
 ]
 
 
-def _size(name: str) -> Any:
+def _size(name: str, *, listed: bool = False) -> Any:
     text = (BlockTable.model_fields[name].description or "").replace("unit of the file", "m, or --units")
-    option = typer.Option(help=f"{text[:1].upper()}{text[1:]}.".replace("[", r"\["), rich_help_panel=SIZE)
-    kind: Any = str if name == "centre" else float
+    option = typer.Option(
+        help=f"{text[:1].upper()}{text[1:]}{': A,B,C' * listed}.".replace("[", r"\["), rich_help_panel=SIZE
+    )
+    kind: Any = str if listed or name == "centre" else float
     return Annotated[kind | None, option]
 
 
 _SIZES = {name: _size(name) for name in BLOCK_KEYS} | {"density": Density, "units": Units}
 
 
-def sized(command: Callable[..., None], before: str = "sets") -> Callable[..., None]:
-    """Give a command the sizes of a block as options, in front of one of its own; `Arguments` reads them."""
+def sized(command: Callable[..., None], before: str = "sets", listed: Sequence[str] = ()) -> Callable[..., None]:
+    """Give a command the sizes of a block as options, in front of one of its own; `Arguments` reads them.
+
+    listed: sizes that may have several values.
+    """
     own = signature(command).parameters
     added = {name: kind for name, kind in _SIZES.items() if name not in own}
+    added |= {name: _size(name, listed=True) for name in listed}
 
     @wraps(command)
     def sized_command(**values: Any) -> None:
