@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-HANG = 45.0
+HANG = 300.0
 """Wall time after which a test counts as hanging [s]."""
 
 T = TypeVar("T")
