@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import UNITS
-from rocking.messages import Message
+from rocking.messages import messages_of
 from rocking.quantities import QUANTITIES, Quantity, quantity
 
 
@@ -74,12 +74,13 @@ class Answer:
         return Answer({**self.values, **other.values}, {**self.quantities, **other.quantities})
 
     def plain(self) -> dict[str, Any]:
-        """Return the values as JSON has them, null where there is no finite number, and the unit of each quantity."""
+        """Return the values as JSON has them, null where there is no finite number, with units and messages beside."""
         own = dict(self.quantities)
         tree = plain(self, own)
         owners = dict.fromkeys(name for _, name in _owners(tree, (), own) if name)
         units = {name: entry.unit for name in owners if (entry := quantity(name, own)) and entry.unit}
-        return {**tree, "units": units} if units else tree
+        beside = {"units": units, "messages": messages_of(tree)}
+        return {**tree, **{name: table for name, table in beside.items() if table}}
 
     @property
     def bare(self) -> list[str]:
@@ -99,7 +100,7 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
     return array.astype(np.int8) if array.dtype == bool else array
 
 
-def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:  # noqa: PLR0911 - one a kind
+def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:
     """Return a value as JSON has it, null where there is no finite number; own: takes quantities of answers in it."""
     own = {} if own is None else own
     if isinstance(value, Answer):
@@ -109,8 +110,6 @@ def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:  # noqa: P
         return plain(value.records, own)
     if isinstance(value, Mapping):
         return {str(name): plain(each, own) for name, each in value.items()}
-    if isinstance(value, Message):
-        return str(value)
     if hasattr(value, "tolist"):
         whole = getattr(getattr(value, "dtype", None), "kind", "") in "iub" or np.isfinite(value).all()
         return value.tolist() if whole else plain(value.tolist(), own)

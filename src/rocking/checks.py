@@ -237,7 +237,7 @@ def nearest(word: Any, known: Iterable[str]) -> str:
     if comma := number_hint(word):
         return comma
     near = difflib.get_close_matches(word[:60].casefold(), list(known), n=1)
-    return f"did you mean {near[0]!r}?" if near else ""
+    return Message("did you mean {name}?", {"name": f"{near[0]!r}"}) if near else ""
 
 
 def number_hint(words: str) -> str:
@@ -247,9 +247,13 @@ def number_hint(words: str) -> str:
     ('numbers have a decimal point: 0.5', 'it takes no unit behind the number, 50: the help says how to give one')
     """
     if unit := re.fullmatch(r"([+-]?[0-9.]+) ?(?!e\d+$)([a-zA-Z][a-zA-Z/0-9]*)", words):
-        return f"it takes no unit behind the number, {unit[1]}: the help says how to give one"
+        return Message("it takes no unit behind the number, {unit}: the help says how to give one", {"unit": unit[1]})
     found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
-    return f"numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
+    return (
+        Message("numbers have a decimal point: {whole}.{fraction}", {"whole": found[1], "fraction": found[2]})
+        if found
+        else ""
+    )
 
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")

@@ -76,6 +76,9 @@ class RockingError(Exception):
         hint: str | Message = "",
         **facts: Any,
     ) -> None:
+        if isinstance(text, Message):
+            facts = {**text.facts, **facts}
+            text = text.text
         super().__init__(text)
         self.text, self.facts, self.hint = text, facts, hint
         self._name, self.value, self.allowed = parameter, value, allowed
@@ -115,7 +118,7 @@ class RockingError(Exception):
     def _sentence(self, places: Sequence[Place]) -> Message:
         sentence = self.message
         if isinstance(self.value, float) and self._name:  # with the decimal mark of its reader
-            sentence = replace(sentence, facts={**sentence.facts, "value": Amount(self.value)} | self.facts)
+            sentence = Message(sentence.text, {**sentence.facts, "value": Amount(self.value)} | self.facts)
         for place in reversed(places):
             sentence = Message("{place}: {fault}", {"place": str(place), "fault": sentence})
         if self.hint:

@@ -1,9 +1,9 @@
 """Sentences that are made from facts: an English text with named fields, and the facts that fill them."""
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, Self
 
 
 class Fact:
@@ -165,9 +165,8 @@ def by_key(fact: Fact) -> str:
     return fact.path if fact.value is None else f"{fact.path} = {fact.value}"
 
 
-@dataclass(frozen=True)
-class Message:
-    """An English text with named fields, and what stands in them.
+class Message(str):
+    """An English sentence that keeps the text it was made from, with named fields, and what stands in them.
 
     >>> units = Message(
     ...     "{file} does not state its unit; give {option}", {"file": "a.txt", "option": Option("units", "g")}
@@ -177,15 +176,19 @@ class Message:
     """
 
     text: str  # the English text; its translations are found by it
-    facts: Mapping[str, Any] = field(default_factory=dict)
-    many: str = ""  # the text where the fact `count` is not 1; empty if there is no such form
-    context: str = ""  # what tells it from a message of the same text that is translated otherwise
+    facts: Mapping[str, Any]
+    many: str  # the text where the fact `count` is not 1; empty if there is no such form
+    context: str  # what tells it from a message of the same text that is translated otherwise
 
-    def __str__(self) -> str:
-        return self.spelt(str)
+    def __new__(cls, text: str, facts: Mapping[str, Any] | None = None, many: str = "", context: str = "") -> Self:
+        """Return a message; facts by the names of the fields."""
+        facts = facts or {}
+        message = super().__new__(cls, _filled(text, facts, many, str))
+        message.text, message.facts, message.many, message.context = text, facts, many, context
+        return message
 
-    def __bool__(self) -> bool:
-        return bool(self.text)
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return self.text, self.facts, self.many, self.context
 
     def data(self) -> dict[str, Any]:
         """Return the text and its facts as plain values; a fact of a class has the name of the class as its kind."""
@@ -194,15 +197,43 @@ class Message:
 
     def spelt(self, spelling: Spelling) -> str:
         """Return the sentence with its facts as a door spells them."""
-        if not self.facts:
-            return self.text
-        text = self.many if self.many and self.facts["count"] != 1 else self.text
-        return text.format_map({name: _spelt(fact, spelling) for name, fact in self.facts.items()})
+        return _filled(self.text, self.facts, self.many, spelling)
+
+    @classmethod
+    def followed(cls, sentence: str, more: str) -> str:
+        """Return a sentence and what follows it after a semicolon; the sentence alone if nothing does."""
+        return cls("{sentence}; {more}", {"sentence": sentence, "more": more}) if more else sentence
+
+    @classmethod
+    def joined(cls, sentences: Iterable[str]) -> str:
+        """Return sentences as one text, with a space between them."""
+        first, *others = filter(None, sentences)
+        for sentence in others:
+            first = cls("{first} {second}", {"first": first, "second": sentence})
+        return first
 
 
-def as_message(text: str | Message) -> Message:
+def as_message(text: str) -> Message:
     """Return a text as a message; a message as it is."""
     return text if isinstance(text, Message) else Message(text)
+
+
+def messages_of(value: Any) -> dict[str, dict[str, Any]]:
+    """Return the messages with facts in plain values, by their sentences."""
+    if isinstance(value, Message):
+        return {str(value): value.data()} if value.facts else {}
+    if isinstance(value, Mapping):
+        value = value.values()
+    elif not isinstance(value, (list, tuple)):
+        return {}
+    return {sentence: data for part in value for sentence, data in messages_of(part).items()}
+
+
+def _filled(text: str, facts: Mapping[str, Any], many: str, spelling: Spelling) -> str:
+    if not facts:
+        return text
+    form = many if many and facts["count"] != 1 else text
+    return form.format_map({name: _spelt(fact, spelling) for name, fact in facts.items()})
 
 
 def _spelt(fact: Any, spelling: Spelling) -> Any:

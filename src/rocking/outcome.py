@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, percent
+from rocking.messages import Message
 
 
 class Coded(Enum):
@@ -135,4 +136,7 @@ def contact_sentence(lost: int, known: int) -> str:
     if not lost:
         return ""
     share = percent(lost / known)
-    return f"in {lost} of {known} histories ({share}) the ground would have to pull; their verdicts assume contact"
+    return Message(
+        ("in {lost} of {known} histories ({share}) the ground would have to pull; their verdicts assume contact"),
+        {"lost": lost, "known": known, "share": share},
+    )

@@ -12,6 +12,7 @@ import numpy as np
 from rocking import errors
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError, PlausibilityWarning
+from rocking.messages import Message
 
 CENTRE_HEIGHTS = 0.025, 50.0
 """Half the heights of the smallest and largest things that are studied [m]: specimens 5 cm high; towers of 100 m."""
@@ -54,23 +55,35 @@ def of_body(centre_height: float, slenderness: float, densities: Iterable[float]
     found = []
     if centre_height > high:
         found.append(
-            f"the centre of mass is {centre_height:.4g} m above the ground, more than the {high:g} m of the tallest "
-            "towers; were lengths in mm or cm taken for m?"
+            Message(
+                "the centre of mass is {height:.4g} m above the ground, more than the {high:g} m of "
+                "the tallest towers; were lengths in mm or cm taken for m?",
+                {"height": centre_height, "high": high},
+            )
         )
     if centre_height < low:
         found.append(
-            f"the centre of mass is {centre_height:.4g} m above the ground, less than the {low:g} m of the smallest "
-            "specimens; were lengths in m taken for mm or cm?"
+            Message(
+                "the centre of mass is {height:.4g} m above the ground, less than the {low:g} m of "
+                "the smallest specimens; were lengths in m taken for mm or cm?",
+                {"height": centre_height, "low": low},
+            )
         )
     if not SLENDERNESS[0] <= slenderness <= SLENDERNESS[1]:
         found.append(
-            f"h/b = {slenderness:.4g} is outside {SLENDERNESS[0]:g} to {SLENDERNESS[1]:g}; is one length in another "
-            "unit, or width taken for height?"
+            Message(
+                "h/b = {slenderness:.4g} is outside {low:g} to {high:g}; is one length in another "
+                "unit, or width taken for height?",
+                {"slenderness": slenderness, "low": SLENDERNESS[0], "high": SLENDERNESS[1]},
+            )
         )
     if wrong := next((value for value in densities if not DENSITIES[0] <= value <= DENSITIES[1]), None):
         found.append(
-            f"a density of {wrong:.4g} kg/m3 is outside {DENSITIES[0]:g} (foam) to {DENSITIES[1]:g} (osmium); is it in "
-            "g/cm3 or t/m3?"
+            Message(
+                "a density of {density:.4g} kg/m3 is outside {low:g} (foam) to {high:g} (osmium); is "
+                "it in g/cm3 or t/m3?",
+                {"density": wrong, "low": DENSITIES[0], "high": DENSITIES[1]},
+            )
         )
     return tuple(found)
 
@@ -80,8 +93,11 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
     if peak <= LARGEST_PGA:
         return ()
     return (
-        f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) is more than any recorded, {LARGEST_PGA:g} "
-        "m/s2; is its unit or its scale another?",
+        Message(
+            "a ground acceleration of {peak:.4g} m/s2 ({peak_in_g:.3g} g) is more than any "
+            "recorded, {most:g} m/s2; is its unit or its scale another?",
+            {"peak": peak, "peak_in_g": peak / 9.80665, "most": LARGEST_PGA},
+        ),
     )
 
 
@@ -99,13 +115,25 @@ def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str,
     """Return the doubt about a record by its velocity at the end, its largest [m/s], its largest displacement [m]."""
     if velocity > LARGEST_PGV or displacement > LARGEST_PGD:
         return (
-            f"integrated, it reaches {velocity:.3g} m/s and {displacement:.3g} m, more than {LARGEST_PGV:g} m/s or "
-            f"{LARGEST_PGD:g} m; is it no acceleration, in another unit, or without a corrected baseline?",
+            Message(
+                "integrated, it reaches {velocity:.3g} m/s and {displacement:.3g} m, more than "
+                "{most_velocity:g} m/s or {most_displacement:g} m; is it no acceleration, in another "
+                "unit, or without a corrected baseline?",
+                {
+                    "velocity": velocity,
+                    "displacement": displacement,
+                    "most_velocity": LARGEST_PGV,
+                    "most_displacement": LARGEST_PGD,
+                },
+            ),
         )
     if abs(end) > max(END_VELOCITY[0], END_VELOCITY[1] * velocity):
         return (
-            f"integrated, it ends at {end:.3g} m/s, of {velocity:.3g} m/s at most, where the ground is at rest; is its "
-            "baseline corrected, or its end cut off?",
+            Message(
+                "integrated, it ends at {end:.3g} m/s, of {velocity:.3g} m/s at most, where the "
+                "ground is at rest; is its baseline corrected, or its end cut off?",
+                {"end": end, "velocity": velocity},
+            ),
         )
     return ()
 
@@ -126,7 +154,11 @@ def of_gravity(gravity: float) -> tuple[str, ...]:
     if low <= gravity <= high:
         return ()
     return (
-        f"a gravity of {gravity:.4g} m/s2 is outside {low:g} (the Moon) to {high:g} (Jupiter); is it in cm/s2 or in g?",
+        Message(
+            "a gravity of {gravity:.4g} m/s2 is outside {low:g} (the Moon) to {high:g} "
+            "(Jupiter); is it in cm/s2 or in g?",
+            {"gravity": gravity, "low": low, "high": high},
+        ),
     )
 
 
@@ -146,14 +178,24 @@ def of_period(period: float) -> tuple[str, ...]:
     low, high = PERIODS
     if low <= period <= high:
         return ()
-    return (f"a pulse with a period of {period:.4g} s is outside {low:g} to {high:g} s; is it in ms, or a frequency?",)
+    return (
+        Message(
+            ("a pulse with a period of {period:.4g} s is outside {low:g} to {high:g} s; is it in ms, or a frequency?"),
+            {"period": period, "low": low, "high": high},
+        ),
+    )
 
 
 def of_time_step(step: float) -> tuple[str, ...]:
     """Return the doubt about the step between samples [s]."""
     if step <= LONGEST_STEP:
         return ()
-    return (f"a step of {step:.4g} s between samples is more than {LONGEST_STEP:g} s; is it in ms, or in samples/s?",)
+    return (
+        Message(
+            ("a step of {step:.4g} s between samples is more than {most:g} s; is it in ms, or in samples/s?"),
+            {"step": step, "most": LONGEST_STEP},
+        ),
+    )
 
 
 def of_coefficient(value: float) -> tuple[str, ...]:
@@ -161,8 +203,11 @@ def of_coefficient(value: float) -> tuple[str, ...]:
     if value == 0.0 or value >= LEAST_COEFFICIENT:
         return ()
     return (
-        f"a coefficient of restitution of {value:.4g} is less than {LEAST_COEFFICIENT:g}, that of a block as wide as "
-        "high; is it what is lost, or a ratio of energies?",
+        Message(
+            "a coefficient of restitution of {coefficient:.4g} is less than {least:g}, that of a "
+            "block as wide as high; is it what is lost, or a ratio of energies?",
+            {"coefficient": value, "least": LEAST_COEFFICIENT},
+        ),
     )
 
 
@@ -170,9 +215,12 @@ def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
     """Return the doubt about a distribution of the coefficient of which so much would create energy and is cut off."""
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
-            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {percent(cut)} "
-            "of the distribution that it is drawn from is outside: the impact would create energy; is it meant for "
-            "another body, or given in percent?"
+            "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], and "
+            "{share} of the distribution that it is drawn from is outside: the impact would "
+            "create energy; is it meant for another body, or given in percent?",
+            foot=onto,
+            most=most,
+            share=percent(cut),
         )
     if cut <= MOST_CUT[0]:
         return ()

@@ -19,7 +19,20 @@ from rocking import answers
 from rocking.app.errors import Refused, kind_of, kind_of_status
 from rocking.app.plain_text import safe_name
 from rocking.errors import RockingError
+from rocking.messages import messages_of
 from rocking.quantities import quantity as quantity_of
+
+
+class MessageData(BaseModel):
+    """A text with named fields, and what fills them."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    text: str
+    facts: dict[str, Any]
+    many: str = Field("", description="the text where the fact count is not 1")
+    context: str = Field("", description="what tells it from a message of the same text")
+
 
 Point = tuple[float, float]  # x and y [m]
 Foot = Literal["left", "right"]  # where a body stands or lands
@@ -79,6 +92,8 @@ class JsonAnswer(JSONResponse):
     def render(self, content: Any) -> bytes:
         if isinstance(content, answers.Answer):
             content = content.plain()
+        elif isinstance(content, dict) and (messages := messages_of(content)):
+            content = {**content, "messages": messages}
         data = to_json(content, inf_nan_mode="constants", fallback=_plain)
         if b"NaN" in data or b"Infinity" in data:  # in a name perhaps; if it is a number, this refuses it
             json.dumps(content, allow_nan=False, default=_plain)
@@ -135,6 +150,9 @@ def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     """
     base = next((each for each in more if not isinstance(each, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
+    if "units" in fields:
+        words = "sentences of this answer as messages, by the sentence"
+        fields["messages"] = dict[str, MessageData], Field({}, description=words)
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
 
@@ -185,9 +203,6 @@ def answered_with_file(words: str, *endings: str) -> dict[int | str, dict[str, A
 Deleted: Any = shape("Deleted", "What is no longer there.", deleted=(str, "its name in addresses"))
 QuantityAnswer: Any = shape(
     "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, words=str, unit=str
-)
-MessageData: Any = shape(
-    "MessageData", "A text with named fields, and what fills them.", text=str, facts=dict[str, Any]
 )
 PlaceData: Any = shape(
     "PlaceData",

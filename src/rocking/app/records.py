@@ -89,7 +89,9 @@ class RecordStore:
         if not content.strip():
             raise RecordError("the file is empty")
         if len(content) > self._limits.upload_bytes:
-            raise TooLarge(f"the file has {len(content)} bytes, more than {self._limits.upload_bytes}")
+            raise TooLarge(
+                "the file has {size} bytes, more than {most}", size=len(content), most=self._limits.upload_bytes
+            )
 
     def stored(self) -> list[StoredRecord]:
         """Return all files, the latest first."""
@@ -103,7 +105,7 @@ class RecordStore:
         path = self._place(record) if record else None
         # what was written here is no link, nor is its folder
         if record is None or path is None or path.is_symlink() or path.parent.is_symlink() or not path.is_file():
-            raise NotFound(f"no record {str(sha)[:12]}... is kept here: upload the file once more")
+            raise NotFound("no record {record}... is kept here: upload the file once more", record=str(sha)[:12])
         return record
 
     def path(self, sha: str) -> Path:
@@ -118,7 +120,7 @@ class RecordStore:
         except OSError:
             content = b""
         if hashlib.sha256(content).hexdigest() != sha:
-            raise RecordError(f"{path.name}: has changed since it was uploaded: upload it once more")
+            raise RecordError("{file}: has changed since it was uploaded: upload it once more", file=path.name)
         return content
 
     def delete(self, sha: str) -> None:
@@ -147,7 +149,7 @@ class RecordStore:
         def read() -> GroundMotion:
             motion = read_motion(path, *how[:-1], skip=skip)
             if sha not in motion.provenance[0]:  # read_motion notes the hash of what it read
-                raise RecordError(f"{path.name}: has changed since it was uploaded: upload it once more")
+                raise RecordError("{file}: has changed since it was uploaded: upload it once more", file=path.name)
             return motion
 
         return self._motions.get((sha, *how), read)
@@ -184,7 +186,7 @@ class RecordStore:
         while self._forgets and others and self._fits([], record) and not self._fits(others, record):
             self.delete(others.pop().record)
         if len(others) >= MOST_RECORDS:
-            raise TooLarge(f"up to {MOST_RECORDS} records are kept; delete some that are no longer needed")
+            raise TooLarge("up to {most} records are kept; delete some that are no longer needed", most=MOST_RECORDS)
         if not self._fits(others, record):
             room = self._limits.records_bytes >> 20
             raise TooLarge(f"records may take up to {room} MiB together; delete some that are no longer needed")

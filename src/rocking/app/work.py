@@ -35,7 +35,9 @@ class ComputationQueue:
         """Put a computation in the queue."""
         with self._lock:
             if self._inside >= self._room:
-                raise Busy(f"{self._inside} computations run or wait already; try again in a moment", seconds=2)
+                raise Busy(
+                    "{count} computations run or wait already; try again in a moment", count=self._inside, seconds=2
+                )
             self._inside += 1
         try:
             future = self._threads.submit(function, *args, **kwargs)

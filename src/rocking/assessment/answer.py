@@ -12,10 +12,93 @@ from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
+from rocking.messages import Message
 from rocking.motions.summary import peak_name, support_of
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
 from rocking.studies.remedies import Remedies, millimetres, rounded_up
+
+_IN_PLANE = "As a plane body along {direction}, which does not slide: its margin is {factor:.3g}."
+_IN_PLANE_STANDS = "As a plane body along {direction}, which does not slide: no factor overturns it."
+_WAY_OUT = "Its centre must rise by {rise:.3g} mm ({energy:.3g} J) at least to topple it, towards {direction}."
+_WEAKEST = (
+    "It is weakest towards {direction}, counter-clockwise from its x axis: the edge of its base there is {reach:.3g} m "
+    "from under its centre, which is {height:.3g} m high."
+)
+_LIFTS_FIRST = (
+    "As it stands to the ground's motion it lifts first towards {direction}, counter-clockwise from its x axis: the "
+    "edge of its base there is {reach:.3g} m from under its centre, which is {height:.3g} m high."
+)
+_NEVER_LIFTS = "It does not lift: it overturns under none of {motions}, with none of {models}, either way round."
+_STANDS = "It rocks and stands: it overturns under none of {motions}, with none of {models}, either way round."
+_DEPENDS = (
+    "It may overturn: under {with_some} of {motions} with some of {models}, under {with_all} with all of them: what an "
+    "impact costs decides."
+)
+_MARGINS = {  # by whether it is of the only motion, and whether it is one
+    (True, True): "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g.",
+    (False, True): "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
+    (True, False): (
+        "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g; it stands "
+        "under the motion as it is, which is no margin."
+    ),
+    (False, False): (
+        "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g; it stands "
+        "under the motion as it is, which is no margin."
+    ),
+}
+_SIDES = {
+    "left": "Its weaker side is the left: the centre is {reach:.3g} m from that foot and {height:.3g} m above it.",
+    "right": "Its weaker side is the right: the centre is {reach:.3g} m from that foot and {height:.3g} m above it.",
+    "either": "The centre is {reach:.3g} m from either foot and {height:.3g} m above it.",
+}
+_LIFTS = "It lifts from {limit:.3g} g, at {factor:.3g} times {motion}."
+_LIFTS_WITH_VERTICAL = (
+    "Without vertical acceleration it lifts from {limit:.3g} g; with that of {motion} at {factor:.3g} times this "
+    "motion."
+)
+_MOVES = "What an impact costs moves the margin from {low:.3g} ({lower}) to {high:.3g} ({higher})."
+_SAME = "The margin is {low:.3g} with each of {models}."
+_SLIDES_FIRST = "With a friction of {friction:.3g} (b/h = {slope:.3g}) it slides before it lifts: {result}."
+_SLIDES_LATER = (
+    "With a friction of {friction:.3g} (b/h = {slope:.3g}) it slides only while it rocks, if at all: {result}."
+)
+_DECIDES = "Of what is not known, {input} decides most ({share:.2f} of the variance)."
+_UNDECIDED = (
+    "No single uncertain input is distinguishable (95 %) as the main one; the largest total index of overturning is "
+    "that of {input}, {share:.2f}."
+)
+_ANCHORS = {
+    ("left", "right"): (
+        "Anchors that keep it from lifting under {motion}: {left:.3g} kN along the left edge and {right:.3g} kN along "
+        "the right edge; shear {shear:.3g} kN in all."
+    ),
+    ("left",): (
+        "Anchors that keep it from lifting under {motion}: {left:.3g} kN along the left edge; shear {shear:.3g} kN in "
+        "all."
+    ),
+    ("right",): (
+        "Anchors that keep it from lifting under {motion}: {right:.3g} kN along the right edge; shear {shear:.3g} kN "
+        "in all."
+    ),
+}
+_WIDER = (
+    "Base wider: not found, {reason}.",
+    "Base wider by {length} mm on each side: no history overturns any more.",
+    "Base wider by {length} mm on each side: it does not lift any more.",
+)
+_LOWER = (
+    "Centre of mass lower: not found, {reason}.",
+    "Centre of mass lower by {length} mm: no history overturns any more.",
+    "Centre of mass lower by {length} mm: it does not lift any more.",
+)
+_ISOLATORS = (
+    "Isolators of a period of {period:.3g} s or more keep it from lifting; they move by {distance} mm at that period."
+)
+
+
+def _restitutions(count: int) -> Message:
+    return Message("{count} restitution", {"count": count}, "{count} restitutions")
 
 
 def just_above(factor: float) -> float:
@@ -89,24 +172,21 @@ class StandingSolid:
     turned: float = 0.0  # azimuth of the solid's x axis in it [rad]
 
     @property
-    def words(self) -> tuple[str, str]:
+    def words(self) -> tuple[Message, str]:
         """Where it is weakest and how firmly it stands, and how it falls, in words."""
         towards, out = _degrees(self.plane), self.way_out
-        how = "It is weakest" if self.weakest else "As it stands to the ground's motion it lifts first"
-        weak = (
-            f"{how} towards {towards}, counter-clockwise from its x axis: the edge of its base there is "
-            f"{self.reach:.3g} m from under its centre, which is {self.pose.height:.3g} m high. "
-        )
-        falls = (
-            "" if math.isnan(self.falls_towards) else f"At its margin it falls towards {_degrees(self.falls_towards)}. "
-        )
+        facts = {"direction": towards, "reach": self.reach, "height": self.pose.height}
+        falls = [
+            Message(_IN_PLANE_STANDS if math.isinf(self.in_plane) else _IN_PLANE, {**facts, "factor": self.in_plane})
+        ]
         if out is not None:
-            falls += (
-                f"Its centre must rise by {1e3 * out.rise:.3g} mm ({out.energy:.3g} J) at least to topple it, towards "
-                f"{_degrees(out.azimuth)}. "
+            rise = {"rise": 1e3 * out.rise, "energy": out.energy, "direction": _degrees(out.azimuth)}
+            falls.insert(0, Message(_WAY_OUT, rise))
+        if not math.isnan(self.falls_towards):
+            falls.insert(
+                0, Message("At its margin it falls towards {direction}.", {"direction": _degrees(self.falls_towards)})
             )
-        margin = "no factor overturns it" if math.isinf(self.in_plane) else f"its margin is {self.in_plane:.3g}"
-        return weak, f"{falls}As a plane body along {towards}, which does not slide: {margin}."
+        return Message(_WEAKEST if self.weakest else _LIFTS_FIRST, facts), Message.joined(falls)
 
     def answer(self) -> Answer:
         """Return what is shown of the body in space."""
@@ -248,19 +328,20 @@ class BodyAssessment:
     @property
     def verdict(self) -> str:
         """Whether it stands, in words."""
-        several, models = self.several, f"{len(self.models)} restitution{'s' if len(self.models) > 1 else ''}"
         with_all, with_some = int((self.fallen == 1.0).sum()), int((self.fallen > 0.0).sum())
+        facts = {
+            "motions": self.several, "models": _restitutions(len(self.models)),
+            "with_all": with_all, "with_some": with_some,
+        }  # fmt: skip
         if math.isnan(self.lowest.factor):
             return "No history has a result: it cannot be said whether it stands."
         if not with_some:
-            stands = "It does not lift" if (self.lifts > 1.0).all() else "It rocks and stands"
-            return f"{stands}: it overturns under none of {several}, with none of {models}, either way round."
+            return Message(_NEVER_LIFTS if (self.lifts > 1.0).all() else _STANDS, facts)
         if with_all == with_some:
-            return f"It overturns under {with_all} of {several}, with all of {models}."
-        return (
-            f"It may overturn: under {with_some} of {several} with some of {models}, under {with_all} with all of "
-            "them: what an impact costs decides."
-        )
+            return Message(
+                "It overturns under {count} of {motions}, with all of {models}.", {"count": with_all, **facts}
+            )
+        return Message(_DEPENDS, {"with_some": with_some, "with_all": with_all, **facts})
 
     @property
     def margin_words(self) -> str:
@@ -269,30 +350,39 @@ class BodyAssessment:
         if math.isnan(factor):
             return "Margin to overturning: not known."
         if math.isinf(factor):
-            return f"No factor on {self._this} that was tried overturns it."
-        turned = "mirrored" if self.standing is None else "turned half round"
-        name, way = self.motions[motion].name, f", {turned}" if mirrored else ""
-        pga = factor * self.motions[motion].peak
-        on = "this record" if len(self.motions) == 1 else name
-        asked, here = self.remedies.margin, self.models[model].overturned[motion]
-        more = "; it stands under the motion as it is, which is no margin" if factor < 1.0 and here == 0.0 else ""
-        short = f" The {asked:g} that is asked for is not reached." if asked > max(factor, 1.0) else ""
-        peak = peak_name(support_of(self.motions[motion]))
-        return (
-            f"Margin to overturning: {factor:.3g} times {on} ({model}{way}), a {peak} of {pga / g:.3g} g{more}.{short}"
-        )
+            return Message("No factor on {records} that was tried overturns it.", {"records": self._this})
+        turned = "{model}, mirrored" if self.standing is None else "{model}, turned half round"
+        facts = {
+            "factor": factor,
+            "motion": self.motions[motion].name,
+            "model": Message(turned, {"model": model}) if mirrored else model,
+            "peak": peak_name(support_of(self.motions[motion])),
+            "acceleration": factor * self.motions[motion].peak / g,
+        }
+        required, here = self.remedies.margin, self.models[model].overturned[motion]
+        is_margin = factor >= 1.0 or here != 0.0
+        sentences = [Message(_MARGINS[len(self.motions) == 1, is_margin], facts)]
+        if required > max(factor, 1.0):
+            sentences.append(Message("The {margin:g} that is asked for is not reached.", {"margin": required}))
+        return Message.joined(sentences)
 
     @property
     def probability_words(self) -> str:
         """How likely it overturns, of all motions and under the worst, in words."""
         chance = self.prediction.chances["overturning"]
-        sentence = f"With uncertain inputs sampled: {self.prediction.verdict}"
+        sentence = Message("With uncertain inputs sampled: {verdict}", {"verdict": self.prediction.verdict})
         if len(self.prediction.motions) == 1:
             return sentence
         worst = int(np.nanargmax(chance.per_motion))
         largest = percent(round(float(chance.per_motion[worst]), 3))
         name = self.prediction.motions[worst].name
-        return f"{sentence} All motions are equally likely; the largest is {largest}, under {name}."
+        return Message.joined([
+            sentence,
+            Message(
+                "All motions are equally likely; the largest is {probability}, under {motion}.",
+                {"probability": largest, "motion": name},
+            ),
+        ])  # fmt: skip
 
     @property
     def governs(self) -> tuple[str, ...]:
@@ -300,92 +390,76 @@ class BodyAssessment:
         sides = {foot: self.body.side(foot, self.gravity) for foot in FEET}
         weak = min(sides, key=lambda foot: sides[foot].slenderness_angle)
         side, first = sides[weak], int(np.argmin(self.lifts))
-        found = [
-            f"Its weaker side is the {weak}: the centre is {side.half_width:.3g} m from that foot and "
-            f"{side.centre_height:.3g} m above it. "
-            if not self.body.is_symmetric
-            else f"The centre is {side.half_width:.3g} m from either foot and {side.centre_height:.3g} m above it. ",
-        ]
+        text = _SIDES["either" if self.body.is_symmetric else weak]
+        where = Message(text, {"reach": side.half_width, "height": side.centre_height})
         if self.standing is not None:
-            found[0] = self.standing.words[0]
-        motion, factor, limit = self.motions[first], self.lifts[first], side.uplift_acceleration / g
-        found[0] += (
-            f"It lifts from {limit:.3g} g, at {factor:.3g} times {motion.name}."
-            if motion.vertical is None
-            else f"Without vertical acceleration it lifts from {limit:.3g} g; with that of {motion.name} at "
-            f"{factor:.3g} times this motion."
-        )
+            where = self.standing.words[0]
+        motion = self.motions[first]
+        facts = {"limit": side.uplift_acceleration / g, "factor": self.lifts[first], "motion": motion.name}
+        lifts = Message(_LIFTS if motion.vertical is None else _LIFTS_WITH_VERTICAL, facts)
+        found = [Message.joined([where, lifts])]
         margins = {name: each.lowest for name, each in self.models.items() if math.isfinite(each.lowest)}
         if len(margins) > 1:
             low, high = min(margins, key=margins.__getitem__), max(margins, key=margins.__getitem__)
-            found.append(
-                f"What an impact costs moves the margin from {margins[low]:.3g} ({low}) to {margins[high]:.3g} "
-                f"({high})."
-                if f"{margins[low]:.3g}" != f"{margins[high]:.3g}"
-                else f"The margin is {margins[low]:.3g} with each of {len(margins)} restitutions."
-            )
+            facts = {"low": margins[low], "lower": low, "high": margins[high], "higher": high}
+            differ = f"{margins[low]:.3g}" != f"{margins[high]:.3g}"
+            found.append(Message(_MOVES if differ else _SAME, {**facts, "models": _restitutions(len(margins))}))
         if self.standing is not None:
             found.append(self.standing.words[1])
         slope = side.half_width / side.centre_height
         slid = self.sliding.lowest
-        words = "no factor that was tried overturns it" if math.isinf(slid) else f"a margin of {slid:.3g}"
-        words = "no history has a result" if math.isnan(slid) else words
+        result = Message("a margin of {factor:.3g}", {"factor": slid})
+        if math.isinf(slid):
+            result = Message("no factor that was tried overturns it")
+        if math.isnan(slid):
+            result = Message("no history has a result")
         if self.standing is not None and not math.isnan(self.standing.slides):
-            words = f"by {millimetres(self.standing.slides)} mm at the least factor"
-        slides = "before it lifts" if self.friction < slope else "only while it rocks, if at all"
-        found.append(f"With a friction of {self.friction:.3g} (b/h = {slope:.3g}) it slides {slides}: {words}.")
+            result = Message("by {distance} mm at the least factor", {"distance": millimetres(self.standing.slides)})
+        facts = {"friction": self.friction, "slope": slope, "result": result}
+        found.append(Message(_SLIDES_FIRST if self.friction < slope else _SLIDES_LATER, facts))
         shares = {name: each for name, each in self.prediction.shares.items() if each.total > 0.0}
         if shares:
             most = max(shares, key=lambda name: shares[name].total)
-            word, size = "which motion it is" if most == "case" else most, f"{min(shares[most].total, 1.0):.2f}"
             others = [each.total_high for name, each in self.prediction.shares.items() if name != most]
-            found.append(
-                f"Of what is not known, {word} decides most ({size} of the variance)."
-                if shares[most].total_low > max(others, default=0.0)
-                else f"No single uncertain input is distinguishable (95 %) as the main one; the largest total index of "
-                f"overturning is that of {word}, {size}."
-            )
+            text = _DECIDES if shares[most].total_low > max(others, default=0.0) else _UNDECIDED
+            source = Message("which motion it is" if most == "case" else most)
+            found.append(Message(text, {"input": source, "share": min(shares[most].total, 1.0)}))
         return tuple(found)
 
     @property
     def to_do(self) -> tuple[str, ...]:
         """What would help, in words."""
         remedy = self.remedies
-        ask = self._this if remedy.margin == 1.0 else f"{remedy.margin:g} times {self._this}"
+        ask: str = self._this
+        if remedy.margin != 1.0:
+            several = len(np.unique(self.records)) > 1
+            text = "{factor:g} times these records" if several else "{factor:g} times this record"
+            ask = Message(text, {"factor": remedy.margin})
         if self.standing is not None:
-            ask += f" as a plane body along {_degrees(self.standing.plane)}"
+            direction = _degrees(self.standing.plane)
+            ask = Message("{motion} as a plane body along {direction}", {"motion": ask, "direction": direction})
         if not remedy.needed:
-            return (f"Nothing: it does not lift under {ask}.",)
-        both = " and ".join(
-            f"{rounded_up(force / 1e3):.3g} kN along the {edge} edge" for edge, force in remedy.tension.items()
-        )
-        found = [
-            f"Anchors that keep it from lifting under {ask}: {both}; shear "
-            f"{rounded_up(remedy.shear / 1e3):.3g} kN in all."
-        ]
-        for change, what in (
-            (remedy.wider, "Base wider by {} on each side"), (remedy.lower, "Centre of mass lower by {}"),
-        ):  # fmt: skip
-            name = what.partition(" by ")[0]
-            still = f"{millimetres(change.lifts_not)} mm" if math.isfinite(change.lifts_not) else ""
+            return (Message("Nothing: it does not lift under {motion}.", {"motion": ask}),)
+        forces = {edge: rounded_up(force / 1e3) for edge, force in remedy.tension.items()}
+        shear = rounded_up(remedy.shear / 1e3)
+        found: list[str] = [Message(_ANCHORS[tuple(forces)], {"motion": ask, "shear": shear, **forces})]
+        for change, texts in ((remedy.wider, _WIDER), (remedy.lower, _LOWER)):
+            even = millimetres(change.lifts_not) if math.isfinite(change.lifts_not) else None
             if change.why_not:
-                found.append(f"{name}: not found, {change.why_not}.")
+                found.append(Message(texts[0], {"reason": change.why_not}))
             elif change.stands > 0.0:
-                length = f"{millimetres(change.stands)} mm"
+                stands = Message(texts[1], {"length": millimetres(change.stands)})
                 found.append(
-                    f"{what.format(length)}: no history overturns any more. By {still}: it does not even lift."
+                    Message.joined([stands, Message("By {length} mm: it does not even lift.", {"length": even})])
                 )
-            elif still:
-                without = " It stands without." if self.lowest.factor > remedy.margin else ""
-                found.append(f"{what.format(still)}: it does not lift any more.{without}")
+            elif even is not None:
+                without = "It stands without." if self.lowest.factor > remedy.margin else ""
+                found.append(Message.joined([Message(texts[2], {"length": even}), without]))
         if remedy.isolation is None:
             found.append("Isolators: no period up to 6 s keeps it from lifting.")
         else:
             period, far = remedy.isolation
-            found.append(
-                f"Isolators of a period of {period:.3g} s or more keep it from lifting; they move by "
-                f"{millimetres(far)} mm at that period."
-            )
+            found.append(Message(_ISOLATORS, {"period": period, "distance": millimetres(far)}))
         if self.standing is not None:
             found.append("All of this is of that plane body: in space it may fall over another edge.")
         return tuple(found)
@@ -412,12 +486,16 @@ class BodyAssessment:
     def several(self) -> str:
         """How many motions, and in how many directions, in words."""
         count = len(np.unique(self.records))
-        turned = f" (in {len(self.motions)} directions)" if len(self.motions) > count else ""
-        return f"{count} motion{'s' if count > 1 else ''}{turned}"
+        facts = {"count": count, "directions": len(self.motions)}
+        if len(self.motions) > count:
+            return Message(
+                "{count} motion (in {directions} directions)", facts, "{count} motions (in {directions} directions)"
+            )
+        return Message("{count} motion", facts, "{count} motions")
 
     @property
     def _this(self) -> str:
-        return "these records" if len(np.unique(self.records)) > 1 else "this record"
+        return Message("these records" if len(np.unique(self.records)) > 1 else "this record")
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)

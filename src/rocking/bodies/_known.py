@@ -146,5 +146,7 @@ def density_of(mass: float, volume: float, densities: tuple[float, ...]) -> floa
         raise InvalidValueError(f"give mass = {mass:g} kg or density = {stated:g} kg/m3, not both: one follows")
     density = mass / volume
     if not math.isfinite(density):
-        raise InvalidValueError(f"mass = {mass:g} kg is too much for {volume:g} m3; wrong unit?")
+        raise InvalidValueError(
+            "mass = {mass:g} kg is too much for {volume:g} m3; wrong unit?", mass=mass, volume=volume
+        )
     return checks.density("density, which follows from mass and size,", density)

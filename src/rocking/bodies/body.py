@@ -12,7 +12,7 @@ from rocking.bodies._known import Known
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FEET, Assumed, FloatArray, Foot
 from rocking.errors import AsymmetricBodyError, GeometryError, InvalidValueError
-from rocking.messages import Amount
+from rocking.messages import Amount, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +238,7 @@ class Body(ABC):
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        density = (f"density {each}" for each in assumed_density(self.densities))
+        density = (Message("density {assumed}", {"assumed": each}) for each in assumed_density(self.densities))
         return (*density, *(() if self.known is None else self.known.assumed))
 
     @property
@@ -340,16 +340,30 @@ def assumed_rows(body: Any) -> list[tuple[str, str]]:
     return [*(("density", each) for each in density), *(("assumed", each) for each in body.assumed[len(density) :])]
 
 
+_ASSUMED_DENSITY = {  # by whether all densities are assumed, and whether they are scaled
+    (True, False): (
+        "{density:g} kg/m3 assumed, that of plain concrete; mass and forces depend on it, rotations do not"
+    ),
+    (True, True): (
+        "{density:g} kg/m3 assumed, that of plain concrete, scaled to {scaled:.6g}; mass and forces depend on "
+        "it, rotations do not"
+    ),
+    (False, False): (
+        "{density:g} kg/m3 assumed for {parts} of {total} parts, that of plain concrete; the centre of mass "
+        "and rotations depend on it"
+    ),
+    (False, True): (
+        "{density:g} kg/m3 assumed for {parts} of {total} parts, that of plain concrete, scaled to "
+        "{scaled:.6g}; the centre of mass and rotations depend on it"
+    ),
+}
+
+
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
     """Return what was assumed about densities."""
     assumed = [value for value in densities if isinstance(value, Assumed)]
     if not assumed:
         return ()
-    parts = "" if len(assumed) == len(densities) else f" for {len(assumed)} of {len(densities)} parts"
-    scaled = "" if assumed[0] == DEFAULT_DENSITY else f", scaled to {assumed[0]:.6g}"
-    effect = (
-        "mass and forces depend on it, rotations do not"
-        if not parts
-        else "the centre of mass and rotations depend on it"
-    )
-    return (f"{DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete{scaled}; {effect}",)
+    facts = {"density": DEFAULT_DENSITY, "parts": len(assumed), "total": len(densities), "scaled": assumed[0]}
+    of_all, is_scaled = len(assumed) == len(densities), assumed[0] != DEFAULT_DENSITY
+    return (Message(_ASSUMED_DENSITY[of_all, is_scaled], facts),)

@@ -35,7 +35,7 @@ def checked_ring(name: str, points: Any) -> FloatArray:
         raise GeometryError(f"{name}: coordinates must be within {LARGEST:g} m of the origin; wrong unit?")
     kept: FloatArray = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
     if len(kept) < 3:
-        raise GeometryError(f"{name} must have at least 3 different points, got {len(kept)}")
+        raise GeometryError("{name} must have at least 3 different points, got {count}", name=name, count=len(kept))
     return kept
 
 

@@ -13,6 +13,7 @@ from rocking.cli.numbers import beside_g, in_unit
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.outcome import UNCOUNTED
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.questions.minimum_acceleration import MinimumTable
@@ -166,32 +167,46 @@ class MinimumAnswer:
         page.warn(filter(None, [transitions.contact]))
 
 
+_SCANNED = "scanned from {low} to {high}, resolution {resolution}"
+_SCANNED_FINER = (
+    "scanned from {low} to {high}, resolution {resolution} ({below} below the first crossing); thinner stretches may "
+    "exist"
+)
+
+
 def stretches(transitions: "Transitions") -> str:
     """Return where the body overturns, in words: with many stretches the first and the last."""
     falls = transitions.overturning_intervals
-    ends = f"{_g(transitions.lowest)} to {_g(transitions.highest)}"
-    scanned = f"scanned from {ends}, resolution {percent(transitions.resolution)}"
-    if transitions.minimum is not None and transitions.resolution_below < 0.5 * transitions.resolution:
-        scanned += f" ({percent(transitions.resolution_below)} below the first crossing); thinner stretches may exist"
+    facts = {
+        "low": _g(transitions.lowest), "high": _g(transitions.highest), "resolution": percent(transitions.resolution),
+        "below": percent(transitions.resolution_below),
+    }  # fmt: skip
+    finer = transitions.minimum is not None and transitions.resolution_below < 0.5 * transitions.resolution
+    scanned = Message(_SCANNED_FINER if finer else _SCANNED, facts)
     if not falls:
-        return f"survives everything; {scanned}"
+        return Message.followed(Message("survives everything"), scanned)
     if falls == ((transitions.lowest, transitions.highest),):
-        return f"overturns at every acceleration; {scanned}"
+        return Message.followed(Message("overturns at every acceleration"), scanned)
     texts = [_stretch(transitions, falls, k) for k in range(len(falls))]
     if len(texts) > _SPOKEN:
         left_out = len(texts) - _SPOKEN
         last = _stretch(transitions, falls[-1:], 0)  # it names its own beginning
-        texts = [*texts[: _SPOKEN - 1], f"{left_out} more such stretches follow", last]
-    return f"{', '.join(texts)}; {scanned}"
+        texts = [*texts[: _SPOKEN - 1], Message("{count} more such stretches follow", {"count": left_out}), last]
+    first = texts[0]
+    for text in texts[1:]:
+        first = Message("{first}, {second}", {"first": first, "second": text})
+    return Message.followed(first, scanned)
 
 
 def _stretch(transitions: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
     """Return one stretch of overturning in words, and how far it then survives."""
     low, high = falls[k]
     if k == len(falls) - 1 and high == transitions.highest:
-        return "overturns above" if k else f"overturns above {_g(low)}"
-    text = f"overturns from {_g(low)} to {_g(high)}"
-    return text + (", survives above" if k == len(falls) - 1 else f", survives to {_g(falls[k + 1][0])}")
+        return Message("overturns above") if k else Message("overturns above {low}", {"low": _g(low)})
+    facts = {"low": _g(low), "high": _g(high)}
+    if k == len(falls) - 1:
+        return Message("overturns from {low} to {high}, survives above", facts)
+    return Message("overturns from {low} to {high}, survives to {next}", {**facts, "next": _g(falls[k + 1][0])})
 
 
 def _g(acceleration: float) -> str:

@@ -29,11 +29,11 @@ class Command(TyperCommand):
 def spelled(message: Message | RockingError | str) -> str:
     """Return a message or an error as the command that runs spells it."""
     context = _RUNNING.get()
-    if isinstance(message, str) or context is None:
+    if context is None:
         return str(message)
     if isinstance(message, RockingError):
         return message.spelt(spelling(context), within=False)
-    return message.spelt(spelling(context))
+    return message.spelt(spelling(context)) if isinstance(message, Message) else message
 
 
 def no_command() -> None:

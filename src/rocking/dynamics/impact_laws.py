@@ -355,7 +355,12 @@ def _mixed(z: int) -> int:
 def _factors(values: Any, most: float = 1.0) -> FloatArray:
     row = checks.finite("factors", values, least=2)
     if row.min() < 0.0 or row.max() > most:
-        raise InvalidValueError(f"factors must be in [0, {most:g}], got {row.min():g} to {row.max():g}")
+        raise InvalidValueError(
+            "factors must be in [0, {most:g}], got {smallest:g} to {largest:g}",
+            most=most,
+            smallest=row.min(),
+            largest=row.max(),
+        )
     return row
 
 

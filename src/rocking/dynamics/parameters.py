@@ -138,7 +138,10 @@ class RockingParameters:
         factor = law.factor(speed, stream, impact)
         if not 0.0 <= factor <= law.largest:
             raise InvalidValueError(
-                f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"
+                "{law}.factor must be in [0, {largest:g}], its largest, got {factor}",
+                law=type(law).__name__,
+                largest=law.largest,
+                factor=f"{factor!r}",
             )
         return side.coefficient * factor
 

@@ -20,6 +20,7 @@ from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP
 from rocking.errors import InvalidValueError, PlausibilityWarning
+from rocking.messages import Message
 from rocking.motions.pulse import Motion
 from rocking.motions.segments import Segments
 from rocking.motions.summary import motion_answer
@@ -39,6 +40,27 @@ IMPACT = np.dtype(
     [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("onto", "U5")]
 )
 """Fields of `Response.impacts`: [s], [rad/s], [rad/s], [-], foot."""
+
+_OVERTURNED = {
+    "left": (
+        "overturned to the left without an impact, past the point of no return at {time:.4g} s",
+        "overturned to the left after {count} impact, past the point of no return at {time:.4g} s",
+        "overturned to the left after {count} impacts, past the point of no return at {time:.4g} s",
+    ),
+    "right": (
+        "overturned to the right without an impact, past the point of no return at {time:.4g} s",
+        "overturned to the right after {count} impact, past the point of no return at {time:.4g} s",
+        "overturned to the right after {count} impacts, past the point of no return at {time:.4g} s",
+    ),
+}
+_FLIGHT_UNKNOWN = (
+    "the ground would have to pull, with up to {force:.2g} of the weight: {leaves}; rocking alone: {outcome}; if it "
+    "may fly, nothing is known: {reason}"
+)
+_FLIGHT = (
+    "the ground would have to pull, with up to {force:.2g} of the weight: {leaves}; rocking alone: {outcome}; if it "
+    "may fly, with a coefficient of friction of {friction:g}, {origin}: {flight}"
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -212,40 +234,47 @@ class Response(ResponseBase):
     def _flown(self, friction: float) -> str:
         from rocking.dynamics.plane.energy_balance import LEAVES
 
-        lost = (
-            f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
-            f"rocking alone: {self._verdict}; if it may fly, "
-        )
+        facts: dict[str, Any] = {"force": -self.least_force, "leaves": Message(LEAVES), "outcome": self._verdict}
         try:
             found = self.with_contact(friction)
         except InvalidValueError as error:
-            return f"{lost}nothing is known: {error}"
-        why = "since none was given" if friction == math.inf else f"as {given_or_assumed(friction)}"
-        return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
+            return Message(_FLIGHT_UNKNOWN, {**facts, "reason": str(error)})
+        origin = "since none was given" if friction == math.inf else f"as {given_or_assumed(friction)}"
+        facts |= {"friction": found.law.friction, "origin": Message(origin), "flight": found.summary}
+        return Message(_FLIGHT, facts)
 
     @property
     def _ending(self) -> str:
         """The outcome in one sentence; also where the motion was cut, if that may have decided."""
-        return self._verdict + self._cut
+        if not self._is_cut:
+            return self._verdict
+        return Message(
+            "{outcome}; the motion was cut at {time:.4g} s, where the ground is taken to stop",
+            {"outcome": self._verdict, "time": self.segments.count * self.segments.step},
+        )
 
     @property
     def _last_motion(self) -> tuple[str, float, str]:
         angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
-        return "rocking", self.time[-1], f"at {angle:.3g} degrees and {rate:.3g} rad/s"
+        state = Message("at {rotation:.3g} degrees and {velocity:.3g} rad/s", {"rotation": angle, "velocity": rate})
+        return "rocking", self.time[-1], state
 
     @property
     def _verdict(self) -> str:
         run = self.trajectory
         if run.outcome is Outcome.OVERTURNED:
-            side = "right" if run.side > 0 else "left"
-            count = {0: "without an impact", 1: "after 1 impact"}.get(run.impacts, f"after {run.impacts} impacts")
-            return f"overturned to the {side} {count}, past the point of no return at {run.overturning_time:.4g} s"
+            without, one, many = _OVERTURNED["right" if run.side > 0 else "left"]
+            facts = {"count": int(run.impacts), "time": run.overturning_time}
+            return Message(one, facts, many) if run.impacts else Message(without, facts)
         if run.outcome is Outcome.NO_UPLIFT:
             return str(run.outcome.value)
         ratio = self.peak_rotation / self.parameters.side(run.peak_rotation).slenderness_angle
-        return (
-            f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
-            f"{ratio:.3g} of the slenderness angle, {run.impacts} impact{'s' * (run.impacts != 1)}"
+        return Message(
+            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "angle, {count} impact",
+            {"rotation": np.degrees(self.peak_rotation), "ratio": ratio, "count": int(run.impacts)},
+            "rocked and stayed standing: largest rotation {rotation:.4g} degrees, {ratio:.3g} of the slenderness "
+            "angle, {count} impacts",
         )
 
     @property
@@ -253,12 +282,10 @@ class Response(ResponseBase):
         return is_lossless(self.parameters)
 
     @property
-    def _cut(self) -> str:
+    def _is_cut(self) -> bool:
         end = self.segments.count * self.segments.step
         over = self._finite < self.trajectory.rotation.size  # it lay before, or there is no result
-        if over or self.motion is None or end >= self.motion.duration * (1.0 - _ROUNDING):
-            return ""
-        return f"; the motion was cut at {end:.4g} s, where the ground is taken to stop"
+        return not over and self.motion is not None and end < self.motion.duration * (1.0 - _ROUNDING)
 
     @cached_property
     def _covered(self) -> FloatArray:

@@ -14,6 +14,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.exported import Exported
+from rocking.messages import Message
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 from rocking.motions.summary import provenance_of
@@ -86,9 +87,11 @@ class ResponseBase(Exported):
         if not self.still_rocking:
             return ""
         doing, end, place = self._last_motion
-        reason = f"; {self._end_reason}" if self._end_reason else ""
-        ends = f"when the computation ends at {end:.4g} s, {place}; later impacts are not counted"
-        return f"it is still {doing} {ends}{reason}"
+        unfinished = Message(
+            "it is still {activity} when the computation ends at {time:.4g} s, {state}; later impacts are not counted",
+            {"activity": Message(doing), "time": end, "state": place},
+        )
+        return Message.followed(unfinished, self._end_reason)
 
     @property
     def _end_reason(self) -> str:
@@ -104,8 +107,8 @@ class ResponseBase(Exported):
     def summary(self) -> str:
         """The outcome in one sentence; also whether it still rocks where the response ends."""
         if self.outcome is Outcome.FAILED:
-            return f"{self.outcome.value}: {self.status.value}"
-        return self._ending + (f"; {self.unfinished}" if self.still_rocking else "")
+            return Message("{outcome}: {reason}", {"outcome": self.outcome.value, "reason": self.status.value})
+        return Message.followed(self._ending, self.unfinished)
 
     @property
     @abstractmethod
@@ -244,7 +247,9 @@ class ResponseBase(Exported):
         times = checks.real_array("time", time, "s")
         bad = times[~((times >= -_ROUNDING * end) & (times <= (1.0 + _ROUNDING) * end))]
         if bad.size:
-            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
+            raise InvalidValueError(
+                "time must be in [0, {end:g}] s, where the response is known, got {time:g}", end=end, time=bad[0]
+            )
         return np.clip(times, 0.0, end)
 
 

@@ -117,12 +117,15 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
     share = times.size / (times.size + extra - bounces + missed)
     if share < _SHARE or times.size + bounces < _OF_ALL * (track.within + outside):
         refused.append(
-            f"{times.size} of {measurement.times.size} times belong together, {missed} between them are missing"
+            Message(
+                "{count} of {total} times belong together, {missed} between them are missing",
+                {"count": times.size, "total": measurement.times.size, "missed": missed},
+            )
         )
     if advantage < _ADVANTAGE:
         refused.append("intervals do not shrink from impact to impact as those of a rocking body do")
     if missed:
-        doubts.append(f"{missed} impacts were missed between the others.")
+        doubts.append(Message("{missed} impacts were missed between the others.", {"missed": missed}))
     if extra:
         doubts.append(f"{extra} times between the impacts are none, {bounces} of them bounces or echoes.")
     if known.asymmetry and known.tilt_error:
@@ -151,7 +154,7 @@ def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
     total = max(float(a @ a) / float((b**2).sum()) for a, b in zip(missed, about, strict=True))
     refused: list[Reason] = []
     if total > 1.0 - _EXPLAINED:
-        refused.append(f"rocking explains {100.0 * (1.0 - total):.0f} % of the motion only")
+        refused.append(Message("rocking explains {share:.0f} % of the motion only", {"share": 100.0 * (1.0 - total)}))
     first: Foot = "right" if told.model.sides[0] == 0 else "left"
     doubts: list[Reason] = [*measurement.doubts]
     far = float(np.linalg.norm(told.average(told.u)[[FREQUENCY, SLENDERNESS]]))
@@ -190,9 +193,9 @@ def _result(
     r, scattered = estimated(mean, 1.0), _of_grid(found, found.scatter)
     p_value = _steadiness(found)
     if mean.below(0.0) < 0.975:
-        refused.append(f"impacts take no energy: r is {r}")
+        refused.append(Message("impacts take no energy: r is {coefficient}", {"coefficient": r}))
     if scattered.value > _MOST_SCATTER:
-        refused.append(f"what impacts take scatters by {100.0 * scattered.value:.0f} %")
+        refused.append(Message("what impacts take scatters by {share:.0f} %", {"share": 100.0 * scattered.value}))
     first_sizes = "check the sizes of the body, then " if known.body is not None else ""
     if p_value < _UNLIKELY and not known.trend:
         steadily = f"what impacts take changes steadily with their number (p = {p_value:.1g}); {first_sizes}{{way}}"

@@ -41,6 +41,7 @@ from rocking.identification.results import (
     impulses,
     next_impact,
 )
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 
@@ -146,9 +147,9 @@ def answer(
     if advantage < _ADVANTAGE:
         refused.append("the motion of the ground explains the rotation no better than ground at rest; another clock?")
     if mean.below(0.0) < 0.975:
-        refused.append(f"impacts take no energy: r is {r}")
+        refused.append(Message("impacts take no energy: r is {coefficient}", {"coefficient": r}))
     if scatter.value > _MOST_SCATTER:
-        refused.append(f"what impacts take scatters by {100.0 * scatter.value:.0f} %")
+        refused.append(Message("what impacts take scatters by {share:.0f} %", {"share": 100.0 * scatter.value}))
     if problem.odd:
         doubts.append(f"{problem.odd} half cycles are none of rocking alone under this motion, and are left out.")
     if not fit.converged:

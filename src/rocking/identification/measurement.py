@@ -61,7 +61,11 @@ class ImpactTimes:
         if self.probabilities is not None:
             sure = _row("probabilities", self.probabilities, "-", times.size)
             if sure.min() <= 0.0 or sure.max() > 1.0:
-                raise InvalidValueError(f"probabilities must be in (0, 1], got {sure.min():g} to {sure.max():g}")
+                raise InvalidValueError(
+                    "probabilities must be in (0, 1], got {smallest:g} to {largest:g}",
+                    smallest=sure.min(),
+                    largest=sure.max(),
+                )
             object.__setattr__(self, "probabilities", sure)
 
 
@@ -129,7 +133,13 @@ def _row(name: str, values: object, unit: str, size: int | None = None) -> Float
         )
     if not np.isfinite(row).all():
         bad = int(np.flatnonzero(~np.isfinite(row))[0])
-        raise InvalidValueError(f"{name} must be finite [{unit}], got {row[bad]} at index {bad}")
+        raise InvalidValueError(
+            "{name} must be finite [{unit}], got {sample} at index {index}",
+            name=name,
+            unit=unit,
+            sample=row[bad],
+            index=bad,
+        )
     row.setflags(write=False)
     return row
 

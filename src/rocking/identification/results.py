@@ -16,7 +16,7 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
-from rocking.messages import Message, as_message
+from rocking.messages import Message, messages_of
 from rocking.quantities import Quantity
 from rocking.restitution import RestitutionModel, implied, models
 
@@ -29,6 +29,14 @@ LEVELS = (0.5, 0.025, 0.975)
 """Of an estimate and its interval."""
 
 _NOISES = {"times": "s", "rotation": "rad", "angular_velocity": "rad/s"}  # units of residuals
+_SCATTERS = (
+    "The coefficient of restitution is {mean}, from {count} impacts; from impact to impact it scatters by "
+    "{scatter:.2g} %."
+)
+_SCATTERS_BELOW = (
+    "The coefficient of restitution is {mean}, from {count} impacts; from impact to impact it scatters by less than "
+    "{scatter:.2g} %."
+)
 _ENDS = (("value", "", ""), ("low", "_low", ", 2.5 % of it"), ("high", "_high", ", 97.5 % of it"))
 
 
@@ -242,11 +250,11 @@ class Identification(Exported):
     def verdict(self) -> str:
         """What was found, in a sentence."""
         if self.refused:
-            return str(self.refusal)
-        return (
-            f"The coefficient of restitution is {self.mean}, from {len(self.impacts)} impacts; "
-            f"from impact to impact it {self.scatter_text}."
-        )
+            return self.refusal
+        facts = {"mean": str(self.mean), "count": len(self.impacts)}
+        if self.scatter.value == 0.0:
+            return Message(_SCATTERS_BELOW, {**facts, "scatter": 100.0 * self.scatter.high})
+        return Message(_SCATTERS, {**facts, "scatter": 100.0 * self.scatter.value})
 
     @property
     def scatter_text(self) -> str:
@@ -293,10 +301,9 @@ class Identification(Exported):
         Answer
             Coefficients, impacts, models and designs; of a refused measurement the reasons alone.
         """
-        messages = [as_message(doubt) for doubt in self.doubts]
         words = {
             "source": self.source, "verdict": self.verdict, "refused": tuple(map(str, self.refused)),
-            "doubts": tuple(map(str, messages)), "messages": [message.data() for message in messages],
+            "doubts": tuple(map(str, self.doubts)), "messages": messages_of((self.verdict, self.refused, self.doubts)),
         }  # fmt: skip
         if self.refused:
             return Answer(words)

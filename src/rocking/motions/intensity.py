@@ -330,8 +330,13 @@ class IntensityMeasure:
         bad = np.flatnonzero(~((found > 0.0) & np.isfinite(found)))
         if bad.size:
             raise InvalidValueError(
-                f"{self.name} of every motion must be finite and > 0 {self.unit}, got {found[bad[0]]:g} of motion "
-                f"{bad[0]}, {motions[int(bad[0])].name!r:.60}; zero throughout?"
+                "{name} of every motion must be finite and > 0 {unit}, got {size:g} of motion "
+                "{index}, {motion}; zero throughout?",
+                name=self.name,
+                unit=self.unit,
+                size=found[bad[0]],
+                index=bad[0],
+                motion=f"{motions[int(bad[0])].name!r:.60}",
             )
         return found
 

@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.motions.filters import cosine_sine, exponential
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
@@ -140,7 +141,9 @@ class Pulse(ABC):
     def _check_peak(self) -> None:
         if not self.peak <= LARGEST_ACCELERATION:
             raise InvalidValueError(
-                f"the peak of a pulse must be in [0, {LARGEST_ACCELERATION:g}] m/s2, got {self.peak:g}; wrong unit?"
+                "the peak of a pulse must be in [0, {most:g}] m/s2, got {peak:g}; wrong unit?",
+                most=LARGEST_ACCELERATION,
+                peak=self.peak,
             )
 
     def segments(self) -> Segments:
@@ -325,14 +328,15 @@ class Ricker(Pulse):
 
 
 def _named(shape: str, value: float, unit: str, time: float, *, strength: bool, period: bool) -> str:
-    how = [f"{abs(value):.3g} {unit}"] if strength else []
-    return ", ".join([shape, *how, *([f"{time:.3g} s"] if period else [])])
+    facts = {"shape": Message(shape), "strength": f"{abs(value):.3g} {unit}", "period": f"{time:.3g} s"}
+    text = {(True, True): "{shape}, {strength}, {period}", (True, False): "{shape}, {strength}"}
+    return Message(text.get((strength, period), "{shape}, {period}" if period else "{shape}"), facts)
 
 
 def _times(time: Any) -> FloatArray:
     given = checks.real_array("time", time, "s")
     if not np.isfinite(given).all():
-        raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
+        raise InvalidValueError("time must be finite [s], got {time:g}", time=given[~np.isfinite(given)][0])
     return given
 
 

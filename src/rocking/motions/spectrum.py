@@ -117,7 +117,11 @@ def oscillators(motion: GroundMotion, periods: ArrayLike, damping: float) -> tup
         raise InvalidValueError(f"periods must be a row of at least 1 number [s], got shape {given.shape}")
     shortest = SHORTEST_PERIOD * motion.time_step
     if given.min() < shortest:
-        raise InvalidValueError(f"periods must be at least {shortest:g} s for this time step, got {given.min():g}")
+        raise InvalidValueError(
+            "periods must be at least {shortest:g} s for this time step, got {period:g}",
+            shortest=shortest,
+            period=given.min(),
+        )
     # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
     rates = 2.0 * math.pi / given * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
     return given.copy(), damping, np.asarray(rates, dtype=np.complex128)

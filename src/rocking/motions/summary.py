@@ -9,6 +9,7 @@ import numpy as np
 from rocking import plausibility
 from rocking.answers import Answer
 from rocking.conventions import g
+from rocking.messages import Message
 from rocking.motions.components import Components, leading
 from rocking.motions.intensity import measure, sampled
 from rocking.motions.pulse import Pulse
@@ -164,6 +165,18 @@ def summaries_of(motions: Any) -> tuple[MotionSummary, ...]:
     return tuple(MotionSummary.of(motions[k]) for k in range(len(motions)))
 
 
+_CONDITIONS = {
+    "ground": (
+        "given this motion ({peak}; {velocity})",
+        "given these {count} motions ({peak}; {velocity}: medians and ranges)",
+    ),
+    "floor": (
+        "given this motion of {support} ({peak}; {velocity})",
+        "given these {count} motions of {support} ({peak}; {velocity}: medians and ranges)",
+    ),
+}
+
+
 def condition(summaries: Sequence[MotionSummary]) -> str:
     """Return the condition under which a probability holds: the motions and their intensity, in words.
 
@@ -175,11 +188,12 @@ def condition(summaries: Sequence[MotionSummary]) -> str:
     support = next(iter(supports)) if len(supports) == 1 else GROUND
     peaks = _median_and_range([summary.peak / g for summary in summaries], "g")
     velocities = _median_and_range([summary.peak_velocity for summary in summaries], "m/s")
-    where = "" if support == GROUND else f" of {support}"
-    intensity = f"{peak_name(support)} {peaks}; {peak_name(support, 'V')} {velocities}"
-    if len(summaries) == 1:
-        return f"given this motion{where} ({intensity})"
-    return f"given these {len(summaries)} motions{where} ({intensity}: medians and ranges)"
+    facts = {
+        "support": support, "count": len(summaries),
+        "peak": f"{peak_name(support)} {peaks}", "velocity": f"{peak_name(support, 'V')} {velocities}",
+    }  # fmt: skip
+    one, many = _CONDITIONS["ground" if support == GROUND else "floor"]
+    return Message(one if len(summaries) == 1 else many, facts)
 
 
 def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:

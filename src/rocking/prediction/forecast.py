@@ -10,6 +10,7 @@ import numpy as np
 from rocking.answers import Answer, AnswerRows
 from rocking.conventions import FloatArray, percent
 from rocking.exported import Exported
+from rocking.messages import Message
 from rocking.motions.summary import MotionSummary, condition
 from rocking.prediction.likelihood import likelihood, scale_words
 from rocking.quantities import with_units
@@ -20,7 +21,24 @@ if TYPE_CHECKING:
     from rocking.bodies import Body, Solid
     from rocking.tables import Table
 
-_GERUNDS = {"uplift": "Rocking", "sliding": "Sliding by {} mm or more", "overturning": "Overturning"}
+_LIKELY = {
+    "uplift": "Rocking is {likelihood} {condition}: {probability}.",
+    "sliding": "Sliding by {distance:g} mm or more is {likelihood} {condition}: {probability}.",
+    "overturning": "Overturning is {likelihood} {condition}: {probability}.",
+}
+_PREDICTABLE = (
+    "Each response can be predicted: 0 of {rocking} pairs of histories that differ by one part in a million in scale "
+    "end differently or differ by more than 1 % in their peaks."
+)
+_UNPREDICTABLE = (
+    "Under {motions} of {total} motions this response cannot be predicted; its distribution can: {pairs} of {rocking} "
+    "pairs of histories that differ by one part in a million in scale end differently or differ by more than 1 % in "
+    "their peaks."
+)
+_BESIDE = "With another restitution model and all else alike, overturning has {probabilities}."
+_AT_ENDS = (
+    "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +82,10 @@ class Growth:
         """Whether responses can be predicted at all, in words."""
         if not self.rocking:
             return "No pair of histories rocks, so no difference between histories grows."
-        of = f"{self.lost} of {self.rocking} pairs of histories that differ by one part in a million in scale"
-        if not self.lost:
-            return (
-                f"Each response can be predicted: 0 of {self.rocking} pairs of histories that differ by one part in a "
-                "million in scale end differently or differ by more than 1 % in their peaks."
-            )
-        share = f"{len(self.motions_lost)} of {self.motions} motions"
-        return (
-            f"Under {share} this response cannot be predicted; its distribution can: {of} end differently or differ by "
-            "more than 1 % in their peaks."
-        )
+        facts = {
+            "motions": len(self.motions_lost), "total": self.motions, "pairs": self.lost, "rocking": self.rocking,
+        }  # fmt: skip
+        return Message(_UNPREDICTABLE if self.lost else _PREDICTABLE, facts)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,28 +195,40 @@ class Prediction(Exported):
         chance = self.chances["overturning"]
         found = [self.verdict]
         if not math.isnan(chance.wide_low):
-            found.append(f"For other motions like these the interval is {_between(chance.wide_low, chance.wide_high)}.")
+            interval = _between(chance.wide_low, chance.wide_high)
+            found.append(Message("For other motions like these the interval is {interval}.", {"interval": interval}))
         found += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
-            others = (f"{_of(each)} with {name}" for name, each in self.beside.items())
-            found.append(f"With another restitution model and all else alike, overturning has {' and '.join(others)}.")
+            others = [
+                Message("{probability} with {model}", {"probability": _of(each), "model": name})
+                for name, each in self.beside.items()
+            ]
+            first = others[0]
+            for other in others[1:]:
+                first = Message("{first} and {second}", {"first": first, "second": other})
+            found.append(Message(_BESIDE, {"probabilities": first}))
         movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, each in movers[:2]:
             if each.probability_low != each.probability_high:
                 low, high = percent(each.probability_low), percent(each.probability_high)
-                ends = f"{low} with {name} near {each.low:.3g} and {high} with {name} near {each.high:.3g}"
-                found.append(f"The probability of overturning is {ends}.")
+                facts = {"input": Message(name), "low": low, "high": high, "lower": each.low, "higher": each.high}
+                found.append(Message(_AT_ENDS, facts))
         found.append(self.growth.sentence)
         if self.failed:
-            found.append(f"{self.failed} of {self.histories} histories have no result and do not count.")
+            text = "{count} of {total} histories have no result and do not count."
+            found.append(Message(text, {"count": self.failed, "total": self.histories}))
         return tuple(found)
 
     def _sentence(self, event: str) -> str:
         chance = self.chances[event]
-        what = _GERUNDS[event].format(f"{1000.0 * self.sliding_beyond:g}")
-        same = f"given the same motion{'s' * (len(self.motions) != 1)}"
-        given = self.condition if event == "overturning" else same
-        return f"{what} is {likelihood(chance.low, chance.high)} {given}: {_of(chance)}."
+        same = Message("given the same motion" if len(self.motions) == 1 else "given the same motions")
+        facts = {
+            "likelihood": likelihood(chance.low, chance.high),
+            "condition": self.condition if event == "overturning" else same,
+            "distance": 1000.0 * self.sliding_beyond,
+            "probability": _of(chance),
+        }
+        return Message(_LIKELY[event], facts)
 
     def __str__(self) -> str:
         left = (f"not sampled: {each}" for each in self.not_sampled)
@@ -283,11 +306,12 @@ class Prediction(Exported):
 
 
 def _between(low: float, high: float) -> str:
-    return f"{percent(round(low, 3))} to {percent(round(high, 3))}"
+    return Message("{low} to {high}", {"low": percent(round(low, 3)), "high": percent(round(high, 3))})
 
 
 def _of(chance: Chance) -> str:
-    return f"probability {percent(round(chance.value, 4))} (95 % interval {_between(chance.low, chance.high)})"
+    facts = {"value": percent(round(chance.value, 4)), "interval": _between(chance.low, chance.high)}
+    return Message("probability {value} (95 % interval {interval})", facts)
 
 
 def _told(name: str) -> str:

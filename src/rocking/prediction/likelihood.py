@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from rocking.messages import Message
+
 
 class LikelihoodTerm(NamedTuple):
     """A term and the range of probability that it stands for [-]."""
@@ -37,8 +39,10 @@ def likelihood(low: float, high: float) -> str:
     >>> likelihood(0.0, 0.21), likelihood(0.0, 0.005), likelihood(0.3, 0.5)
     ('unlikely', 'exceptionally unlikely', 'unlikely to about as likely as not')
     """
-    whole = next((term.words for term in TERMS if term.low <= low and high <= term.high), "")
-    return whole or f"{_broad(low)} to {_broad(high)}"
+    term = next((term for term in TERMS if term.low <= low and high <= term.high), None)
+    if term is not None:
+        return Message(term.words)
+    return Message("{low} to {high}", {"low": Message(_broad(low)), "high": Message(_broad(high))})
 
 
 def _broad(probability: float) -> str:

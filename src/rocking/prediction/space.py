@@ -115,7 +115,11 @@ class SampledInSpace(SampledBodies):
         elif word:
             if word not in _LAWS:
                 names = ", ".join([*MEASURED, *_LAWS])
-                raise InvalidValueError(f"restitution in space must be one of {names}, or a coefficient, got {word!r}")
+                raise InvalidValueError(
+                    "restitution in space must be one of {names}, or a coefficient, got {model}",
+                    names=names,
+                    model=f"{word!r}",
+                )
             self._law, one = _LAWS[word], Uncertain(word, lambda u: np.zeros(u.shape), fixed=True)
         else:
             self._law, one = histories.COEFFICIENT, Uncertain.of("restitution", told, 0.0, 1.0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from rocking.answers import Answer
 from rocking.dynamics.response import Response
+from rocking.messages import Message
 from rocking.motions.intensity import Measure, intensity_measures
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -20,6 +21,8 @@ OUTCOME_WORDS = {
     Outcome.ROCKED: "stays standing",
     Outcome.NO_UPLIFT: "is never lifted",
 }
+_ROCKING = "Still rocking when the computation ends: with {models}."
+_PULLED = "The ground would have to pull, and the verdict assumes contact: with {models}."
 _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 
@@ -43,14 +46,18 @@ class ModelAgreement:
             groups.setdefault(OUTCOME_WORDS[one.outcome], []).append(name)
         rocking = ", ".join(name for name, one in responses.items() if one.still_rocking)
         pulled = ", ".join(name for name, one in responses.items() if one.lost_contact)
-        doubts = [f"Still rocking when the computation ends: with {rocking}."] if rocking else []
+        doubts = [Message(_ROCKING, {"models": rocking})] if rocking else []
         if pulled:
-            doubts.append(f"The ground would have to pull, and the verdict assumes contact: with {pulled}.")
-        if len(groups) > 1:
-            parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
-            return cls(True, f"The model decides: the body {parts}.", tuple(doubts))
-        (word,) = groups
-        return cls(False, f"With every one of these models the body {word}.", tuple(doubts))
+            doubts.append(Message(_PULLED, {"models": pulled}))
+        if len(groups) == 1:
+            (outcome,) = groups
+            return cls(False, Message(f"With every one of these models the body {outcome}."), tuple(doubts))
+        first, *others = (
+            Message(f"{word} with {{models}}", {"models": ", ".join(names)}) for word, names in groups.items()
+        )
+        for other in others:
+            first = Message("{first}, {second}", {"first": first, "second": other})
+        return cls(True, Message("The model decides: the body {outcomes}.", {"outcomes": first}), tuple(doubts))
 
 
 def restitution_words(label: str) -> str:

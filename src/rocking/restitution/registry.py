@@ -262,8 +262,11 @@ def _coefficient(name: str, value: Any) -> float:
 def energy_refusal(onto: Foot, most: float, largest: float) -> InvalidValueError:
     """Return the refusal of a coefficient [-] above the energy bound of a side."""
     return InvalidValueError(
-        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {largest:.6g}: "
-        "the impact would create energy"
+        "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], got "
+        "{largest:.6g}: the impact would create energy",
+        foot=onto,
+        most=most,
+        largest=largest,
     )
 
 

@@ -55,7 +55,9 @@ class Values(JobTable):
             )
         if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
             raise InvalidValueError(
-                f"from and to must be > 0 where the spacing is log, got {self.start!r} and {self.stop!r}"
+                "from and to must be > 0 where the spacing is log, got {start} and {stop}",
+                start=f"{self.start!r}",
+                stop=f"{self.stop!r}",
             )
         if self.count == 1 and self.start != self.stop:
             raise InvalidValueError(

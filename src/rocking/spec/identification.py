@@ -319,7 +319,7 @@ def bodies_in(folder: Path) -> list[Path]:
 
 
 def _by_key(reason: RockingError | Message | str) -> str:
-    return reason if isinstance(reason, str) else reason.spelt(by_key)
+    return reason.spelt(by_key) if isinstance(reason, (Message, RockingError)) else reason
 
 
 def _row_of(

@@ -50,7 +50,11 @@ def resample(
         failures, survivals = np.split(drawn, 2, axis=1)
         return failures, failures + survivals
     if kind != "clusters":
-        raise InvalidValueError(f"kind must be one of {', '.join(get_args(Resampling))} or capacities, got {kind!r}")
+        raise InvalidValueError(
+            "kind must be one of {kinds} or capacities, got {kind}",
+            kinds=", ".join(get_args(Resampling)),
+            kind=f"{kind!r}",
+        )
     if counts.cluster_trials is None:
         raise InvalidValueError("kind must not be 'clusters' unless clusters= names the record of each outcome")
     if counts.scarcity:

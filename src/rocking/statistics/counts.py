@@ -315,7 +315,9 @@ def share_interval(hits: float, trials: float, level: float = 0.95) -> tuple[flo
 
     level = checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)
     if not 0 <= hits <= trials or trials < 1:
-        raise InvalidValueError(f"hits must be in [0, count] with a count of at least 1, got {hits} of {trials}")
+        raise InvalidValueError(
+            "hits must be in [0, count] with a count of at least 1, got {hits} of {trials}", hits=hits, trials=trials
+        )
     tail = 0.5 * (1.0 - level)
     low = 0.0 if hits == 0 else float(betaincinv(hits, trials - hits + 1.0, tail))
     high = 1.0 if hits == trials else float(betaincinv(hits + 1.0, trials - hits, 1.0 - tail))  # Eq. 186

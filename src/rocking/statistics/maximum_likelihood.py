@@ -9,6 +9,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.messages import Message
 from rocking.statistics.counts import Counts
 from rocking.statistics.probit import Derivatives, PenalisedProbit, Probit, starts, tails
 
@@ -90,6 +91,32 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
     return np.sum(failures * distance, axis=1), np.sum(trials * np.abs(distance), axis=1)  # Eq. 201
 
 
+_NO_CURVE = "{outcomes} give no curve: the likeliest rises so little, if at all, that it has no median."
+_LIKELIEST = (
+    "{outcomes} give median {median}, dispersion {dispersion:.3g}, where the likelihood is proven to be largest."
+)
+_PENALISED = (
+    "{outcomes} give median {median}, dispersion {dispersion:.3g}, where the penalised likelihood has its highest "
+    "maximum found."
+)
+_STEP_BETWEEN = (
+    "{outcomes} have no likeliest curve: the likelihood grows towards a step between {low} and {high}, with dispersion "
+    "0."
+)
+_STEP_AT = "{outcomes} have no likeliest curve: the likelihood grows towards a step at {low}, with dispersion 0."
+_CONVENTION = (
+    "The penalised likelihood gives median {median}, dispersion {dispersion:.3g}: a convention, not a finding."
+)
+_NONE_FAILED = (
+    "At {level} none of {trials:g} failed: there the probability of failure is below {probability:.3g} (confidence "
+    "{confidence})."
+)
+_NONE_SURVIVED = (
+    "At {level} none of {trials:g} survived: there the probability of failure is above {probability:.3g} (confidence "
+    "{confidence})."
+)
+
+
 def verdict_of(
     counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None,
     level: Callable[..., str], *, clusters: bool,
@@ -102,19 +129,24 @@ def verdict_of(
         parts.append("Chance alone explains the growth with the level (5 % test): intervals may be open.")
     if clusters and curve is not None and counts.is_clustered:
         parts.append(_clustered(counts))
-    return " ".join(parts)
+    return Message.joined(parts)
 
 
 def _clustered(counts: Counts) -> str:
     if counts.scarcity:
-        return (
-            f"Intervals are those of the likelihood and may be much too narrow: they take the outcomes of one cluster"
-            f" for independent; the bootstrap of whole clusters has too few of them ({counts.scarcity})."
+        return Message(
+            "Intervals are those of the likelihood and may be much too narrow: they take the outcomes of one cluster "
+            "for independent; the bootstrap of whole clusters has too few of them ({reason}).",
+            {"reason": counts.scarcity},
         )
-    how = "draws a capacity for each" if counts.draws_capacities else "draws whole clusters"
+    if counts.draws_capacities:
+        return (
+            "Outcomes of one cluster are not independent: intervals are from the bootstrap, which draws a capacity for "
+            "each; likelihood intervals would be too narrow."
+        )
     return (
-        f"Outcomes of one cluster are not independent: intervals are from the bootstrap, which {how};"
-        " likelihood intervals would be too narrow."
+        "Outcomes of one cluster are not independent: intervals are from the bootstrap, which draws whole clusters; "
+        "likelihood intervals would be too narrow."
     )
 
 
@@ -122,27 +154,21 @@ def _finding(
     counts: Counts, separation: Separation, curve: tuple[float, float] | None, level: Callable[..., str],
     *, penalised: bool,
 ) -> str:  # fmt: skip
-    levels, sentence = counts.levels, separation.value[0].upper() + separation.value[1:]
-    size = f"{counts.observations} outcomes at {levels.size} {'level' if levels.size == 1 else 'levels'}"
-    shown = "" if curve is None else f"median {level(curve[0], 4)}, dispersion {curve[1]:.3g}"
-    if separation is Separation.OVERLAP and curve is None:
-        return f"{size} give no curve: the likeliest rises so little, if at all, that it has no median."
+    levels, sentence = counts.levels, f"{separation.value[0].upper()}{separation.value[1:]}."
+    facts: dict[str, Any] = {"outcomes": counts.observations, "count": levels.size}
+    size = Message("{outcomes} outcomes at {count} level", facts, "{outcomes} outcomes at {count} levels")
+    facts = {"outcomes": size}
+    if curve is not None:
+        facts |= {"median": level(curve[0], 4), "dispersion": curve[1]}
     if separation is Separation.OVERLAP:
-        what = (
-            "penalised likelihood has its highest maximum found" if penalised else "likelihood is proven to be largest"
-        )
-        return f"{size} give {shown}, where the {what}."
+        return Message(_NO_CURVE if curve is None else _PENALISED if penalised else _LIKELIEST, facts)
     if separation.step:
         low, high = levels[counts.survivals > 0.0][-1], levels[counts.failures > 0.0][0]
-        where = f"between {level(low)} and {level(high)}" if high > low else f"at {level(low)}"
-        return (
-            f"{sentence}. {size} have no likeliest curve: the likelihood grows towards a step {where},"
-            " with dispersion 0."
-            + (f" The penalised likelihood gives {shown}: a convention, not a finding." if curve else "")
-        )
+        step = Message(_STEP_BETWEEN if high > low else _STEP_AT, {**facts, "low": level(low), "high": level(high)})
+        return Message.joined([sentence, step, Message(_CONVENTION, facts) if curve else ""])
     if separation in {Separation.NONE_FAILED, Separation.ALL_FAILED}:
-        return f"{sentence}. {_bound(counts, separation, level)} No curve is fitted."
-    return f"{sentence}. No curve is fitted to {size}."
+        return Message.joined([sentence, _bound(counts, separation, level), "No curve is fitted."])
+    return Message.joined([sentence, Message("No curve is fitted to {outcomes}.", facts)])
 
 
 def _bound(counts: Counts, separation: Separation, level: Callable[..., str]) -> str:
@@ -151,11 +177,10 @@ def _bound(counts: Counts, separation: Separation, level: Callable[..., str]) ->
     trials = counts.trials[place]
     # the one-sided Clopper-Pearson bound on a probability of which no trial failed, near 3 / trials for 95 %
     share = float(1.0 - (1.0 - LEVEL) ** (1.0 / float(trials)))  # Eq. 227
-    what, text = ("failed", f"below {share:.3g}") if none else ("survived", f"above {1.0 - share:.3g}")
-    return (
-        f"At {level(counts.levels[place])} none of {trials:g} {what}: there the probability of failure is {text}"
-        f" (confidence {LEVEL:.0%})."
-    )
+    facts = {"level": level(counts.levels[place]), "trials": trials, "confidence": f"{LEVEL:.0%}"}
+    if none:
+        return Message(_NONE_FAILED, {**facts, "probability": share})
+    return Message(_NONE_SURVIVED, {**facts, "probability": 1.0 - share})
 
 
 DECREMENT = 1e-18  # Largest squared distance to the maximum, in standard errors, that counts as having arrived [-]

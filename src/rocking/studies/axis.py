@@ -51,8 +51,14 @@ class Axis:
         if bad.size:
             bracket = "[" if self.low_is_allowed else "("
             raise InvalidValueError(
-                f"{self.name} must be in {bracket}{self.low:g}, {self.high:g}] {self.unit}, "
-                f"got {row[bad[0]]:g} at index {bad[0]}; wrong unit?"
+                ("{name} must be in {bracket}{low:g}, {high:g}] {unit}, got {size:g} at index {index}; wrong unit?"),
+                name=self.name,
+                bracket=bracket,
+                low=self.low,
+                high=self.high,
+                unit=self.unit,
+                size=row[bad[0]],
+                index=bad[0],
             )
         checks.increasing(self.name, row, self.unit)
         row.setflags(write=False)

@@ -8,6 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.studies._overturning_map import MapArrays
 from rocking.studies.question import FAILED, UNLIFTED
 
@@ -50,20 +51,29 @@ class Islands:
     def sentences(self) -> tuple[str, ...]:
         """How many islands there are, what the word means, and what is not decided."""
         if not self.islands:
-            return (f"No safe islands. {self.definition}",)
+            return (Message.joined(["No safe islands.", self.definition]),)
         cells = sum(island.cells for island in self.islands)
-        told = [f"Safe islands: {len(self.islands)}, with {cells} of {self.labels.size} cells. {self.definition}"]
+        facts = {"count": len(self.islands), "cells": cells, "total": self.labels.size}
+        told = [
+            Message.joined([Message("Safe islands: {count}, with {cells} of {total} cells.", facts), self.definition])
+        ]
         still = sum(island.still_rocking for island in self.islands)
         if still:
             told.append(
-                f"Cells still rocking at the end of the computation: {still} of {cells}; whether the body overturns "
-                "later is not decided."
+                Message(
+                    "Cells still rocking at the end of the computation: {still} of {cells}; whether the "
+                    "body overturns later is not decided.",
+                    {"still": still, "cells": cells},
+                )
             )
         between = sum(island.is_between_modes for island in self.islands)
         if between:
             told.append(
-                f"Islands between two ways to overturn: {between} of {len(self.islands)}; on a finer map they may be "
-                "parts of one strip."
+                Message(
+                    "Islands between two ways to overturn: {between} of {count}; on a finer map they may "
+                    "be parts of one strip.",
+                    {"between": between, "count": len(self.islands)},
+                )
             )
         return tuple(told)
 

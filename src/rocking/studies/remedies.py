@@ -293,7 +293,7 @@ def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: flo
     left, right = body.feet
     width, x, y = right - left + 2.0 * out, body.centre[0] - left + out, body.centre[1] - body.ground - down
     if not y > 0.0:
-        raise GeometryError(f"the centre of mass would lie {-1e3 * y:.0f} mm below the ground")
+        raise GeometryError("the centre of mass would lie {depth:.0f} mm below the ground", depth=-1000.0 * y)
     mass, inertia = body.mass, body.moment_of_inertia
     if ballast:
         mass, inertia = mass * (y + down) / y, inertia + mass * down * (y + down)

@@ -46,8 +46,8 @@ def test_every_language_has_every_message(code):
     catalogue = SCRIPT["read"](SCRIPT["FOLDER"] / f"{code}.po", code)
     assert faults(catalogue, template) == set()
     catalogue.delete("Body")
-    catalogue["{0} motions"].string = "{1}"
-    assert faults(catalogue, template) == {(None, "Body"), (None, "{0} motions")}
+    catalogue["record {number}"].string = "{1}"
+    assert faults(catalogue, template) == {(None, "Body"), (None, "record {number}")}
 
 
 def test_the_template_is_current():

@@ -123,7 +123,9 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
     """Return what is found in a file; stated: format, units and time_step [s], None where nobody states them."""
     if _STATIONS in content[:4096]:
         raise RecordError(
-            f"{name}: this is a StationXML file, which describes an instrument and holds no motion; {_WAY}"
+            ("{name}: this is a StationXML file, which describes an instrument and holds no motion; {way}"),
+            name=name,
+            way=_WAY,
         )
     check_record(content)
     try:
@@ -176,7 +178,9 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
     _check_motions(record, path.name, unit_is_known="units" not in reasons)
     if len(record.components) > 1:
         names = ", ".join(each.name for each in record.components)
-        reasons["component"] = f"the file has the components {names}: choose the horizontal one"
+        reasons["component"] = Message(
+            "the file has the components {names}: choose the horizontal one", {"names": names}
+        )
     return record, reasons
 
 
@@ -201,7 +205,7 @@ def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:
 def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
     """Refuse what no ground does: in its unit, or while that is not told in the smallest one."""
     if max(part.peak for part in record.components) < _QUIETEST:
-        raise RecordError(f"{name}: the acceleration is zero throughout; is this the right file?")
+        raise RecordError("{name}: the acceleration is zero throughout; is this the right file?", name=name)
     for part in record.components:
         factor = ACCELERATION_UNITS[part.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
         with np.errstate(over="ignore"):  # what overflows is infinite, and refused

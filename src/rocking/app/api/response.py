@@ -19,6 +19,7 @@ from rocking.dynamics.plane.dense_output import DenseOutput
 from rocking.dynamics.plane.energy_balance import energies, forces
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.motions.integrals import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import motion_answer
@@ -197,7 +198,7 @@ def _tried(problem: ResponseProblem, restitution: Any) -> Response | str:
     except InvalidValueError as error:
         return str(error)
     if response.outcome is Outcome.FAILED:
-        return f"there is no response: {response.status.value}"
+        return Message("there is no response: {reason}", {"reason": response.status.value})
     if response.time.size > MOST_SAMPLES:
         return (
             f"the response has {response.time.size} samples, more than the {MOST_SAMPLES} that are shown here; "

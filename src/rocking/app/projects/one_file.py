@@ -72,10 +72,16 @@ def project_file(state: "AppState", project: Project) -> bytes:
         largest = max(contents, key=lambda sha: len(contents[sha]))
         named = record_file_name({**files, **records}[largest])
         raise TooLarge(
-            f"the project has {len(contents)} files, packed {len(data) / 2**20:.0f} MiB, more than the "
-            f"{MOST_FILES - 1} of {most >> 20} MiB that can be read again: leave out files where they were dropped (the"
-            f" largest is {named}, {len(contents[largest]) / 2**20:.0f} MiB), "
-            "delete studies that need many, or copy the whole data folder"
+            "the project has {count} files, packed {size:.0f} MiB, more than the {most_files} of "
+            "{most_size} MiB that can be read again: leave out files where they were dropped "
+            "(the largest is {largest}, {largest_size:.0f} MiB), delete studies that need many, "
+            "or copy the whole data folder",
+            count=len(contents),
+            size=len(data) / 2**20,
+            most_files=MOST_FILES - 1,
+            most_size=most >> 20,
+            largest=named,
+            largest_size=len(contents[largest]) / 2**20,
         )
     return data
 

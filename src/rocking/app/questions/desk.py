@@ -25,6 +25,7 @@ from rocking.app.settings import Limits
 from rocking.app.work import kill
 from rocking.campaigns.disk import write_new
 from rocking.errors import RockingError
+from rocking.messages import Message
 from rocking.motions.formats import formats
 from rocking.restitution.from_file import file_of
 
@@ -108,7 +109,11 @@ class QuestionDesk:
     ) -> HostedQuestion:
         """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
         if command not in OUTPUTS:
-            raise Refused(f"command must be one of {', '.join(OUTPUTS)}, got {command!r:.40}")
+            raise Refused(
+                "command must be one of {commands}, got {command}",
+                commands=", ".join(OUTPUTS),
+                command=f"{command!r:.40}",
+            )
         if format and (command != "convert" or format not in formats()):
             raise Refused(f"format is that of a record that convert writes, one of {', '.join(formats())}")
         if command == WITHOUT_FILE and (tables or files):
@@ -117,7 +122,7 @@ class QuestionDesk:
         known = self._paths(files)
         with self._changed:
             if len(self._line) >= MOST_WAITING:
-                raise Busy(f"{len(self._line)} questions wait already; try again in a moment", seconds=5)
+                raise Busy("{count} questions wait already; try again in a moment", count=len(self._line), seconds=5)
             if len(self._questions) >= MOST_QUESTIONS:
                 raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
@@ -371,8 +376,9 @@ def refuse_outside(tables: dict[str, Any]) -> None:
 def _refusal(place: Path, code: int | None) -> dict[str, Any]:
     """Return why there is no answer, as data that a user may see."""
     if code is None:
-        why = (
-            f"it took longer than {_SECONDS / 60.0:.0f} minutes, which is more than a page waits: use the command line"
+        why = Message(
+            ("it took longer than {minutes:.0f} minutes, which is more than a page waits: use the command line"),
+            {"minutes": _SECONDS / 60.0},
         )
         return RockingError(why).data()
     log = (place / _LOG).read_text(encoding="utf-8", errors="replace").replace(f"{place}{os.sep}", "")

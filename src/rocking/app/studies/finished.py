@@ -106,7 +106,11 @@ def written(
     """Write a finished study into a file: its curves if it is incremental, else a picture compares its restitutions."""
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
-        raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")
+        raise NotFound(
+            "restitution must be a number from 0 to {largest}, got {restitution}",
+            largest=len(labels) - 1,
+            restitution=restitution,
+        )
     if kind == "toml":
         target.write_bytes((study.folder.path / JOB).read_bytes())
     elif kind == "svg":

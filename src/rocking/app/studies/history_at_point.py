@@ -18,6 +18,7 @@ from rocking.bodies.formats.body_file import body_to_toml
 from rocking.dynamics import simulate
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.motions.pulses import pulse, whole_or_number
@@ -70,7 +71,12 @@ class HistoryPlace:
         at = {name: index.get(name, 0) for name in study.axes} | {"the restitution": restitution}
         for name, size in sizes.items():
             if not 0 <= at[name] < size:
-                raise NotFound(f"{name} must be a number from 0 to {size - 1}, got {at[name]}")
+                raise NotFound(
+                    "{name} must be a number from 0 to {largest}, got {index}",
+                    name=name,
+                    largest=size - 1,
+                    index=at[name],
+                )
         places = [at[name] if name in study.axes else restitution for name in dims]
         number = int(np.ravel_multi_index(tuple(places), study.job.study.shape))
         return cls(number, {"motion": 0} | {name: at[name] for name in study.axes}, restitution)
@@ -220,7 +226,7 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
         cell["inputs"] = inputs | ({"settings": settings} if settings else {})
     cell["note"] = note
     if response.outcome is Outcome.FAILED:
-        return cell | {"note": f"there is no response: {response.status.value}"}
+        return cell | {"note": Message("there is no response: {reason}", {"reason": response.status.value})}
     difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation"]))
     answer = response_answer(variation.label, response, problem, points)
     told = Answer({"stored": cell["stored"], "answer": answer, "difference": difference}).plain()

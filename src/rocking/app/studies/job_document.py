@@ -53,7 +53,9 @@ class JobDocument:
         campaign = tables.get("campaign")
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
         if isinstance(kind, str) and kind not in (known := launched_kinds()):
-            raise InvalidValueError(f"campaign.kind must be one of {', '.join(known)}, got {kind!r:.60}")
+            raise InvalidValueError(
+                "campaign.kind must be one of {kinds}, got {kind}", kinds=", ".join(known), kind=f"{kind!r:.60}"
+            )
         with located("job"):
             job = cls(tables, question_in(tables))
         job._check_counts()

@@ -211,18 +211,20 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
     """Return a fragility analysis."""
     first, question = next(iter(study.analyses.values())), study.question
     measure = first.subject.measure
+    unit = "" if measure.unit == "1" else measure.unit
     return {
         "measure": {"name": measure.name, "unit": measure.unit, "words": measure.words},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
         "analyses": [
-            {"restitution": label, **_analysis(one, question.export.crossing)} for label, one in study.analyses.items()
+            {"restitution": label, **_analysis(one, question.export.crossing, unit)}
+            for label, one in study.analyses.items()
         ],
     }
 
 
-def _analysis(analysis: Any, crossing: Crossing) -> dict[str, Any]:
+def _analysis(analysis: Any, crossing: Crossing, unit: str) -> dict[str, Any]:
     from rocking.plots.fragility import shares_of
 
     shown = shown_curves(analysis, crossing)
@@ -238,9 +240,8 @@ def _analysis(analysis: Any, crossing: Crossing) -> dict[str, Any]:
         "adjusted": "" if shown is None else shown.adjusted,
         "fits": {name: _fit(fit, shared.get(name)) for name, fit in fits.items()},
         "curves": {name: _curve(fit, _fine(levels), shared.get(name)) for name, fit in fits.items() if fit.exists},
-        "sentences": [
-            f"{name} alone: {fit.verdict}" if name in shared else f"{name}: {fit.verdict}" for name, fit in fits.items()
-        ],
+        "verdicts": {name: fit.verdict_in(unit) for name, fit in fits.items()},
+        "common": list(shared),
         **(_cloud(analysis) if hasattr(type(analysis), "regression") else {}),
         **(_incremental(analysis) if hasattr(type(analysis), "first_crossings") else {}),
     }

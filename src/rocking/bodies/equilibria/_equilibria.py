@@ -235,7 +235,9 @@ class Equilibria:
             own = self.stable[known.number]
             if np.linalg.norm(own.down - known.down) < _SAME and math.isclose(own.height, known.height, rel_tol=1e-6):
                 return
-        raise InvalidValueError(f"pose must be one of the stable poses of these equilibria, got {pose!r:.60}")
+        raise InvalidValueError(
+            "pose must be one of the stable poses of these equilibria, got {pose}", pose=f"{pose!r:.60}"
+        )
 
     def _over(self, pose: StablePose, azimuth: float, path: str) -> float:
         rise, end = self._straight(pose, azimuth)

@@ -94,9 +94,8 @@ def _stated(problem: "ErrorDetails", path: str, units: Any) -> dict[str, Any]:
         return {**stated, "allowed": allowed, "text": "{parameter} must be a number {allowed}, got {value}"}
     if kind == "literal_error":
         near = difflib.get_close_matches(str(value)[:60], re.findall(r"'([^']+)'", context["expected"]), n=1)
-        return {
-            **stated, "allowed": f"one of {context['expected']}", "hint": f"did you mean {near[0]}?" if near else ""
-        }  # fmt: skip
+        hint = Message("did you mean {name}?", {"name": near[0]}) if near else ""
+        return {**stated, "allowed": f"one of {context['expected']}", "hint": hint}
     return {**stated, "text": "{parameter} is refused ({reason}), got {value}", "reason": problem["msg"]}
 
 

@@ -166,7 +166,9 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
     """Return points [m] and the triangles between them; fewest: so many of these there must be."""
     points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 4:
-        raise GeometryError(f"vertices must be at least 4 points (x, y, z) in m, got an array of shape {points.shape}")
+        raise GeometryError(
+            "vertices must be at least 4 points (x, y, z) in m, got an array of shape {shape}", shape=points.shape
+        )
     finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         bad = int(np.argmin(finite))
@@ -175,8 +177,10 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
         raise GeometryError(f"coordinates must be within {checks.LARGEST:g} m of the origin; wrong unit?")
     if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or len(numbers) < fewest:
         raise GeometryError(
-            f"faces must be at least {fewest} triangles, each of three vertex numbers, got {numbers.dtype} of shape "
-            f"{numbers.shape}"
+            ("faces must be at least {fewest} triangles, each of three vertex numbers, got {type} of shape {shape}"),
+            fewest=fewest,
+            type=numbers.dtype,
+            shape=numbers.shape,
         )
     if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
         raise GeometryError(

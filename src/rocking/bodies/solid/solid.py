@@ -24,6 +24,7 @@ from rocking.bodies.solid.standing import equilibria_of, set_down
 from rocking.bodies.solid.surfaces import Shape
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.messages import Message
 from rocking.portable import times
 
 BASE_TOLERANCE = 1e-9
@@ -223,7 +224,10 @@ class Solid:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody gave and was assumed, in words."""
-        return (*(f"density {each}" for each in assumed_density(self.densities)), *self._assumed)
+        return (
+            *(Message("density {assumed}", {"assumed": each}) for each in assumed_density(self.densities)),
+            *self._assumed,
+        )
 
     @property
     def densities(self) -> tuple[float, ...]:
@@ -389,7 +393,9 @@ class Solid:
         """
         given: object = pose
         if given is not None and not isinstance(given, StablePose):
-            raise InvalidValueError(f"pose must be one of the stable poses of `equilibria`, got {given!r:.60}")
+            raise InvalidValueError(
+                "pose must be one of the stable poses of `equilibria`, got {pose}", pose=f"{given!r:.60}"
+            )
         chosen = self.equilibria().settling((0.0, 0.0, -1.0)) if pose is None else pose
         parts, base = set_down(self.parts, chosen, self._size)
         ground = min(float(part.box()[0, 2]) for part in parts)

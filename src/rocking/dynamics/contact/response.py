@@ -20,6 +20,7 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, is_none
 from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -206,18 +207,20 @@ class ContactResponse(ResponseBase):
 
     @property
     def _ending(self) -> str:
-        words = [self.outcome.value]
+        text, rotation = "{outcome}", np.degrees(self.peak_rotation)
         if self.peak_rotation > 0.0 and self.outcome is not Outcome.OVERTURNED:
-            words.append(f"largest rotation {np.degrees(self.peak_rotation):.4g} degrees")
+            text += ", largest rotation {rotation:.4g} degrees"
         if self.sliding_distance > 0.0:
-            words.append(f"slid {self.sliding_distance:.4g} m in all")
-        return ", ".join(words)
+            text += ", slid {distance:.4g} m in all"
+        outcome = Message(self.outcome.value)
+        return Message(text, {"outcome": outcome, "rotation": rotation, "distance": self.sliding_distance})
 
     @property
     def _last_motion(self) -> tuple[str, float, str]:
         angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
         doing = self.trajectory.intervals[-1][2].regime.value
-        return doing, self.time[-1], f"at {angle:.3g} degrees and {rate:.3g} rad/s"
+        state = Message("at {rotation:.3g} degrees and {velocity:.3g} rad/s", {"rotation": angle, "velocity": rate})
+        return doing, self.time[-1], state
 
     def at(self, time: Any) -> FloatArray:
         """Return the position at any times within the response.

@@ -42,7 +42,11 @@ def friction_demand(body: Body, acceleration: float) -> float:
     base = PlaneBase.of_body(body)
     lever, height = abs(base.lever(LEFT if push > 0.0 else RIGHT)), base.height
     if not abs(push) * height >= lever:
-        raise InvalidValueError(f"acceleration must be at least b / h = {lever / height:g} to lift it, got {push:g}")
+        raise InvalidValueError(
+            ("acceleration must be at least b / h = {slenderness:g} to lift it, got {acceleration:g}"),
+            slenderness=lever / height,
+            acceleration=push,
+        )
     spin = (abs(push) * height - lever) / (base.inertia + lever**2 + height**2)
     return abs(abs(push) - height * spin) / (1.0 + lever * spin)  # Eq. 76
 

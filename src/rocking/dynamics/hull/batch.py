@@ -39,7 +39,7 @@ def many_on_hulls(cases: Combinations, settings: HullSettings) -> SpatialBatch:
     if not made or not motions or not cases.restitutions or not starts:
         raise InvalidValueError("bodies, motions, restitution and start must be at least one each, got none")
     if (frictions < 0.0).any():
-        raise InvalidValueError(f"friction must be in [0, 1e+06], got {frictions.min():g}")
+        raise InvalidValueError("friction must be in [0, 1e+06], got {smallest:g}", smallest=frictions.min())
     until = math.inf if duration is None else duration
     shaken = [tuple(part for part in motion or () if part is not None) for motion in motions]
     for parts in shaken:

@@ -22,6 +22,7 @@ from rocking.dynamics.space import attitude
 from rocking.dynamics.space.attitude import SpatialStart
 from rocking.dynamics.space.ground import Component, ground_of
 from rocking.dynamics.space.response import samples, started
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
 from rocking.motions.summary import motion_answer
 from rocking.outcome import Outcome
@@ -224,7 +225,7 @@ class HullResponse(ResponseBase):
     def _last_motion(self) -> tuple[str, float, str]:
         last = self.trajectory.states[-1]
         rate = math.hypot(*last.spin)
-        return "moving", self.trajectory.time[-1], f"turning at {rate:.3g} rad/s"
+        return "moving", self.trajectory.time[-1], Message("turning at {velocity:.3g} rad/s", {"velocity": rate})
 
     @property
     def _ending(self) -> str:

@@ -11,6 +11,7 @@ from rocking.dynamics.plane import equations
 from rocking.dynamics.plane.dense_output import DenseOutput
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.messages import Message
 
 
 @dataclass(frozen=True, repr=False)
@@ -95,21 +96,30 @@ class GroundForces:
     def warnings(self, friction: float = 0.5) -> list[str]:
         """Return why pure rocking is not credible: loss of contact, and what `slips` says; empty if it is credible."""
         slips = self.slips(friction)
-        return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
+        if not self.loses_contact:
+            return slips
+        facts = {"leaves": Message(LEAVES), "consequence": Message(_FOLLOWS)}
+        return [Message("the ground would have to pull: {leaves}; {consequence}", facts), *slips]
 
     def slips(self, friction: float = 0.5) -> list[str]:
         """Return why feet that do not slip are not credible, in plain words; empty if they are."""
         friction = checks.positive("friction", friction)
-        found = []
+        found: list[str] = []
         if not self.loses_contact and self.friction_of_motion > friction:
             found.append(
-                f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
-                f"with {friction:g} the body would slide; {_FOLLOWS}"
+                Message(
+                    "rocking without slip takes a coefficient of friction of {needed:.2f}; with "
+                    "{friction:g} the body would slide; {consequence}",
+                    {"needed": self.friction_of_motion, "friction": friction, "consequence": _FOLLOWS},
+                )
             )
         if self.friction_of_impacts > friction:
             found.append(
-                f"impacts without slip take a coefficient of friction of {self.friction_of_impacts:.2f}; "
-                f"with {friction:g} the foot would slip and lose more energy; {_FOLLOWS}"
+                Message(
+                    "impacts without slip take a coefficient of friction of {needed:.2f}; with "
+                    "{friction:g} the foot would slip and lose more energy; {consequence}",
+                    {"needed": self.friction_of_impacts, "friction": friction, "consequence": _FOLLOWS},
+                )
             )
         return found
 

@@ -19,7 +19,7 @@ def _checked_linear(_: str, value: object) -> bool:
 
 def _checked_order(_: str, value: Any) -> int:
     if not isinstance(value, (int, np.integer)) or value not in ORDERS:
-        raise InvalidValueError(f"order must be one of {ORDERS}, got {value!r:.60}")
+        raise InvalidValueError("order must be one of {orders}, got {number}", orders=ORDERS, number=f"{value!r:.60}")
     return int(value)
 
 

@@ -72,8 +72,10 @@ def batch_law(restitution: Any) -> BatchLaw:
     if law.label in CODES and type(law).__module__.startswith("rocking."):
         return BatchLaw(law, law.label, CODES[law.label])
     raise InvalidValueError(
-        f"restitution in a batch must be one of {', '.join(CODES)}, or a coefficient in [0, 1], got {law.label!r:.60}; "
-        "one history, by simulate, takes any law"
+        "restitution in a batch must be one of {models}, or a coefficient in [0, 1], got "
+        "{model}; one history, by simulate, takes any law",
+        models=", ".join(CODES),
+        model=f"{law.label!r:.60}",
     )
 
 

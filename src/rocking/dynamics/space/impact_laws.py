@@ -101,8 +101,10 @@ def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLa
         return restitution
     if isinstance(restitution, (bool, np.bool_)) or not isinstance(restitution, numbers.Real):
         raise InvalidValueError(
-            f"restitution of a body in space must be one of {', '.join(spatial_models())}, a coefficient, or an object "
-            f"with label and velocity_after, got {_lacking(restitution)}"
+            "restitution of a body in space must be one of {models}, a coefficient, or an object "
+            "with label and velocity_after, got {problem}",
+            models=", ".join(spatial_models()),
+            problem=_lacking(restitution),
         )
     return FixedSpatial(float(restitution))
 

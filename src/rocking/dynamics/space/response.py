@@ -23,6 +23,7 @@ from rocking.dynamics.space.reference import SpatialReference
 from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, pivots, states_of
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
 from rocking.motions.summary import motion_answer
 from rocking.outcome import ContactMode, Outcome
@@ -182,7 +183,8 @@ class SpatialResponse(ResponseBase):
     def _last_motion(self) -> tuple[str, float, str]:
         last = self.at(self.end)
         angle, rate = np.degrees(attitude.tilt(last.quaternion)[0]), math.hypot(*last.angular_velocity[0])
-        return "rocking", self.end, f"leaning by {angle:.3g} degrees and turning at {rate:.3g} rad/s"
+        words = "leaning by {rotation:.3g} degrees and turning at {velocity:.3g} rad/s"
+        return "rocking", self.end, Message(words, {"rotation": angle, "velocity": rate})
 
     @property
     def _end_reason(self) -> str:

@@ -4,6 +4,7 @@ import io
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,12 @@ class Recording:
     def __post_init__(self) -> None:
         """Refuse what cannot hold the sound of impacts."""
         if not RATES[0] <= self.rate <= RATES[1]:
-            raise self.error(f"its rate must be in [{RATES[0]}, {RATES[1]}] Hz, got {self.rate}; a damaged header?")
+            raise self.error(
+                "its rate must be in [{lowest}, {highest}] Hz, got {rate}; a damaged header?",
+                lowest=RATES[0],
+                highest=RATES[1],
+                rate=self.rate,
+            )
         count = self.samples.shape[0]
         if count > MOST_SAMPLES:
             raise self.error(f"it has {count} samples, more than the {MOST_SAMPLES} that are read; cut out the trial")
@@ -41,9 +47,9 @@ class Recording:
             bad = int(np.flatnonzero(~np.isfinite(self.samples).all(axis=1))[0])
             raise self.error(f"sample {bad} is not finite ({bad / self.rate:.4f} s); a damaged file?")
 
-    def error(self, cause: str) -> MeasurementError:
-        """Return the error for a cause, to be raised."""
-        return MeasurementError(cause).at(self.name)
+    def error(self, cause: str, **facts: Any) -> MeasurementError:
+        """Return the error for a cause, to be raised; facts: as of `RockingError`."""
+        return MeasurementError(cause, **facts).at(self.name)
 
     @property
     def channel(self) -> FloatArray:
@@ -143,7 +149,12 @@ def _form(chunk: bytes, name: str) -> tuple[int, int, int, int]:
     if (code, bits) not in {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}:
         raise MeasurementError(f"{name}: encoding {code} of {bits} bits is not read; save it as PCM of 16 or 24 bits")
     if not 1 <= channels <= _MOST_CHANNELS:
-        raise MeasurementError(f"{name}: channels must be in [1, {_MOST_CHANNELS}], got {channels}; damaged?")
+        raise MeasurementError(
+            "{name}: channels must be in [1, {most}], got {channels}; damaged?",
+            name=name,
+            most=_MOST_CHANNELS,
+            channels=channels,
+        )
     if per_frame != channels * bits // 8 or per_second != rate * per_frame:
         raise MeasurementError(
             f"{name}: {channels} channels of {bits} bits at {rate} Hz are {channels * bits // 8} bytes a frame and"

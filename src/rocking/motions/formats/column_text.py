@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
+from rocking.messages import Message
 from rocking.motions.formats.directions import orientation
 from rocking.motions.formats.headers import acceleration_unit, unit_to_state
 from rocking.motions.formats.numbers import plain_table, read_rows
@@ -347,7 +348,12 @@ class NamedColumns:
             )
         times.sort(key=lambda one: one.behind not in {"", *_SECONDS})
         if times and times[0].behind not in {"", *_SECONDS}:
-            raise source.error(None, f"{_listed(times)}: the times must be in seconds; convert them, or remove them")
+            raise source.error(
+                None,
+                Message(
+                    "{columns}: the times must be in seconds; convert them, or remove them", {"columns": _listed(times)}
+                ),
+            )
         left_out = tuple(one.text for one in named if one not in found and one not in times)
         return cls(times[0] if times else None, found, left_out, tuple(times[1:]))
 

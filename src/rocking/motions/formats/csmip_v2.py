@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.messages import Message
 from rocking.motions.formats import headers
 from rocking.motions.formats.headers import Channel, check_count, check_peak, check_peak_time
 from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, whole, word
@@ -112,7 +113,13 @@ def _block(source: Source, line: int) -> tuple[str, FloatArray, float, tuple[int
     powers = {"ACCEL": ("CM/SEC/SEC", "CM/SEC2"), "VELOC": ("CM/SEC",), "DISPL": ("CM",)}[kind]
     stated = re.search(r"(?:UNITS?:|\bIN)\s*(CM[^\s).,]*)", tail)
     if stated is None or stated[1] not in powers:
-        raise source.error(line, f"{kind} data must be in {powers[0]}, found {tail.strip()[:40]!r}")
+        raise source.error(
+            line,
+            Message(
+                "{kind} data must be in {unit}, found {words}",
+                {"kind": kind, "unit": powers[0], "words": f"{tail.strip()[:40]!r}"},
+            ),
+        )
     form = re.search(r"\(\s*(\d+[FE]\d+\.\d+)\s*\)", tail)
     per_line, width = fortran_form(source, line, form[1]) if form else (8, 10)
     step = number(source, line, found[3], "time step")

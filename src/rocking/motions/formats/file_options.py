@@ -34,7 +34,7 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
         matches = [path for path in by_name.get(Path(name).name, []) if path.parts[-len(parts) :] == parts]
         if not matches:
             near = checks.nearest(str(name), list(by_name))
-            raise InvalidValueError(f"files: {str(name)!r:.80} is no file of this set", hint=near)
+            raise InvalidValueError("files: {file} is no file of this set", file=f"{str(name)!r:.80}", hint=near)
         if len(matches) > 1 or matches[0] in options:
             both = ", ".join(map(str, matches)) if len(matches) > 1 else f"{matches[0]} has two entries"
             raise InvalidValueError(f"files: {str(name)!r:.80} must name one file of this set, got {both:.300}")

@@ -72,7 +72,7 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
     if stated is not None and asked is not None and abs(stated - asked) > 1e-9 * stated:
         raise source.error(None, f"the file states a time step of {stated:g} s, you say {asked:g}")
     if not 1e-6 <= step <= 10.0:
-        raise source.error(None, f"time step must be in [1e-6, 10] s, got {step:g}")
+        raise source.error(None, Message("time step must be in [1e-6, 10] s, got {step:g}", {"step": step}))
     return float(step)
 
 
@@ -87,9 +87,13 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
         if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
             raise RecordError(f"component {part.name!r:.60} must be a row of at least 2 finite samples")
         if part.unit not in ACCELERATION_UNITS:
-            raise RecordError(f"unit must be one of {', '.join(ACCELERATION_UNITS)}, got {part.unit!r:.60}")
+            raise RecordError(
+                "unit must be one of {units}, got {unit}",
+                units=", ".join(ACCELERATION_UNITS),
+                unit=f"{part.unit!r:.60}",
+            )
         if not 1e-6 <= part.time_step <= 10.0:
-            raise RecordError(f"time step must be in [1e-6, 10] s, got {part.time_step!r:.60}")
+            raise RecordError("time step must be in [1e-6, 10] s, got {step}", step=f"{part.time_step!r:.60}")
         same = ACCELERATION_UNITS[part.unit] == ACCELERATION_UNITS[unit]
         rows.append(values if same else values * (ACCELERATION_UNITS[part.unit] / ACCELERATION_UNITS[unit]))
     return rows
@@ -138,7 +142,10 @@ def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) ->
     steps = times.size - 1
     mean = (float(times[-1]) - float(times[0])) / steps
     if not 1e-6 <= mean <= 10.0:
-        raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
+        raise source.error(
+            None,
+            Message("time step must be in [1e-6, 10] s, got {step:g}; is the first column a time?", {"step": mean}),
+        )
     # beyond rounding or cutting at the last digit, times that went through single precision are accepted
     slack = unit + 1.2e-7 * float(np.abs(times).max())
     most = float(np.max(slack))

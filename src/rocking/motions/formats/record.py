@@ -49,7 +49,7 @@ class Source:
         except OSError as error:
             raise RecordError(f"{path}: {error.strerror or error}") from error
         if not content.strip():
-            raise RecordError(f"{path}: the file is empty")
+            raise RecordError("{file}: the file is empty", file=path)
         return cls(path.name, content, skip=checks.whole("skip", skip, 0, 100_000))
 
     @cached_property

@@ -10,6 +10,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
+from rocking.messages import Message
 from rocking.motions.formats import directions, headers, numbers
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source, metadata_of, one_line
 
@@ -67,7 +68,9 @@ class SmcUsgs(RecordFormat):
         header = _header(source)
         rate, count = header.real[1], header.whole[16]
         if count is None or count < 2:
-            raise source.error(TEXTS + 2, f"number of samples must be at least 2, found {count}")
+            raise source.error(
+                TEXTS + 2, Message("number of samples must be at least 2, found {count}", {"count": count})
+            )
         if rate is not None and not rate > 0.0:
             raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
         unit = headers.acceleration_unit(source, "cm/s2", units)

@@ -147,7 +147,9 @@ def kanai_tajimi_motion(
     omega = 2.0 * math.pi * layer.frequency
     if not LEAST_PHASE <= omega * step < math.pi:
         low, high = LEAST_PHASE / omega, math.pi / omega
-        raise InvalidValueError(f"time_step must be in [{low:g}, {high:g}) s for this layer, got {step:g}")
+        raise InvalidValueError(
+            "time_step must be in [{low:g}, {high:g}) s for this layer, got {step:g}", low=low, high=high, step=step
+        )
     acceleration = envelope(time) * _stationary(layer, omega, step, normals(seed, time.size, 2))
     parameters = described(layer=layer, envelope=envelope, seed=int(seed), time_step=step, duration=duration)
     line = f"simulated: Kanai-Tajimi filtered white noise under an envelope, seed {seed}"

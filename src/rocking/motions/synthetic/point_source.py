@@ -188,7 +188,11 @@ def point_source_motion(
     if duration is None:
         duration = 2.0 * lead + length
     elif checks.positive("duration", duration, "s") < lead + length:
-        raise InvalidValueError(f"duration must be at least {lead + length:g} s for this source, got {duration:g}")
+        raise InvalidValueError(
+            "duration must be at least {least:g} s for this source, got {duration:g}",
+            least=lead + length,
+            duration=duration,
+        )
     time = times(time_step, duration)
     step = float(time[1])
     if source.corner_frequency * step >= 0.5:

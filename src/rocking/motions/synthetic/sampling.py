@@ -35,7 +35,10 @@ def times(time_step: float, duration: float) -> FloatArray:
     ratio = checks.positive("duration", duration, "s") / step
     if not 1.0 + 1e-6 < ratio < MOST_SAMPLES:
         raise InvalidValueError(
-            f"duration must be in ({step:g}, {step * MOST_SAMPLES:g}) s for steps of {step:g} s, got {duration:g}"
+            "duration must be in ({step:g}, {most:g}) s for steps of {step:g} s, got {duration:g}",
+            step=step,
+            most=step * MOST_SAMPLES,
+            duration=duration,
         )
     return np.arange(math.ceil(ratio - 1e-6) + 1, dtype=np.float64) * step
 

@@ -135,8 +135,11 @@ def modulation_from_intensity(
     least, most = _ratio(NARROWEST), _ratio(WIDEST)
     if not least <= wanted <= most:
         raise InvalidValueError(
-            f"significant_duration / middle must be in [{least:.4g}, {most:.4g}], got {wanted:.4g}; "
-            "does the middle count from the start of the motion?"
+            "significant_duration / middle must be in [{least:.4g}, {most:.4g}], got "
+            "{ratio:.4g}; does the middle count from the start of the motion?",
+            least=least,
+            most=most,
+            ratio=wanted,
         )
     # the ends themselves may miss by rounding
     log_shape = (

@@ -69,7 +69,7 @@ class UnitEnergies:
         heights = self.units.centre[:, 2] - self.ground
         top = float(heights.max()) * (1.0 + 1e-12) if height is None else checks.positive("height", height, "m")
         if count < 1:
-            raise InvalidValueError(f"count must be at least 1, got {count!r}")
+            raise InvalidValueError("count must be at least 1, got {count}", count=f"{count!r}")
         lost, ends = np.histogram(heights, bins=count, range=(0.0, top), weights=self.lost)
         return ends, lost
 

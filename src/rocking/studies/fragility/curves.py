@@ -160,7 +160,7 @@ class FragilityModel:
     def __post_init__(self) -> None:
         names = [curve.state for curve in self.curves]
         if not names or len(set(names)) < len(names):
-            raise InvalidValueError(f"curves must be at least one, of different states, got {names}")
+            raise InvalidValueError("curves must be at least one, of different states, got {names}", names=names)
         levels = np.asarray(self.levels, dtype=np.float64)
         object.__setattr__(self, "levels", checked_levels("levels", levels, self.unit))
         for name, counts in {"trials": self.trials, **self.reached}.items():
@@ -321,30 +321,39 @@ def without_crossing(model: FragilityModel, crossing: Crossing = "keep-uplift") 
 
 def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
     """Return the model with one dispersion for the states that no level of uplift decides."""
-    why = f"Fitted alone, curves cross: {excess.words(model)}."
+    why = Message("Fitted alone, curves cross: {excess}.", {"excess": excess.words(model)})
     decided = tuple(c for c in model.curves if c.state == ROCKING and model.uplift_threshold is not None)
     others = replace(model, curves=tuple(c for c in model.curves if c not in decided))
     try:
         found = with_common_dispersion(others) if crosses(others) is not None else others
     except InvalidValueError:
         states = ", ".join(curve.state for curve in others.curves)
-        return replace(model, adjusted=f"{why} They are kept, since no common dispersion fits the states {states}.")
+        kept = Message("They are kept, since no common dispersion fits the states {states}.", {"states": states})
+        return replace(model, adjusted=Message.joined([why, kept]))
     joined = replace(found, curves=(*decided, *found.curves))
     reasons = [why, found.adjusted]
     if not decided:
-        return replace(joined, adjusted=" ".join(reasons))
+        return replace(joined, adjusted=Message.joined(reasons))
+    facts = {"state": ROCKING, "uplift": uplift_words(model)}
     if crosses(joined) is None:
-        reasons.append(f"The curve of {ROCKING} is not changed: {uplift_words(model)}.")
+        reasons.append(Message("The curve of {state} is not changed: {uplift}.", facts))
     else:
-        reasons.append(f"The state {ROCKING} is left out, since its curve would still cross: {uplift_words(model)}.")
+        reasons.append(Message("The state {state} is left out, since its curve would still cross: {uplift}.", facts))
         joined = replace(found, without={**model.without, ROCKING: reasons[-1]})
-    return replace(joined, adjusted=" ".join(filter(None, reasons)))
+    return replace(joined, adjusted=Message.joined(reasons))
 
 
 def uplift_words(model: FragilityModel) -> str:
     """Return below which level no motion lifts the body."""
     unit, size = _shown(model.measure, model.unit)
-    return f"no motion lifts the body below {f'{(model.uplift_threshold or 0.0) * size:.4g} {unit}'.rstrip()}"
+    level = f"{(model.uplift_threshold or 0.0) * size:.4g} {unit}".rstrip()
+    return Message("no motion lifts the body below {level}", {"level": level})
+
+
+_COMMON = (
+    "One dispersion was fitted to several states, so that no curves cross; alone this state has median {median}, "
+    "dispersion {dispersion:.3g}."
+)
 
 
 def with_common_dispersion(model: FragilityModel) -> FragilityModel:
@@ -363,17 +372,18 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         raise
     unit, size = _shown(model.measure, model.unit)
     states = ", ".join(curve.state for curve in model.curves)
-    adjusted = f"One dispersion was fitted to the states {states}, so that their curves do not cross."
+    text = "One dispersion was fitted to the states {states}, so that their curves do not cross."
+    adjusted: str = Message(text, {"states": states})
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
-        verdict = (
-            f"One dispersion was fitted to several states, so that no curves cross; alone this state has median"
-            f" {f'{curve.median * size:.4g} {unit}'.rstrip()}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
-        )
-        curves.append(FragilityCurve(curve.state, median, dispersion, COMMON, verdict.strip(), alone=curve))
+        facts = {"median": f"{curve.median * size:.4g} {unit}".rstrip(), "dispersion": curve.dispersion}
+        verdict = Message.joined([Message(_COMMON, facts), curve.verdict])
+        curves.append(FragilityCurve(curve.state, median, dispersion, COMMON, verdict, alone=curve))
         if curve.state == ROCKING and model.uplift_threshold is not None:
             share = float(curves[-1].probability(model.uplift_threshold))
-            adjusted += f" The curve of {ROCKING} gives {share:.2g} at the level of uplift: {uplift_words(model)}."
+            at_uplift = {"state": ROCKING, "share": share, "uplift": uplift_words(model)}
+            gives = Message("The curve of {state} gives {share:.2g} at the level of uplift: {uplift}.", at_uplift)
+            adjusted = Message.joined([adjusted, gives])
     return replace(model, curves=tuple(curves), adjusted=adjusted)
 
 
@@ -427,7 +437,8 @@ class Excess:
         """Return where and by how much, in words."""
         unit, size = _shown(model.measure, model.unit)
         level = f"{self.level * size:.4g} {unit}".rstrip()
-        return f"at {level} {self.worse!r} would be likelier than {self.lesser!r} by {self.size:.2g}"
+        facts = {"level": level, "worse": self.worse, "lesser": self.lesser, "size": self.size}
+        return Message("at {level} '{worse}' would be likelier than '{lesser}' by {size:.2g}", facts)
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:

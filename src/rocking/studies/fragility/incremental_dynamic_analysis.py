@@ -12,6 +12,7 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.statistics.censored import CensoredFit, fit_crossings
 from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
 from rocking.studies.fragility.subject import Responses
@@ -268,10 +269,15 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
     @property
     def resurrection(self) -> str:
         """How many motions leave the body standing at levels above one at which they overturn it, in a sentence."""
-        whole = int(self.complete.sum())
-        return (
-            f"{len(self.resurrected())} of {whole} motion{'s' * (whole != 1)} left it standing at levels above one "
-            f"that overturns it, {len(self.resurrected(WIDE))} of them over more than 1 % of the level."
+        facts = {
+            "standing": len(self.resurrected()), "count": int(self.complete.sum()), "wide": len(self.resurrected(WIDE)),
+        }  # fmt: skip
+        return Message(
+            "{standing} of {count} motion left it standing at levels above one that overturns it, {wide} of them over "
+            "more than 1 % of the level.",
+            facts,
+            "{standing} of {count} motions left it standing at levels above one that overturns it, {wide} of them over "
+            "more than 1 % of the level.",
         )
 
     def share_resurrected(self, wider_than: float = 0.0) -> float:

@@ -127,7 +127,7 @@ def compare_measures(
     chosen = [measure(one) for one in measures]
     names = [one.name for one in chosen]
     if not names or len(set(names)) < len(names):
-        raise InvalidValueError(f"measures must be at least one, none of them twice, got {names}")
+        raise InvalidValueError("measures must be at least one, none of them twice, got {names}", names=names)
     check_progress(progress)
     if least is not None:
         analysis = replace(analysis, least=checked_least(least))

@@ -1,6 +1,6 @@
 /** The one door to the server: JSON calls, calls where only the newest counts, and files to keep. */
 
-import { t } from "/app/words.js";
+import { learnMessages, t } from "/app/words.js";
 
 /** A refusal of the server, in its own words. */
 export class ApiError extends Error {
@@ -15,7 +15,11 @@ export class ApiError extends Error {
 }
 
 /** Call the API; resolves to JSON, rejects with ApiError. @type {Call} */
-export const call = async (path, options) => (await send(path, options)).json();
+export const call = async (path, options) => {
+  const answer = await (await send(path, options)).json();
+  learnMessages(answer);
+  return answer;
+};
 
 /** A file of the server as a blob. @param {string} path */
 export const fetchFile = async (path) => (await send(path)).blob();

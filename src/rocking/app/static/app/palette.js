@@ -1,6 +1,7 @@
 /** Names, colours and dashes of the restitution models, as the server states them, and looks of all that is none. */
 
 import { svg } from "/app/dom.js";
+import { t } from "/app/words.js";
 
 /** @type {Map<string, Server.ModelFacts>} */
 const models = new Map();
@@ -35,7 +36,7 @@ export const modelWords = (label) => {
   const told = text.includes(":") ? text.split(":")[1].replaceAll(",", ", ") : "";
   const parameter = told ? `, ${told.replaceAll("=", "\u00a0=\u00a0")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
-  return name ? `${factor}${name}${parameter}` : text;
+  return name ? `${factor}${t(name)}${parameter}` : text;
 };
 
 /** A short line, or dots where a curve is drawn as such, in a colour and its true dash.

@@ -1,6 +1,7 @@
 /** The server's refusals in the words of the page, made from their facts: fields, regions counted from one, its units. */
 
 import { number, pretty } from "/app/format.js";
+import { t, told } from "/app/words.js";
 
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
@@ -11,7 +12,7 @@ const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", 
 /** A refusal in plain words, the field of the body that it is about, and where in the drawing it is; lengths are in the
  * unit of the body. @param {any} error @param {Server.BodyInput} [body] */
 export const inPlainWords = (error, body) => {
-  if (!error.text) error.message = capital(error.message);
+  if (!error.text) error.message = capital(t(error.message));
   if (!error.text) return;
   const ofBody = error.places[0]?.name === "body" || error.parameter.startsWith("body.");
   const units = ofBody && body && METRES[body.units] ? body.units : "m";
@@ -31,29 +32,30 @@ const WAYS = {
 /** Why a file was left out, with what there is to do about it. @param {{ why: string, hint?: string, to_state?: string }} reason */
 export const whyLeftOut = ({ why, hint, to_state: path }) => {
   const way = WAYS[path ?? ""];
-  return way ? `${why}: ${way}` : hint ? `${why}; ${hint}` : why;
+  if (way) return t("{place}: {fault}", { place: why, fault: way });
+  return hint ? t("{fault}; {hint}", { fault: why, hint }) : t(why);
 };
 
 /** A message as the page spells its facts. @param {any} message
  * @param {Server.BodyInput["units"]} [units] @returns {string} */
-export const spelt = ({ text, facts }, units = "m") => {
-  const kinds = Object.values(facts);
+export const spelt = (message, units = "m") => {
+  const kinds = Object.values(message.facts);
   if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for it
   const way = kinds.map((fact) => (fact?.kind === "option" ? WAYS[fact.path] : undefined)).find(Boolean);
-  return way ?? text.replace(/\{(\w+)\}/g, (/** @type {string} */ _, /** @type {string} */ name) => spelling(facts[name], units));
+  return way ? t(way) : told(message, (fact) => spelling(fact, units));
 };
 
 /** Files, with their lines, and steps in which something is refused. @param {any} refusal @returns {string[]} */
 const outerPlaces = ({ places }) => places.filter((/** @type {any} */ { kind }) => kind === "file" || kind === "step")
-  .map((/** @type {any} */ { name, kind, number: line }) => [name, kind === "file" && line ? `line ${line}` : ""].filter(Boolean).join(", "));
+  .map((/** @type {any} */ { name, kind, number: line }) => (kind === "file" && line ? `${name}, ${t("line {number}", { number: line })}` : name));
 
 /** A refusal of a question in words; what it tells to state stands in the form. @param {any} refusal */
 export const refusalWords = (refusal) => {
   const places = outerPlaces(refusal);
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
-  const mark = Object.values(WAYS).includes(hint) ? ": " : "; ";
-  const words = spelt({ text: pageText(refusal, ""), facts: { ...refusal.facts, ...valueOf(refusal) } });
-  return [...places, words].join(": ") + (hint && mark + hint);
+  const isWay = Object.values(refusal.hint?.facts ?? {}).some((/** @type {any} */ fact) => fact?.kind === "option" && WAYS[fact.path]);
+  const fault = within(places, spelt(inForm(refusal)));
+  return hint && isWay ? t("{place}: {fault}", { place: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
 };
 
 /** The key of a form that a refusal is about. @param {any} refusal @returns {string | undefined} */
@@ -65,39 +67,43 @@ export const keyOf = (refusal) => {
 /** @param {any} error @param {Server.BodyInput["units"]} units */
 const sentenceOf = (error, units) => {
   const region = regionOf(error);
-  const where = region === undefined ? "" : `Region ${region + 1}: `;
-  const hint = error.hint?.text ? `; ${spelt(error.hint, units)}` : "";
-  const article = error.parameter.startsWith("body.") || error.parameter in FIELDS ? "The " : "";
-  const words = spelt({ text: pageText(error, article), facts: { ...error.facts, ...valueOf(error) } }, units);
-  const places = outerPlaces(error).map((/** @type {string} */ place) => `${place}: `).join("");
-  return `${places}${where}${where || places ? words[0].toLowerCase() + words.slice(1) : capital(words)}${hint}${
-    error.more ? "; more is wrong beside it" : ""}`;
+  const places = outerPlaces(error);
+  const about = error.parameter.startsWith("body.") || error.parameter in FIELDS;
+  let fault = spelt(inForm(error), units);
+  if (region !== undefined) fault = t("Region {number}: {fault}", { number: region + 1, fault: about ? t("the {fault}", { fault }) : fault });
+  else if (about) fault = places.length ? t("the {fault}", { fault }) : capital(t("The {fault}", { fault }));
+  else if (!places.length) fault = capital(fault);
+  fault = within(places, fault);
+  if (error.hint?.text) fault = t("{fault}; {hint}", { fault, hint: spelt(error.hint, units) });
+  return error.more ? t("{fault}; more is wrong beside it", { fault }) : fault;
 };
 
-// The page has the value of a number in its field already.
-const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
-/** @param {any} error @param {string} article */
-const pageText = ({ text, facts }, article) => (MUST.includes(text) && facts.allowed?.kind === "range"
-  ? `${article}{parameter} must be {allowed}; it is {value}` : text);
+/** @param {string[]} places @param {string} fault */
+const within = (places, fault) => places.reduceRight((text, place) => t("{place}: {fault}", { place, fault: text }), fault);
 
-/** The refused value, in the unit of its range. @param {any} error */
-const valueOf = ({ text, facts }) => {
-  const known = MUST.includes(text) && facts.allowed?.kind === "range" && Number.isFinite(Number(facts.value));
-  return known ? { value: { kind: "amount", value: Number(facts.value), unit: facts.allowed.unit === "m" ? "m" : "" } } : {};
+// A number that is out of its range stands in the field: it is repeated in the unit of its range.
+const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
+/** @param {any} refusal */
+const inForm = (refusal) => {
+  const { text, facts: { allowed, value } } = refusal;
+  if (!MUST.includes(text) || allowed?.kind !== "range") return refusal;
+  const isNumber = Number.isFinite(Number(value));
+  const repeated = isNumber ? { kind: "amount", value: Number(value), unit: allowed.unit === "m" ? "m" : "" } : value;
+  return { ...refusal, text: "{parameter} must be {allowed}; it is {value}", facts: { ...refusal.facts, value: repeated } };
 };
 
 /** @param {any} fact @param {Server.BodyInput["units"]} units @returns {string} */
 const spelling = (fact, units) => {
   switch (fact?.kind) {
-    case "parameter": return FIELDS[fact.path] ?? nameOf(fact.path).replaceAll("_", " ");
-    case "option": return FIELDS[fact.path] ?? nameOf(fact.path).replaceAll("_", " ");
+    case "parameter":
+    case "option": return t(FIELDS[fact.path] ?? nameOf(fact.path).replaceAll("_", " "));
     case "index": return String(fact.number + 1);
     case "amount": return amount(fact.value, fact.unit, units);
     case "range": return range(fact, units);
     case "message": return spelt(fact, units);
     default:
       if (Array.isArray(fact)) return fact.map((part) => spelling(part, units)).join("; ");
-      return typeof fact === "number" ? number(fact) : String(fact ?? "");
+      return typeof fact === "number" ? number(fact) : t(String(fact ?? ""));
   }
 };
 
@@ -114,9 +120,9 @@ const range = ({ low, high, low_open: lowOpen, high_open: highOpen, unit }, unit
   const [shown, scale] = unit === "m" ? [units, METRES[units]] : [unit, 1];
   const [from, to] = [low, high].map((end) => (end === null ? null : number(end / scale)));
   const behind = shown ? ` ${pretty(shown)}` : "";
-  if (high === null) return `${lowOpen ? "more than" : "at least"} ${from}${low === 0 ? "" : behind}`;
-  if (low === null) return `${highOpen ? "less than" : "at most"} ${to}${behind}`;
-  return `in ${lowOpen ? "(" : "["}${from}, ${to}${highOpen ? ")" : "]"}${behind}`;
+  if (high === null) return t(lowOpen ? "more than {limit}" : "at least {limit}", { limit: low === 0 ? from : `${from}${behind}` });
+  if (low === null) return t(highOpen ? "less than {limit}" : "at most {limit}", { limit: `${to}${behind}` });
+  return t("in {interval}", { interval: `${lowOpen ? "(" : "["}${from}, ${to}${highOpen ? ")" : "]"}${behind}` });
 };
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index.

@@ -110,7 +110,7 @@ const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${(answer.messages ?? []).map(spelt).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
+    ${answer.doubts.map((/** @type {string} */ doubt) => spelt(answer.messages?.[doubt] ?? { text: doubt, facts: {} })).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
     <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
     ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
       rows=${models.map((/** @type {object} */ each) => Object.values(each).map(shown))} />`}`;

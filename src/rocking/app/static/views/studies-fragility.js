@@ -3,8 +3,8 @@ import { html, useMemo, useSignal } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
 import { Fetched } from "/charts/pictured.js";
-import { pretty, quantity } from "/app/format.js";
-import { Choice, Note } from "/parts/fields.js";
+import { quantity } from "/app/format.js";
+import { Choice, Note, stopped } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
 import { t } from "/app/words.js";
@@ -28,28 +28,27 @@ const Analysis = ({ found, analysis }) => {
   const unit = found.measure.unit === "1" ? "" : found.measure.unit;
   const x = { label: found.measure.words, unit };
   // without a curve the points still show what was found; the reason stands under them, and not once more below
-  const reasons = new Map(Object.keys(analysis.points).filter((state) => !analysis.curves[state])
-    .map((state) => [state, analysis.sentences.find((each) => each.startsWith(`${state}: `))]));
-  const told = new Set(reasons.values());
+  const isDrawn = (/** @type {string} */ state) => state in analysis.curves;
+  const fitted = Object.entries(analysis.verdicts).filter(([state]) => isDrawn(state) || !(state in analysis.points));
   return html`<div class="study-result">
     ${Object.entries(analysis.points).map(([state, points], index) => html`
       <${Curve} key=${state} state=${state} curve=${analysis.curves[state] ?? NO_CURVE} points=${points} index=${index} x=${x} />
-      ${reasons.has(state) && html`<div data-testid="no-curve">
-        <${Note} words=${whyNone(reasons.get(state), state, found.uplift_threshold, unit)} /></div>`}`)}
-    ${analysis.adjusted && html`<div data-testid="adjusted"><${Note} words=${plainWords(analysis.adjusted)} /></div>`}
+      ${!isDrawn(state) && html`<div data-testid="no-curve">
+        <${Note} words=${whyNone(analysis.verdicts[state], found.uplift_threshold, unit)} /></div>`}`)}
+    ${analysis.adjusted && html`<div data-testid="adjusted"><${Note} words=${plainWords(t(analysis.adjusted))} /></div>`}
     ${analysis.resurrection && html`<${Note} words=${analysis.resurrection} />`}
-    ${analysis.sentences.filter((each) => !told.has(each)).map((each) => html`<${Note} key=${each} words=${withUnit(each, unit)} />`)}
+    ${fitted.map(([state, verdict]) => html`<${Note} key=${state} words=${plainWords(t(analysis.common.includes(state)
+      ? "{state} alone: {verdict}" : "{state}: {verdict}", { state, verdict }))} />`)}
     ${found.definition && html`<p class="quiet">${plainWords(found.definition)}</p>`}
     <${Table} columns=${columnsOf(unit)} rows=${Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit))}
       caption="Lognormal fits" testid="fragility-fits" />
   </div>`;
 };
 
-/** @param {string | undefined} sentence @param {string} state @param {number | null} threshold @param {string} unit */
-const whyNone = (sentence, state, threshold, unit) => {
-  const why = sentence ? withUnit(sentence.slice(state.length + 2), unit) : stepWords(threshold, unit);
-  return t("No curve is drawn: {reason}.", { reason: why }).replace(/\.\.$/, ".");
-};
+/** @param {string | undefined} verdict @param {number | null} threshold @param {string} unit */
+const whyNone = (verdict, threshold, unit) => stopped(t("No curve is drawn: {reason}", {
+  reason: verdict ? plainWords(t(verdict)) : stepWords(threshold, unit),
+}));
 
 /** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance.
  * @param {number | null} threshold @param {string} unit */
@@ -57,14 +56,6 @@ const stepWords = (threshold, unit) => (threshold === null ? "these shares fit n
   : t("below {acceleration} the body cannot uplift and above it always does, a step from 0 to 1", { acceleration: quantity(threshold, unit) }));
 
 const NO_CURVE = { x: [], probability: [], low: null, high: null };
-
-const LEVEL = /\b(At|at|median) ([0-9][0-9.e+-]*[0-9]|[0-9])(?= |,|:|$)(?! levels?\b)/g;
-
-/** The verdict of a fit names levels without a unit. @param {string} sentence @param {string} unit */
-const withUnit = (sentence, unit) =>
-  plainWords(sentence)
-    .replace(LEVEL, `$1 $2${unit && `\u00a0${pretty(unit)}`}`)
-    .replace(/\b(between \S+ and \S*[0-9])/g, `$1${unit && `\u00a0${pretty(unit)}`}`);
 
 /** @param {{ state: string, curve: Server.CurveOfState, points: Server.PointsOfState, index: number, x: ChartAxis }} props */
 const Curve = ({ state, curve, points, index, x }) => {

@@ -1,5 +1,6 @@
 /** Words of the package as a page prints them. */
 import { pretty } from "/app/format.js";
+import { t } from "/app/words.js";
 
 /** @type {{ [name: string]: string }} */
 const LETTERS = { alpha: "\u03b1", pi: "\u03c0", omega_p: "\u03c9\u209a", a_p: "a\u209a", T_p: "T\u209a" };
@@ -9,4 +10,4 @@ const UNITS = /\b(m\/s2|cm\/s2|rad\/s2|kg\/m3|m2|m3)\b/g;
 export const greek = (words) => words.replace(/\b(alpha|pi|omega_p|a_p|T_p)\b/g, (name) => LETTERS[name]);
 
 /** A sentence of the package with Greek letters and raised powers. @param {string} words */
-export const plainWords = (words) => greek(words).replace(UNITS, pretty);
+export const plainWords = (words) => greek(t(words)).replace(UNITS, pretty);
