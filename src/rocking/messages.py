@@ -199,6 +199,10 @@ class Message(str):
         """Return the sentence with its facts as a door spells them."""
         return _filled(self.text, self.facts, self.many, spelling)
 
+    def of(self, facts: Mapping[str, Any]) -> "Message":
+        """Return the message with other facts."""
+        return Message(self.text, facts, self.many, self.context)
+
     @classmethod
     def followed(cls, sentence: str, more: str) -> str:
         """Return a sentence and what follows it after a semicolon; the sentence alone if nothing does."""

@@ -151,8 +151,7 @@ def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     base = next((each for each in more if not isinstance(each, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
     if "units" in fields:
-        words = "sentences of this answer as messages, by the sentence"
-        fields["messages"] = dict[str, MessageData], Field({}, description=words)
+        fields["messages"] = Messages
     keys: Any = {key: _field(key, *(value if isinstance(value, tuple) else (value,))) for key, value in fields.items()}
     return create_model(name, __base__=base, __doc__=meaning, __module__=__name__, **keys)
 
@@ -184,6 +183,10 @@ def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) 
     return kind, Field(description=f"{words} [{unit}]".strip() if unit and not words.endswith("]") else words)
 
 
+Messages: Any = (
+    dict[str, MessageData],
+    Field({}, description="sentences of this answer as messages, by the sentence"),
+)
 Units: Any = (dict[str, str], "unit of every number, by the name of its quantity")
 
 

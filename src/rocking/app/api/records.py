@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from fastapi import Path as InPath
 
-from rocking.app.answers import FILE_SENT, Deleted, JsonAnswer, answered, shape, shape_of
+from rocking.app.answers import FILE_SENT, Deleted, JsonAnswer, Messages, answered, shape, shape_of
 from rocking.app.errors import room_on_disk
 from rocking.app.inputs import check_record, check_samples
 from rocking.app.plain_text import safe_name
@@ -53,6 +53,7 @@ RecordFacts: Any = shape(
     "RecordFacts",
     "What a record file holds, and what must still be told.",
     RecordKept,
+    messages=Messages,
     format=(str | None, "null where no format fits"),
     components=list[ComponentFacts],
     needs=(list[Need], "what must still be told before it can be used"),

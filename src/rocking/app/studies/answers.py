@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rocking.app.answers import QuantityAnswer, Units, shape
+from rocking.app.answers import Messages, QuantityAnswer, Units, shape
 from rocking.app.api.response import ResponseFacts
 from rocking.app.inputs import Inputs
 
@@ -36,6 +36,7 @@ Result: Any = shape(
     "Result",
     "What every result tells.",
     id=str,
+    messages=Messages,
     name=str,
     restitutions=list[str],
     contact=(str, _left_out("in how many histories the ground would have to pull; empty if in none", "")),
@@ -289,6 +290,7 @@ HistoryAnswer: Any = shape(
     "HistoryAnswer",
     "The history behind a point of the picture of a study.",
     stored=StoredHistory,
+    messages=Messages,
     inputs=(Inputs | None, "what to ask for the same history; null where inputs cannot say it"),
     answer=(ResponseFacts | None, "null where there is no response"),
     difference=(float | None, "between the peaks of `stored` and `answer`"),

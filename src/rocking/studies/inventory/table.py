@@ -3,7 +3,6 @@
 import csv
 import io
 import math
-from dataclasses import replace
 from typing import Any
 
 from rocking.answers import Answer
@@ -549,4 +548,4 @@ def _fate(result: DirectionResult, level: str, synthetic: bool, say: Language) -
         fate = _ROCKS_BARELY if high < 0.05 else _ROCKS_LITTLE if high < 0.2 else _ROCKS
     motions = _SIMULATED if synthetic else _RECORDS
     facts = {"level": level, "overturned": result.overturned, "count": result.count}
-    return say(replace(fate, facts={**facts, "motions": replace(motions, facts=facts)}))
+    return say(fate.of({**facts, "motions": motions.of(facts)}))

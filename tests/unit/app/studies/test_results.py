@@ -149,7 +149,8 @@ def test_fragility_is_that_of_python(result):
         assert (
             mine["curves"][curve.state]["probability"] == curve.probability(mine["curves"][curve.state]["x"]).tolist()
         )
-        assert f"{curve.state} alone: {fit.verdict}" in mine["sentences"]
+        assert mine["verdicts"][curve.state] == fit.verdict_in("m/s2")
+    assert set(mine["common"]) == set(exported.shared)
     one = result(
         "stripes", fragility={"levels": levels, "states": ["overturning"]}, restitution={"model": "ked"},
         motions={"synthetic": "pulse-like", "count": 20, "seed": 7},
@@ -157,7 +158,8 @@ def test_fragility_is_that_of_python(result):
     fit = expected.fits["overturned"]
     assert one["fits"]["overturned"]["median"] == fit.median
     assert one["fits"]["overturned"]["median_95"] == fit.summary()["median_95"]
-    assert one["sentences"] == [f"overturned: {fit.verdict}"]
+    assert one["verdicts"] == {"overturned": fit.verdict_in("m/s2")}
+    assert one["common"] == []
     assert one["adjusted"] == ""
     assert mine["points"]["overturned"]["reached"] == expected.counts["overturned"].tolist()
     banded = [curve for curve in mine["curves"].values() if curve["low"] is not None]
