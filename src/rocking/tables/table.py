@@ -101,6 +101,11 @@ class Table:
     beside: Mapping[str, "Table"] = field(default_factory=dict)
     no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
 
+    def __post_init__(self) -> None:
+        # files take plain text alone: no messages
+        plain = {name: str(value) if isinstance(value, str) else value for name, value in self.provenance.items()}
+        object.__setattr__(self, "provenance", plain)
+
     @classmethod
     def of(cls, row: str, arrays: Arrays, **more: Any) -> "Table":
         """Return a table of arrays that have entries in `rocking.quantities`; more: its other fields."""

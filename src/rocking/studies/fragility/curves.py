@@ -203,7 +203,7 @@ class FragilityModel:
         }
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
         words |= {f"without_curve {state}": why for state, why in self.without.items()}
-        words |= {"adjusted": self.adjusted} if self.adjusted else {}
+        words |= {"adjusted": str(self.adjusted)} if self.adjusted else {}
         about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
         labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
         return labelled
