@@ -90,3 +90,13 @@ def test_compiled_catalogues_are_current(code):
     """The compiled catalogue says what its source says: make messages."""
     kept = GNUTranslations(io.BytesIO((SCRIPT["FOLDER"] / f"{code}.mo").read_bytes()))._catalog
     assert kept == GNUTranslations(io.BytesIO(SCRIPT["compiled"](CATALOGUES[code])))._catalog
+
+
+def test_the_page_takes_no_sentence_apart():
+    """Nothing watches what appears, and no expression is made of the catalogue: texts are looked up exactly."""
+    scripts = {
+        path.name: path.read_text("utf-8") for path in SCRIPT["PAGE"].rglob("*.js") if "vendor" not in path.parts
+    }
+    assert "catalogue.get(" in scripts["words.js"]
+    assert [name for name, text in scripts.items() if "MutationObserver" in text] == []
+    assert [name for name, text in scripts.items() if "new RegExp" in text] == ["response-words.js"]  # names of models

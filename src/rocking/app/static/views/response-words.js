@@ -37,7 +37,7 @@ export const inWords = (sentence, answers) =>
   answers.map(({ label }) => label)
     .filter((label) => curveKey(label) === label)
     .sort((a, b) => b.length - a.length)
-    .reduce((text, label) => text.replaceAll(wordOf(label), wordsOf(label)), sentence);
+    .reduce((text, label) => text.replaceAll(wordOf(label), wordsOf(label)), t(sentence));
 
 /** @param {string} label */
 const wordOf = (label) => new RegExp(`(?<![\\w-])${label.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}(?![\\w-])`, "g");
