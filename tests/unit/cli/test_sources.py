@@ -111,7 +111,7 @@ def test_curves_of_a_floor_are_not_of_the_ground(run, tmp_path):
 
 def test_the_head_of_peaks_names_the_floor(run, record, tmp_path):
     """On a floor the table has PFA, of the record itself PGA."""
-    assert "PFA g" in run(*words_of("predict", record, tmp_path))[1]
+    assert "PFA [g]" in run(*words_of("predict", record, tmp_path))[1]
     ground = ("predict", *COMMANDS["predict"], record, "--units", "m/s2")
-    assert "PGA g" in run(*ground)[1]
+    assert "PGA [g]" in run(*ground)[1]
     assert "PFA" not in run(*ground)[1]

@@ -174,7 +174,7 @@ def test_comparisons_add_up(made, tmp_path):
     changed = [row for row in cells if float(row["verdict"]) in {-1.0, 1.0}]
     assert len(changed) == float(flips[1]["flips"])
     gained = [row for row in changed if float(row["verdict"]) == 1.0]
-    assert len(gained) == float(flips[1]["gained"])
+    assert len(gained) == float(flips[1]["only_second"])
     block = rk.Block(width=0.5, height=2.0)
     period = 2.0 * np.pi / (float(gained[0]["frequency_ratio"]) * block.frequency_parameter)
     amplitude = float(gained[0]["amplitude_ratio"]) * conventions.g * np.tan(block.slenderness_angle)
