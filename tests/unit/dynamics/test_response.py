@@ -275,7 +275,7 @@ def test_side_is_against_the_ground(side: int, engine: str) -> None:
     assert isinstance(response.side, int)
     assert float(response.rotation[-1]) * side > 0.0
     facts = response.exported().provenance
-    assert (facts["side"], facts["overturning_time_s"], facts["impacts"]) == (
+    assert (facts["side"], facts["overturning_time"], facts["impacts"]) == (
         side, response.overturning_time, response.impacts.size,
     )  # fmt: skip
 
@@ -287,7 +287,7 @@ def test_no_side_without_a_fall(kind: str) -> None:
     assert response.side == 0
     found = response.exported().provenance
     assert found["side"] == 0
-    assert "overturning_time_s" not in found
+    assert "overturning_time" not in found
     assert found["impacts"] == response.impacts.size
 
 
