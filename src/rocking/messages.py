@@ -217,6 +217,15 @@ class Message(str):
         return first
 
 
+def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values with plain texts in place of messages, which files do not take.
+
+    >>> type(plain_texts({"motion": Message("sine pulse")})["motion"])
+    <class 'str'>
+    """
+    return {name: str(value) if isinstance(value, str) else value for name, value in values.items()}
+
+
 def as_message(text: str) -> Message:
     """Return a text as a message; a message as it is."""
     return text if isinstance(text, Message) else Message(text)

@@ -168,8 +168,11 @@ def of_friction(coefficient: float) -> tuple[str, ...]:
     if not low < coefficient < high:
         return ()
     return (
-        f"a coefficient of friction of {coefficient:.4g} is more than {low:g}, which no surface has; is it in percent, "
-        f"or an angle in degrees? Feet that never slide have {high:g} or more",
+        Message(
+            "a coefficient of friction of {friction:.4g} is more than {low:g}, which no surface has; is it in percent, "
+            "or an angle in degrees? Feet that never slide have {high:g} or more",
+            {"friction": coefficient, "low": low, "high": high},
+        ),
     )
 
 

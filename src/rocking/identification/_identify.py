@@ -125,9 +125,21 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
     if advantage < _ADVANTAGE:
         refused.append("intervals do not shrink from impact to impact as those of a rocking body do")
     if missed:
-        doubts.append(Message("{missed} impacts were missed between the others.", {"missed": missed}))
+        doubts.append(
+            Message(
+                "{count} impact was missed between the others.",
+                {"count": missed},
+                many="{count} impacts were missed between the others.",
+            )
+        )
     if extra:
-        doubts.append(f"{extra} times between the impacts are none, {bounces} of them bounces or echoes.")
+        doubts.append(
+            Message(
+                "{count} time between the impacts is no impact; bounces or echoes: {bounces}.",
+                {"count": extra, "bounces": bounces},
+                many="{count} times between the impacts are no impacts; bounces or echoes: {bounces}.",
+            )
+        )
     if known.asymmetry and known.tilt_error:
         doubts.append("Times alone do not tell a tilted floor from sides that differ: intervals by side include both.")
     result = _result(
@@ -196,13 +208,18 @@ def _result(
         refused.append(Message("impacts take no energy: r is {coefficient}", {"coefficient": r}))
     if scattered.value > _MOST_SCATTER:
         refused.append(Message("what impacts take scatters by {share:.0f} %", {"share": 100.0 * scattered.value}))
-    first_sizes = "check the sizes of the body, then " if known.body is not None else ""
+    remedy = Message("check the sizes of the body, then {way}", {"way": _TREND}) if known.body is not None else _TREND
+    trend = {"probability": p_value, "remedy": remedy}
     if p_value < _UNLIKELY and not known.trend:
-        steadily = f"what impacts take changes steadily with their number (p = {p_value:.1g}); {first_sizes}{{way}}"
-        refused.append(Message(steadily, {"way": _TREND}))
+        refused.append(
+            Message(
+                "the energy loss changes steadily with the number of impacts (p = {probability:.1g}); {remedy}", trend
+            )
+        )
     elif p_value < 0.01:
-        changing = f"What impacts take changes with their number, p = {p_value:.2g}: {first_sizes}{{way}}."
-        doubts.append(Message(changing, {"way": _TREND}))
+        doubts.append(
+            Message("The energy loss changes with the number of impacts, p = {probability:.2g}: {remedy}.", trend)
+        )
     if not found.converged:
         doubts.append("The maximum of the posterior was not found everywhere: intervals may be wrong.")
     frequency = math.sqrt(found.model.p[0] * found.model.p[1])

@@ -16,7 +16,7 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
-from rocking.messages import Message, messages_of
+from rocking.messages import Message
 from rocking.quantities import Quantity
 from rocking.restitution import RestitutionModel, implied, models
 
@@ -302,8 +302,7 @@ class Identification(Exported):
             Coefficients, impacts, models and designs; of a refused measurement the reasons alone.
         """
         words = {
-            "source": self.source, "verdict": self.verdict, "refused": tuple(map(str, self.refused)),
-            "doubts": tuple(map(str, self.doubts)), "messages": messages_of((self.verdict, self.refused, self.doubts)),
+            "source": self.source, "verdict": self.verdict, "refused": self.refused, "doubts": self.doubts,
         }  # fmt: skip
         if self.refused:
             return Answer(words)

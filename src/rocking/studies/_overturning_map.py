@@ -9,6 +9,7 @@ import numpy as np
 from rocking import conventions
 from rocking.bodies import Body
 from rocking.errors import extra
+from rocking.messages import plain_texts
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
 from rocking.quantities import HISTORY, attributes
@@ -123,7 +124,7 @@ class MapArrays:
                 for name, values in self.variables.items()
             },
             coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (y, x)},
-            attrs=self.attributes,
+            attrs=plain_texts(self.attributes),
         )
         return dataset
 

@@ -13,6 +13,7 @@ from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import plain_texts
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words, flags
 from rocking.quantities import HISTORY, attributes
@@ -113,10 +114,8 @@ def rocking_spectrum(
             "semi_diagonal": ("period", sizes, {"units": "m", "long_name": "semi-diagonal R of the block"}),
             "coefficient": (_DIMENSIONS[1:], coefficient, {"units": "1", "long_name": "coefficient of restitution"}),
         },
-        attrs={
-            **_attributes(question, settings, scale, all_motions),
-            "contact": contact_words(results["lost_contact"]),
-        },
+        attrs=plain_texts(_attributes(question, settings, scale, all_motions))
+        | {"contact": contact_words(results["lost_contact"])},
     )
     return labelled
 

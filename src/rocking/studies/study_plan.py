@@ -13,6 +13,7 @@ from rocking.dynamics.content import hash_of
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.rows import Rows
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import plain_texts
 from rocking.outcome import flags
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Histories, HistoryTable, results_of
@@ -100,7 +101,7 @@ class Study:
         dims = tuple(self.dims)
         data = {name: (dims, values.reshape(self.shape), attributes(name)) for name, values in results.items()}
         coords = {name: (each.dims, each.values, each.attributes) for name, each in self.coordinates.items()}
-        dataset: xr.Dataset = xarray.Dataset(data, coords, self.attributes)
+        dataset: xr.Dataset = xarray.Dataset(data, coords, plain_texts(self.attributes))
         return dataset
 
     def computed(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import plain_texts
 from rocking.quantities import QUANTITIES
 from rocking.tables.table import Column, Grid, Table
 
@@ -52,7 +53,7 @@ def _grid_to_netcdf(grid: Grid, path: Path) -> None:
     room += sum(_room(each.values) for each in grid.coordinates.values())
     with _netcdf_file(path, "w", room) as file:
         file.dimensions = dict(grid.dims)
-        file.attrs.update(grid.provenance)
+        file.attrs.update(plain_texts(grid.provenance))
         for name, each in grid.coordinates.items():
             _variable(file, name, each.dims, each)
         also = " ".join(name for name in grid.coordinates if name not in grid.dims)
@@ -69,7 +70,7 @@ def add_to_netcdf(tables: Mapping[str, Table], path: Path, provenance: Mapping[s
     """Write tables as variables of a netCDF file, which is made or, where it is there, added to."""
     room = sum(_room(each.values) for table in tables.values() for each in table.columns.values())
     with _netcdf_file(path, "a", room) as file:
-        file.attrs.update(provenance)
+        file.attrs.update(plain_texts(provenance))
         for table in tables.values():
             file.dimensions[table.row] = len(table)
             for name, each in table.columns.items():

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rocking.errors import InvalidValueError, RockingError
+from rocking.messages import plain_texts
 from rocking.quantities import QUANTITIES, Quantity
 
 PIECE = 1 << 16
@@ -102,9 +103,7 @@ class Table:
     no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
 
     def __post_init__(self) -> None:
-        # files take plain text alone: no messages
-        plain = {name: str(value) if isinstance(value, str) else value for name, value in self.provenance.items()}
-        object.__setattr__(self, "provenance", plain)
+        object.__setattr__(self, "provenance", plain_texts(self.provenance))
 
     @classmethod
     def of(cls, row: str, arrays: Arrays, **more: Any) -> "Table":

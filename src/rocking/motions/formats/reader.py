@@ -378,12 +378,19 @@ def _recognised(source: Source) -> RecordFormat:
         raise source.error(None, f"its header is nearly that of {near.name}; damaged?", hint=hint)
     if last.recognises(source):
         return last
-    unknown = f"not recognised as any of {', '.join(_CLASSES)}; damaged, or another format?"
     top = " ".join(source.lines[:5])[:1000].lower() if source.is_text else ""
     held = next((word for word in ("spectra", "spectrum", "velocity", "displacement", "counts") if word in top), None)
     speaks = held is not None and (held.startswith("spectr") or "accel" not in top)
-    beside = f"; it holds {held}, and accelerations over time are needed" if speaks else ""
-    raise last.refusal(source) or source.error(None, unknown + beside)
+    raise last.refusal(source) or source.error(
+        None,
+        (_UNKNOWN_QUANTITY if speaks else _UNKNOWN).text,
+        formats=", ".join(_CLASSES),
+        **({"quantity": Message(held or "")} if speaks else {}),
+    )
+
+
+_UNKNOWN = Message("not recognised as any of {formats}; damaged, or another format?")
+_UNKNOWN_QUANTITY = Message("it contains {quantity}, and accelerations over time are needed; formats: {formats}")
 
 
 def _chosen(record: Record, what: str, name: str | None, other: Component | None = None) -> Component:

@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
-from rocking.messages import Message, Option
+from rocking.messages import Message, Option, plain_texts
 from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
@@ -203,9 +203,9 @@ class FragilityModel:
         }
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
         words |= {f"without_curve {state}": why for state, why in self.without.items()}
-        words |= {"adjusted": str(self.adjusted)} if self.adjusted else {}
+        words |= {"adjusted": self.adjusted} if self.adjusted else {}
         about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
-        labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
+        labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=plain_texts(about))
         return labelled
 
 

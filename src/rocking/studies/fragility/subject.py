@@ -18,6 +18,7 @@ from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import plain_texts
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.motions.pulse import Motion
 from rocking.motions.summary import GROUND, provenance_of, support_of, words_on
@@ -408,7 +409,7 @@ class FragilityAnalysis(ABC):
         about = self.subject.about() | {"definition": definition, "uplift": self.uplift.verdict, "failed": self.failed}
         names = {"motion_name": ("motion", self.subject.names)}
         labelled: xr.Dataset = xarray.Dataset(
-            data, coords=coordinates | names, attrs=about | {"contact": self.responses.contact}
+            data, coords=coordinates | names, attrs=plain_texts(about | {"contact": self.responses.contact})
         )
         return labelled
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import plain_texts
 from rocking.motions.motion import GroundMotion
 from rocking.studies.inventory.assessment import Assessment, assess
 from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, IntensityLevel
@@ -192,5 +193,5 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
     }
     hazard = assessment.hazard
     about = {"inventory": assessment.source, "shaking": hazard.words(say.code), "motions": say(hazard.source)}
-    labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=about)
+    labelled: xr.Dataset = xarray.Dataset(data, coords=coordinates, attrs=plain_texts(about))
     return labelled
