@@ -6,7 +6,10 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rocking.errors import RockingError
 
 _FEW_COLLECTIONS = 100_000  # objects until garbage is looked for: a command imports many that all stay
 
@@ -40,7 +43,8 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     except RockingError as error:
         refusal = error.without_file(unnamed_file)
     except click_exception as error:
-        refusal = RockingError(_refusal(error), hint="see rocking --help")
+        refusal = _refusal(error)
+        refusal.add_hint("see rocking --help")
     except OSError as error:
         refusal = RockingError(f"{error.strerror or error}: {error.filename or ''}".rstrip(": "))
     except KeyboardInterrupt:
@@ -60,20 +64,21 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     sys.exit(2)
 
 
-def _refusal(error: Any) -> str:
-    """Return why the words make no sense, with a key for an option that does not exist, or a comma for a point."""
+def _refusal(error: Any) -> "RockingError":
+    """Return the error of an option, with a key for an option that does not exist, or a comma for a point."""
     from pydantic import ValidationError  # and numpy below, which help does not need
 
     from rocking.bodies.formats.words import from_pydantic
     from rocking.cli.options import key_of
+    from rocking.errors import InvalidValueError
 
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     if hasattr(error, "possibilities") and (key := key_of(str(getattr(error, "option_name", "")))):
-        return f"{message.rstrip('.')}; it is a key: {key}"
+        return InvalidValueError(message.rstrip("."), hint=f"it is a key: {key}")
     if isinstance(error.__cause__, ValidationError) and getattr(error, "param", None) is not None:
         problems = error.__cause__.errors(include_url=False)
-        return str(from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems]))
-    return message
+        return from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems])
+    return InvalidValueError(message.rstrip("."))
 
 
 class _Notes:

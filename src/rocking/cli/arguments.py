@@ -103,7 +103,7 @@ def document_file(
     """Return the file with everything, TOML with [body] or another table; beside: options that go with it."""
     if word is None or not {*tables, "body"} & set(tables_in(Path(word)) or ()):
         return None
-    taken = {"body", "objects", "motions", "threads", "out", "as_json", "sets", *beside}
+    taken = {"body", "objects", "motions", "threads", "out", "as_json", "sets", "details", *beside}
     if stated := typed(context, *(name for name in context.params if name not in taken)):
         raise InvalidValueError(
             f"{word} {has}says everything itself, so it takes no {', '.join(stated)}; --set changes a key"

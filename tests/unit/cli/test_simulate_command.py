@@ -264,3 +264,12 @@ def test_a_rival_that_creates_energy_is_told_and_left_out(run, monkeypatch):
     assert "not for this body" in out
     assert "would create energy" in out
     assert "With every one of these models the body stays standing." in out
+
+
+def test_details_of_a_question_file(printed):
+    """A question file takes --details, which the page without it names; the impacts are printed with it alone."""
+    file = str(rk.examples.path("block-under-a-pulse"))
+    page, details = printed(file), printed(file, "--details")
+    assert "--details" in page
+    assert "velocity before [rad/s]" in details
+    assert "velocity before [rad/s]" not in page
