@@ -10,7 +10,7 @@ from browser_pages import DECISIVE, GENTLE, facts, link, response
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.language import page_words
-from rocking.messages import Message, as_message
+from rocking.messages import Amount, Message, as_message
 from rocking.motions.summary import MotionSummary, condition
 from rocking.outcome import contact_sentence
 from rocking.plausibility import of_body
@@ -34,9 +34,13 @@ SHOWN = """() => {
 }"""
 ANSWERED = {"response": ".response-results[data-drawn]", "compare": "[data-testid=compare-verdict]"}  # asked when shown
 SAID = "async (texts) => { const { t } = await import('/app/words.js'); return texts.map((text) => t(text)); }"
+STOPPED = """async (texts) => {
+  const { stopped } = await import('/parts/fields.js');
+  return texts.map((text) => stopped(text));
+}"""
 TOLD = """async (messages) => {
-  const { told } = await import('/app/words.js');
-  return messages.map((message) => told(message));
+  const { spelt } = await import('/app/refusal.js');
+  return messages.map((message) => spelt(message));
 }"""
 
 
@@ -121,6 +125,20 @@ def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
     name.wait_for()
     assert name.inner_text() in page_words("de")
     assert page.locator("#tab-body").inner_text().endswith("Körper")
+    page.get_by_test_id("project").click()
+    page.locator("#project-rename").fill("Motion")
+    page.locator("#project-rename").press("Enter")
+    page.get_by_test_id("projects").get_by_role("heading", name="Stände von Motion bisher").wait_for()
+    assert page.get_by_test_id("project").get_attribute("aria-label") == "Projekt: Motion"
+
+
+def test_dates_speak_it(open_page: Callable[..., Any]) -> None:
+    """A date has the form of the page's language, not of the browser's first."""
+    page = open_page(link(), locale="fr")
+    with page.expect_navigation():
+        page.get_by_label("Language").select_option("de")
+    date = page.evaluate("import('/app/words.js').then(({ dateTime }) => dateTime('2026-03-01T12:30:00'))")
+    assert date == "01.03.2026, 12:30"
 
 
 def refusal(check: Callable[..., Any], *given: Any, **more: Any) -> Message:
@@ -158,6 +176,9 @@ def test_sentences_of_the_server_are_said_whole(open_page: Callable[..., Any], c
     for text, other in zip(made, said, strict=True):
         assert re.search(english, text, re.IGNORECASE), text
         assert not re.search(english, other, re.IGNORECASE), other
+        assert "[object" not in other
+    odd = Message("from {length} to there", {"length": Amount(0.25, "m")}, context="nowhere")
+    assert page.evaluate(TOLD, [odd.data()]) == ["from 0.25 m to there"]
     foreign = [
         "from here to there and back", "a stone of ours. It fell; nobody was there.",
         "overturned by the cat; it was a stone of ours.",
@@ -197,6 +218,9 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     page = open_page(link(), locale=code)
     said = page.evaluate(SAID, made)
     assert [text for text, other in zip(made, said, strict=True) if text == other] == []
+    helps = [key["words"] for key in info["keys"]["predict"].values()]
+    stopped = page.evaluate(STOPPED, helps)
+    assert [text for text, other in zip(helps, stopped, strict=True) if text.rstrip(".") in other] == []
     reasons = [one.reason for one in parse_inventory(LIST).not_assessed]
     told = page.evaluate(TOLD, [as_message(reason).data() for reason in reasons])
     assert [text for text, other in zip(map(str, reasons), told, strict=True) if text == other] == []
@@ -270,7 +294,8 @@ def test_long_words_fit_a_phone(open_page: Callable[..., Any], shot: Callable[..
         for width in (320, 360, 390):
             page.set_viewport_size({"width": width, "height": 800})
             assert page.evaluate(WIDER) <= 0, (step, width)
-    for width in (320, 360, 390, 700, 1000, 1400):
+    for width in (320, 360, 390, 700, 1000, 1350, 1390, 1400):
         page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate(WIDER) <= 0, width
         assert page.evaluate(CROWDED) == [], width
     shot(page, "language de phone")

@@ -14,6 +14,7 @@ from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.messages import messages_of
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
@@ -324,4 +325,4 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
     result: dict[str, Any] = plain(
         {**head, "restitutions": list(study.job.problem.restitutions), **_BY_KIND.get(kind, outcomes_result)(study)}
     )
-    return result
+    return {**result, "messages": messages_of(result)}

@@ -198,14 +198,16 @@ def test_lost_contact_stands_beside_the_verdicts(kind, result):
     """Pulses of many g tear the body off the ground, in every kind of study; weak ones do not, and nothing is said."""
     pulses = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=0.8"]
 
-    def contact(low, high):
+    def answer(low, high):
         own = {"fragility": {"levels": [low, high]}} if kind != "minimum-acceleration" else {
             "minimum": {"points": 20, "levels": 1, "lowest": low, "highest": high}
         }  # fmt: skip
-        return result(kind, motions={"pulse": pulses}, **own)["contact"]
+        return result(kind, motions={"pulse": pulses}, **own)
 
-    assert contact(2.0, 2.2) == ""
-    words = contact(30.0, 60.0)
+    assert answer(2.0, 2.2)["contact"] == ""
+    torn = answer(30.0, 60.0)
+    words = torn["contact"]
+    assert torn["messages"][words]["facts"]
     lost, of = map(int, re.findall(r"\d+", words)[:2])
     (share,) = map(float, re.findall(r"\(([\d.]+) %\) the ground would have to pull", words))
     assert 0 < lost <= of

@@ -1,5 +1,6 @@
 /** The one door to the server: JSON calls, calls where only the newest counts, and files to keep. */
 
+import { spelt } from "/app/refusal.js";
 import { learnMessages, t } from "/app/words.js";
 
 /** A refusal of the server, in its own words. */
@@ -17,7 +18,7 @@ export class ApiError extends Error {
 /** Call the API; resolves to JSON, rejects with ApiError. @type {Call} */
 export const call = async (path, options) => {
   const answer = await (await send(path, options)).json();
-  learnMessages(answer);
+  learnMessages(answer, (message) => spelt(message));
   return answer;
 };
 

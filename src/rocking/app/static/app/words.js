@@ -36,13 +36,14 @@ export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), fac
 
 /** @typedef {{ text: string, facts: { [name: string]: any }, many?: string, context?: string }} Message */
 
-/** A message of the server. @param {Message} message @param {(fact: any) => string} [spelling] */
-export const told = ({ text, many, context, facts }, spelling = spelled) =>
-  filled(formOf(context ? `${context}\u0004${text}` : many ? [text, many] : text, facts.count) ?? text, facts, spelling);
+/** A message of the server. @param {Message} message @param {(fact: any) => string} spelling */
+export const told = ({ text, many, context, facts }, spelling) => filled(formOf(many ? [text, many] : text, facts.count, context), facts, spelling);
 
-/** A text in the language of the page without its places filled. @param {string | [string, string]} text @param {number} [count] @returns {string} */
-const formOf = (text, count = 1) => {
-  const forms = catalogue.get(typeof text === "string" ? text : text[0]) ?? text;
+/** A text in the language of the page without its places filled.
+ * @param {string | [string, string]} text @param {number} [count] @param {string} [context] @returns {string} */
+const formOf = (text, count = 1, context = "") => {
+  const singular = typeof text === "string" ? text : text[0];
+  const forms = catalogue.get(context ? `${context}\u0004${singular}` : singular) ?? text;
   return typeof forms === "string" ? forms : forms[plurals.select(count) === "one" ? 0 : forms.length - 1];
 };
 
@@ -55,13 +56,22 @@ const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (place, 
 
 // A word in a place has its translation too.
 /** @param {any} fact @returns {string} */
-const spelled = (fact) => (fact?.kind === "message" ? told(fact) : typeof fact === "string" ? words(fact) : String(fact));
+const spelled = (fact) => (typeof fact === "string" ? words(fact) : String(fact));
 
-/** Learn the messages of an answer, so that their sentences are found. @param {any} answer */
-export const learnMessages = (answer) => {
+/** A name from a user for a place of a text: t() leaves it as it is. @param {string} name */
+export const userText = (name) => new String(name);
+
+/** Learn the messages of an answer, so that their sentences are found.
+ * @param {any} answer @param {(message: any) => string} spelling */
+export const learnMessages = (answer, spelling) => {
   if (!catalogue.size) return;
-  for (const [sentence, message] of Object.entries({ ...answer?.messages, ...answer?.answer?.messages })) catalogue.set(sentence, told(/** @type {any} */ (message)));
+  for (const [sentence, message] of Object.entries({ ...answer?.messages, ...answer?.answer?.messages })) catalogue.set(sentence, spelling(message));
 };
+
+const locale = navigator.languages.find((code) => code.slice(0, 2) === language) ?? language;
+
+/** A date and its time of day. @param {string} time */
+export const dateTime = (time) => new Date(time).toLocaleString(locale, { dateStyle: "medium", timeStyle: "short" });
 
 /** Some parts as one list: a, b and c. @param {string[]} parts */
 export const listed = (parts) => lists.format(parts);
@@ -112,5 +122,6 @@ if (language !== "en") {
   if (answer?.ok) {
     for (const [text, translated] of Object.entries(await answer.json())) catalogue.set(text, translated);
     translate(document.documentElement);
+    choose?.setAttribute("aria-label", t("Language"));
   }
 }

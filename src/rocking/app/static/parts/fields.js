@@ -176,11 +176,18 @@ export const KeyField = ({ name, facts, ...more }) => {
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 
-/** A text with a full stop at its end, in the language of the page. @param {string} text */
-export const stopped = (text) => `${t(text)}${/[.!?\u3002\uff1f]$/.test(t(text)) ? "" : language === "zh" ? "\u3002" : "."}`;
+/** A text with a capital letter at its start. @param {string} text */
+const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
+
+/** A text with a full stop at its end, in the language of the page; the catalogue may have it as a sentence. @param {string} text */
+export const stopped = (text) => {
+  const whole = [`${text}.`, `${capital(text)}.`].find((form) => t(form) !== form);
+  if (whole) return t(whole);
+  return `${t(text)}${/[.!?\u3002\uff1f]$/.test(t(text)) ? "" : language === "zh" ? "\u3002" : "."}`;
+};
 
 /** A text as a sentence; a file that it begins with is called as it is. @param {string} text */
-export const sentence = (text) => (/^\S*\.\w/.test(text) ? stopped(text) : stopped(text).slice(0, 1).toUpperCase() + stopped(text).slice(1));
+export const sentence = (text) => (/^\S*\.\w/.test(text) ? stopped(text) : capital(stopped(text)));
 
 /** The first field of a form that someone sees and that is wrong. @param {Element} form */
 export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);

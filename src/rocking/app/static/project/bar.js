@@ -3,7 +3,7 @@
 import { html, render, useEffect, useRef } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 import { ProjectDialog } from "/project/dialog.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 /** @type {{ [state: string]: string }} */
 const SAVED = { saved: "saved", saving: "saving \u2026", unsaved: "not saved" };
@@ -38,7 +38,7 @@ const Bar = ({ projects, app }) => {
   if (!facts) return null;
   return html`
     <button type="button" class="button quiet project-name" aria-haspopup="dialog" data-testid="project"
-      aria-label=${t("Project: {name}", { name: facts.name })} onClick=${() => dialog.current.openIt()}>
+      aria-label=${t("Project: {name}", { name: userText(facts.name) })} onClick=${() => dialog.current.openIt()}>
       <span class="project-title" translate=${false}>${facts.name}</span>
     </button>
     <span class="project-saved" role="status" data-state=${saving.value} data-testid="project-saved">

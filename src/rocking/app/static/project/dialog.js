@@ -1,14 +1,11 @@
 /** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
 
 import { html, signal, useRef } from "/parts/preact.js";
-import { t } from "/app/words.js";
+import { dateTime, t, userText } from "/app/words.js";
 import { Button } from "/parts/fields.js";
 import { PARTS } from "/project/saving.js";
 
 const FEW = 12;
-
-/** @param {string} time */
-const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 
 // What a state was made by: the parts that were changed, or words.
 /** @param {string} words */
@@ -71,7 +68,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
   /** @param {Server.ProjectFacts} one */
   const remove = (one) => act(async () => {
     await app.call(`projects/${one.id}`, { method: "DELETE" });
-    app.say(t("{name} was deleted; it can be brought back below.", { name: one.name }));
+    app.say(t("{name} was deleted; it can be brought back below.", { name: userText(one.name) }));
     if (one.id !== projects.here.value.id) return;
     const next = lists.value.projects.find((each) => each.id !== one.id);
     await (next ? projects.open(next.id) : projects.begin("New project"));
@@ -90,12 +87,12 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         <ul class="project-list" aria-label="Projects">
           ${lists.value.projects.map((one) => html`
             <li key=${one.id} data-here=${one.id === here.id}>
-              <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.changed)}</span></p>
+              <p><strong translate=${false}>${one.name}</strong><span class="quiet">${dateTime(one.changed)}</span></p>
               <div class="toolbar">
                 ${one.id === here.id
                   ? html`<span class="project-open">open</span>`
                   : html`<${Act} text="Open" one=${one} go=${act(() => projects.open(one.id), true)} />`}
-                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, t("{name} (copy)", { name: one.name }), one.name))} />
+                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, t("{name} (copy)", { name: userText(one.name) }), one.name))} />
                 <${Act} text="Take away" one=${one} go=${take(one)} />
                 <${Act} text="Delete" one=${one} go=${remove(one)} />
               </div>
@@ -107,11 +104,11 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <input id="project-file" type="file" accept=".zip" onChange=${bring} aria-describedby="project-file-about" />
           <p id="project-file-about" class="field-help">Its studies are computed again here.</p>
         </div>
-        <h2>${t("What {name} was", { name: here.name })}</h2>
+        <h2>${t("What {name} was", { name: userText(here.name) })}</h2>
         <ul class="project-list states" aria-label="History">
           ${states.map((one) => html`
             <li key=${one.number}>
-              <p><span>${changed(one.words)}</span><span class="quiet">${when(one.time)}</span></p>
+              <p><span>${changed(one.words)}</span><span class="quiet">${dateTime(one.time)}</span></p>
               ${one.here
                 ? html`<span class="project-open">now</span>`
                 : html`<${Button} aria-label=${t("Go back to state {number}: {change}", { number: one.number, change: changed(one.words) })}
@@ -127,7 +124,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <ul class="project-list" aria-label="Deleted">
             ${lists.value.deleted.map((one) => html`
               <li key=${one.id}>
-                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${when(one.deleted ?? "")}</span></p>
+                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${dateTime(one.deleted ?? "")}</span></p>
                 <${Act} text="Bring back" one=${one}
                   go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
               </li>`)}

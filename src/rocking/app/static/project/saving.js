@@ -3,7 +3,7 @@
 import { signal } from "/parts/preact.js";
 import { hush } from "/app/say.js";
 import { formsOf, inputsOf } from "/app/shape.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const OPEN = "rocking.project";
 const PAUSE = 400; // after the last change, before it is saved [ms]
@@ -231,7 +231,7 @@ export const createProjects = (app, first) => {
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
     /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
-    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("a copy of {name}", { name: of }) } })),
+    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("a copy of {name}", { name: userText(of) }) } })),
     /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
     /** @param {string} name */
@@ -257,7 +257,7 @@ export const createProjects = (app, first) => {
       const { theirs } = clash.value;
       try {
         const facts = keepMine
-          ? await app.call("projects", { json: { name: t("{name} (mine)", { name: theirs.name }), document: own() } }) : theirs;
+          ? await app.call("projects", { json: { name: t("{name} (mine)", { name: userText(theirs.name) }), document: own() } }) : theirs;
         clash.value = null;
         show(known(facts));
       } catch (error) {

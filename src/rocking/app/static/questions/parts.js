@@ -6,7 +6,7 @@ import { keyOf, refusalWords } from "/app/refusal.js";
 import { Fetched } from "/charts/pictured.js";
 import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
-import { t } from "/app/words.js";
+import { dateTime, t, userText } from "/app/words.js";
 
 /** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them.
  * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
@@ -153,10 +153,10 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     <h2 id="earlier-title">Asked before</h2>
     <ul class="project-list" aria-label="Asked before">
       ${questions.all.value.map((one) => html`<li key=${one.id}>
-        <p><strong>${one.name}</strong><span class="quiet">${new Date(one.asked).toLocaleString()}, ${t(one.state)}</span></p>
+        <p><strong>${one.name}</strong><span class="quiet">${dateTime(one.asked)}, ${t(one.state)}</span></p>
         <div class="toolbar">
-          <${Button} aria-label=${t("Show {name}", { name: one.name })} onClick=${() => questions.open(one.id)}>Show<//>
-          <${Button} aria-label=${t("Delete {name}", { name: one.name })} onClick=${() => questions.remove(one.id)}>Delete<//>
+          <${Button} aria-label=${t("Show {name}", { name: userText(one.name) })} onClick=${() => questions.open(one.id)}>Show<//>
+          <${Button} aria-label=${t("Delete {name}", { name: userText(one.name) })} onClick=${() => questions.remove(one.id)}>Delete<//>
         </div></li>`)}
     </ul>
   </section>`;

@@ -48,7 +48,7 @@ const playButton = (onToggle) => {
   /** @param {boolean} running */
   const tellRunning = (running) => {
     path.setAttribute("d", running ? PAUSE : PLAY);
-    words.textContent = running ? "Pause" : "Play";
+    words.textContent = t(running ? "Pause" : "Play");
     button.dataset.running = String(running);
   };
   return [button, tellRunning];

@@ -4,6 +4,7 @@ import { html, useRef, useState } from "/parts/preact.js";
 import { Choice, Field, Note, NumberField, Segmented } from "/parts/fields.js";
 import { SHAPES, asShape, shapeOf, tableOfShape, withKey } from "/views/body-shapes.js";
 import { METRES, fromMetres, inUnits } from "/views/body-units.js";
+import { t } from "/app/words.js";
 
 const UNITS = Object.keys(METRES).map((unit) => [unit, unit]);
 const FROM_FILE = [["mass_points", "Mass points (from a file)"]];
@@ -34,7 +35,7 @@ export const Form = ({ app, body, refusal }) => {
     <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(app.inputs.get().body, next))} />
     ${shape === "mass_points" ? html`<${Note} words="This body is a set of masses from a file." />`
       : html`<${Sizes} key=${own} shape=${shape} units=${units} table=${tableOfShape(body)} put=${put} error=${error} />`}
-    <${Field} label="Name" value=${body.name} placeholder="optional" maxlength="80" translate=${false}
+    <${Field} label="Name" value=${body.name} placeholder=${t("optional")} maxlength="80" translate=${false}
       on=${(text) => app.inputs.set("body.name", text.trim() || undefined)} />
   </div>`;
 };

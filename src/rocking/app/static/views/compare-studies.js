@@ -3,7 +3,7 @@
 import { html, useSignal } from "/parts/preact.js";
 import { Fetched } from "/charts/pictured.js";
 import { Button, Choice, Note } from "/parts/fields.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
 const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
@@ -29,7 +29,7 @@ export const Studies = ({ app, asked }) => {
         <${Choice} label="Study" own value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" words=${NOTHING} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
-          <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: study.name })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: its models side by side, and what the choice changes", { name: study.name })}
+          <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: userText(study.name) })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: its models side by side, and what the choice changes", { name: userText(study.name) })}
             onError=${() => (refused.value = chosen.value)} />
           ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Take away the comparison">
             ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${t("{table} as CSV", { table: words })}

@@ -16,7 +16,7 @@ import { Swatch, wordsOf } from "/views/response-labels.js";
 import { complete } from "/views/response-controls.js";
 import { readRestitution } from "/views/response-restitution.js";
 import { Banner, inWords, outcomeOf, verdictKind } from "/views/response-words.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -72,7 +72,7 @@ const createMargins = (app) => {
       const inputs = app.inputs.get();
       const { tables, files } = /** @type {NonNullable<ReturnType<typeof motionOf>>} */ (motionOf(inputs));
       [of.value, ended.value] = [keyOf(inputs), null];
-      const name = t("Margins of {name}", { name: inputs.body.name || app.project.here.value.name });
+      const name = t("Margins of {name}", { name: userText(inputs.body.name || app.project.here.value.name) });
       return questions.ask({ body: inputs.body, ...tables, assess: {}, ...(inputs.settings && { settings: inputs.settings }) }, files, name, { project: "" });
     },
   };

@@ -8,7 +8,7 @@ import { Choice, Field, KeyField, sentence } from "/parts/fields.js";
 import { Rows } from "/parts/table.js";
 import { FileOptions, optionsOf, reasonsOf } from "/views/record-options.js";
 import { Drawing, FileDrop, QuestionView, filled, recordEndings, useForm } from "/questions/parts.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
@@ -49,12 +49,12 @@ const Decide = ({ app, questions }) => {
     const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
     if (predicts) {
       const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
-      questions.ask(tables, asked.files ?? {}, t("How likely does {name} overturn?", { name }), { command: "predict" });
+      questions.ask(tables, asked.files ?? {}, t("How likely does {name} overturn?", { name: userText(name) }), { command: "predict" });
       return;
     }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Does {name} stand?", { name }));
+    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Does {name} stand?", { name: userText(name) }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
@@ -118,7 +118,7 @@ const crossings = (app, questions, range) => {
     campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
     minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
   };
-  questions.ask(tables, known.files, t("When does {name} overturn?", { name: body.name || app.project.here.value.name }), { command: "minimum" });
+  questions.ask(tables, known.files, t("When does {name} overturn?", { name: userText(body.name || app.project.here.value.name) }), { command: "minimum" });
   return "";
 };
 
@@ -145,7 +145,7 @@ const Crossings = ({ answer, question }) => html`
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
     rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.peak_ground_acceleration / G, 6), number(each.scale, 6), number(each.uplift_ratio, 4),
       modeOf(each.mode_below), modeOf(each.mode_above)])} />
-  <p class="field-help">${t("Restitution: {model}.", { model: answer.restitution })}
+  <p class="field-help">${t("Restitution: {model}.", { model: modelWords(answer.restitution) })}
     ${answer.crossings.length > MOST && ` ${t("The first {shown} of {count} crossings; the CSV has all of them.", { shown: MOST, count: answer.crossings.length })}`}</p>`;
 
 const MARKS = { overturning: "bad", uplift: "fair" };
@@ -155,7 +155,7 @@ const Verdict = ({ answer, question }) => {
   /** @param {any} each */
   const fallen = (each) => each.overturned.filter((/** @type {number} */ one) => one === 1).length;
   const rows = Object.entries(answer.models).map(([name, each]) => [
-    name, number(each.coefficient.left), number(each.coefficient.right),
+    modelWords(name), number(each.coefficient.left), number(each.coefficient.right),
     [t("{number} of {count}", { number: fallen(each), count: each.overturned.length }), fallen(each) ? "bad" : "good"],
     each.min_factor === null ? "none found" : number(each.min_factor, 3),
   ]);
@@ -170,7 +170,7 @@ const Verdict = ({ answer, question }) => {
     <${Chances} of=${answer.prediction} />
     <${Sources} of=${answer.prediction} />
     ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">${t("Models that say nothing of this body: {reasons}", {
-      reasons: Object.entries(answer.refused).map(([name, why]) => `${t(name)}: ${t(why)}`).join("; ") })}</p>`}`;
+      reasons: Object.entries(answer.refused).map(([name, why]) => `${modelWords(name)}: ${t(why)}`).join("; ") })}</p>`}`;
 };
 
 /** @type {Words} */

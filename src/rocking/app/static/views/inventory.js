@@ -112,7 +112,7 @@ const Corrections = ({ answer, text, fixed }) => {
   });
   return rows.length > 0 && html`
     <fieldset><legend>Correct rows, and ask again</legend>
-      <pre tabindex="0" aria-label="The header of the list">${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
+      <pre tabindex="0" aria-label=${t("The header of the list")}>${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
       ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${t("Line {number}", { number: each.row })} help=${each.reason}
         value=${at(each)} />`)}</fieldset>`;
 };

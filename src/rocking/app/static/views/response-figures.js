@@ -65,7 +65,7 @@ const KINDS = {
   ground: {
     title: "Acceleration of the ground",
     y: { label: "", unit: "m/s2" },
-    series: () => [{ label: "ground", colour: "--mark-strong" }],
+    series: () => [{ label: t("ground"), colour: "--mark-strong" }],
     data: (answers) => [longest(answers).series.time, longest(answers).series.ground_acceleration],
   },
   energy: {

@@ -8,7 +8,7 @@ import { Drawing, FileDrop, QuestionView, recordEndings, useForm } from "/questi
 import { Edges } from "/space/edges.js";
 import { MotionScene } from "/space/motion.js";
 import { Standing } from "/space/standing.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
 const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
@@ -89,7 +89,7 @@ const Space = ({ app, questions }) => {
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     const sent = scan ? { [scan.name]: scan.sha } : {};
-    questions.ask(tables, { ...sent, ...motion.files }, t(TITLES[asked.value], { name }), { command: asked.value });
+    questions.ask(tables, { ...sent, ...motion.files }, t(TITLES[asked.value], { name: userText(name) }), { command: asked.value });
   };
   /** @param {number} number_ @param {number[]} direction */
   const goOn = (number_, direction) => {

@@ -2,7 +2,7 @@
 import { batch, html, signal } from "/parts/preact.js";
 import { Figure } from "/charts/figure.js";
 import { Button, stopped } from "/parts/fields.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 /** Beyond this share of alpha a body lies on the ground, and its curve would hide what went before. */
 const MOST = 2;
@@ -33,7 +33,7 @@ export const createCell = (app, study) => {
     // what the cell does not have must be absent, not null
     const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
     const cell = /** @type {any} */ (Object.fromEntries(there.map((key) => [key, inputs[key]])));
-    app.inputs.lend(cell, t("a cell of \u201c{study}\u201d", { study: study.name }));
+    app.inputs.lend(cell, t("a cell of \u201c{study}\u201d", { study: userText(study.name) }));
     app.go("response");
   };
   /** @param {Server.HistoryAnswer} found @param {boolean} kept */

@@ -1,7 +1,7 @@
 /** Files of a finished study. */
 import { html, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const FILES = [
   ["csv", "CSV"], ["xlsx", "Excel"], ["mat", "MATLAB"], ["nc", "netCDF"], ["parquet", "Parquet"], ["toml", "TOML job"],
@@ -32,7 +32,7 @@ export const Exports = ({ app, study, found, chosen }) => {
     <div class="study-exports">
       <h3>Take away</h3>
       <div class="toolbar">${offered.map(([suffix, text]) => html`
-        <${Button} key=${suffix} aria-label=${t("{study} as {format}", { study: study.name, format: text })} data-testid=${`export-${suffix}`}
+        <${Button} key=${suffix} aria-label=${t("{study} as {format}", { study: userText(study.name), format: text })} data-testid=${`export-${suffix}`}
           disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}<//>`)}</div>
       <div aria-live="polite">
         ${said.value && html`<${Note} words=${said.value} />`}

@@ -4,7 +4,7 @@ import { Button } from "/parts/fields.js";
 import { quantity } from "/app/format.js";
 import { Needs } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
 
@@ -92,10 +92,10 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     look(record);
   };
   const remove = async () => {
-    if (!window.confirm(t("Delete \u201c{name}\u201d from this server?", { name }))) return;
+    if (!window.confirm(t("Delete \u201c{name}\u201d from this server?", { name: userText(name) }))) return;
     try {
       await app.call(`records/${record}`, { method: "DELETE" });
-      app.say(t("{name} is deleted.", { name }));
+      app.say(t("{name} is deleted.", { name: userText(name) }));
       (row.current.nextElementSibling ?? row.current.previousElementSibling)?.querySelector("button").focus();
       gone(record);
     } catch (error) {
@@ -106,10 +106,10 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     <li ref=${row} class="record-row">
       <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
-      <${Button} kind="quiet" aria-label=${t("Delete {name}", { name })} onClick=${remove}>Delete<//>
+      <${Button} kind="quiet" aria-label=${t("Delete {name}", { name: userText(name) })} onClick=${remove}>Delete<//>
       <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
       ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
-        take=${take} button=${{ "aria-label": t("Read {name} so", { name }) }} />`}
+        take=${take} button=${{ "aria-label": t("Read {name} so", { name: userText(name) }) }} />`}
     </li>`;
 };
 

@@ -1,7 +1,7 @@
 /** The studies there are: how far each is, and what can be done with it. */
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { number } from "/app/format.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 /** @type {Words} */
 const WORDS = {
@@ -63,7 +63,7 @@ export const actsOf = (app, after) => {
     /** @param {Server.StudyFacts} study */
     resume: (study) => act(study, "/resume", { json: {} }),
     /** @param {Server.StudyFacts} study */
-    remove: (study) => window.confirm(t("Delete \u201c{name}\u201d and its results?", { name: study.name }))
+    remove: (study) => window.confirm(t("Delete \u201c{name}\u201d and its results?", { name: userText(study.name) }))
       && act(study, "", { method: "DELETE" }),
   };
 };
@@ -97,7 +97,7 @@ const Study = ({ study, onShow, acts }) => {
     <li ref=${row} class="study" data-testid=${`study-${study.id}`} data-state=${state}>
       <div class="study-head"><strong translate=${false}>${name}</strong><span class="quiet">${KINDS[study.kind] || study.kind}</span></div>
       <progress max="1" value=${study.histories ? (study.histories_done || 0) / study.histories : 0} hidden=${state === "done"}
-        aria-label=${t("Progress of {name}", { name })}></progress>
+        aria-label=${t("Progress of {name}", { name: userText(name) })}></progress>
       <div class="study-line">
         <span class="study-state">${(state === "failed" && study.message) || stateWords(study)}</span>
         <span class="study-facts">${pace(study)}</span>

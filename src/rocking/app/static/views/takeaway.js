@@ -4,7 +4,7 @@ import { Button, Card, Choice, Field } from "/parts/fields.js";
 import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
 import { wordsOf } from "/views/response-labels.js";
 import { Film } from "/views/takeaway-film.js";
-import { t } from "/app/words.js";
+import { t, userText } from "/app/words.js";
 
 /** @type {[string, string, string[], string?][]} */
 const TABLES = [
@@ -86,7 +86,7 @@ const File = ({ app, path, name, testid, disabled }) => {
     await app.download(OF_ONE.test(path) ? pathOfChosen(path, inputs.restitution) : path, inputs, `rocking.${kind}`);
     busy.value = false;
   };
-  return html`<${Button} aria-label=${t("{study} as {format}", { study: name, format: NAMES[kind] })} aria-busy=${busy.value ? "true" : null} disabled=${disabled}
+  return html`<${Button} aria-label=${t("{study} as {format}", { study: userText(name), format: NAMES[kind] })} aria-busy=${busy.value ? "true" : null} disabled=${disabled}
     data-testid=${testid} onClick=${save}>${NAMES[kind]}<//>`;
 };
 
