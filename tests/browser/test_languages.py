@@ -130,6 +130,15 @@ def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
     page.locator("#project-rename").press("Enter")
     page.get_by_test_id("projects").get_by_role("heading", name="Stände von Motion bisher").wait_for()
     assert page.get_by_test_id("project").get_attribute("aria-label") == "Projekt: Motion"
+    page.keyboard.press("Escape")
+    page.locator("#tab-body").click()
+    body = page.locator("#view-body").get_by_label("Name", exact=True)
+    assert body.get_attribute("placeholder") == page_words("de")["optional"]
+    body.fill("Motion")
+    page.locator("#tab-decide").click()
+    section = page.locator("#view-decide")
+    section.get_by_role("button", name="Fragen", exact=True).click()
+    section.get_by_role("heading", name="Bleibt Motion stehen?").wait_for()
 
 
 def test_dates_speak_it(open_page: Callable[..., Any]) -> None:
