@@ -112,6 +112,13 @@ def _room(values: np.ndarray) -> int:
     return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
 
 
+def _plain(structure: Any) -> Any:
+    """Return a structure with plain texts in place of messages, which a MATLAB file would take for structures."""
+    if isinstance(structure, Mapping):
+        return {name: _plain(value) for name, value in structure.items()}
+    return str(structure) if isinstance(structure, str) else structure
+
+
 def to_mat(
     content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
 ) -> Path:
@@ -126,7 +133,7 @@ def to_mat(
             structure = _structure(content, apart=apart)
         case _:
             structure = content
-    savemat(path, {name: structure}, oned_as="column", appendmat=False, long_field_names=True)
+    savemat(path, {name: _plain(structure)}, oned_as="column", appendmat=False, long_field_names=True)
     return path
 
 

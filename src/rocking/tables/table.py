@@ -279,7 +279,7 @@ def written_whole(path: Path) -> Iterator[Path]:
 def text_array(values: Sequence[Any]) -> np.ndarray:
     """Return text as an array."""
     array = np.empty(len(values), dtype=object)
-    array[:] = values
+    array[:] = [str(value) if isinstance(value, str) else value for value in values]  # no messages
     return array
 
 
