@@ -15,7 +15,7 @@ import numpy as np
 from rocking.errors import InvalidValueError, extra
 from rocking.messages import plain_texts
 from rocking.quantities import QUANTITIES
-from rocking.tables.table import Column, Grid, Table
+from rocking.tables.table import Column, Grid, Table, text_array
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -116,6 +116,8 @@ def _plain(structure: Any) -> Any:
     """Return a structure with plain texts in place of messages, which a MATLAB file would take for structures."""
     if isinstance(structure, Mapping):
         return {name: _plain(value) for name, value in structure.items()}
+    if isinstance(structure, np.ndarray) and structure.dtype == object and structure.ndim == 1:
+        return text_array(structure.tolist())
     return str(structure) if isinstance(structure, str) else structure
 
 

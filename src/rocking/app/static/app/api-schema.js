@@ -54,7 +54,8 @@ export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
 /** What an answer may look like: [{words, rows}], one entry for each form that it has.
  * @param {any} schema @param {Shape} shape */
 export const formsOf = (schema, shape) => {
-  const forms = (shape?.oneOf ?? []).map((each) => resolved(schema, each));
+  const variants = shape?.oneOf ?? shape?.anyOf?.flatMap((/** @type {any} */ variant) => variant.oneOf ?? [variant]) ?? [];
+  const forms = variants.map((/** @type {any} */ variant) => resolved(schema, variant));
   if (forms.length) {
     return forms.map((each) => ({ words: plainText(each.description), rows: fieldsOf(schema, each) }));
   }
