@@ -12,7 +12,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.messages import Range
+from rocking.messages import Message, Range
 from rocking.motions.motion import GroundMotion, checked_motion
 
 
@@ -190,8 +190,8 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     total = _husid(motion)
     if not total[-1] > 0.0:
         raise InvalidValueError(
-            "the motion must have {parameter} {allowed}, got {value}", parameter="energy", value=float(total[-1]),
-            allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint="zero throughout?",
+            "the motion must have energy {allowed}, got {value}", parameter="energy", value=float(total[-1]),
+            allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint=Message("zero throughout?"),
         )  # fmt: skip
     return _crossing(motion, total, 0.01 * start), _crossing(motion, total, 0.01 * end)
 

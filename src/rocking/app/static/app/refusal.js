@@ -68,8 +68,9 @@ export const keyOf = (refusal) => {
 const sentenceOf = (error, units) => {
   const region = regionOf(error);
   const places = outerPlaces(error);
-  const about = error.parameter.startsWith("body.") || error.parameter in FIELDS;
-  let fault = spelt(inForm(error), units);
+  const stated = inForm(error);
+  const about = stated !== error && (error.parameter.startsWith("body.") || error.parameter in FIELDS);
+  let fault = spelt(stated, units);
   if (region !== undefined) fault = t("Region {number}: {fault}", { number: region + 1, fault: about ? t("the {fault}", { fault }) : fault });
   else if (about) fault = places.length ? t("the {fault}", { fault }) : capital(t("The {fault}", { fault }));
   else if (!places.length) fault = capital(fault);
