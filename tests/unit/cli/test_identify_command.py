@@ -313,7 +313,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
     assert str(picture) in err
     assert picture.stat().st_size > 10_000
     found = identify(read_measurement(path), BLOCK)
-    assert set(found.answer().values) == {"source", "verdict", "refused", "doubts", "messages"}
+    assert set(found.answer().values) == {"source", "verdict", "refused", "doubts"}
 
 
 @pytest.mark.speed
