@@ -32,7 +32,13 @@ SHOWN = """() => {
         found.add(node.getAttribute(name).trim());
   return [...found];
 }"""
-ANSWERED = {"response": ".response-results[data-drawn]", "compare": "[data-testid=compare-verdict]"}  # asked when shown
+ANSWERED = {  # asked when shown
+    "impact": "[data-testid=impact-results]:not([hidden])",
+    "response": ".response-results[data-drawn]",
+    "compare": "[data-testid=compare-verdict]",
+}
+COMPUTED = """(step) => [...document.querySelectorAll(`#view-${step} .waiting`)]
+  .every((message) => !message.checkVisibility())"""
 SAID = "async (texts) => { const { t } = await import('/app/words.js'); return texts.map((text) => t(text)); }"
 STOPPED = """async (texts) => {
   const { stopped } = await import('/parts/fields.js');
@@ -53,6 +59,7 @@ def texts(page: Any) -> set[str]:
         page.wait_for_load_state("networkidle")
         if step in ANSWERED:
             page.locator(ANSWERED[step]).first.wait_for()
+        page.wait_for_function(COMPUTED, arg=step)
         found.update(page.evaluate(SHOWN))
     return found
 
@@ -298,6 +305,7 @@ def test_long_words_fit_a_phone(open_page: Callable[..., Any], shot: Callable[..
         page.wait_for_selector(f"#view-{step}[data-ready=true]")
         if step in ANSWERED:
             page.locator(ANSWERED[step]).first.wait_for()
+        page.wait_for_function(COMPUTED, arg=step)
         page.wait_for_load_state("networkidle")
         page.evaluate(LONG)
         for width in (320, 360, 390):
