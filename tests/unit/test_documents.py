@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 _DOCUMENTS = ("architecture", "conventions", "extending", "application")
 _THEORY = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs" / "theory").glob("*.md"))
-PAGES = ["README.md", *(f"docs/{name}.md" for name in _DOCUMENTS), *_THEORY]
+PAGES = ["README.md", "CHANGELOG.md", *(f"docs/{name}.md" for name in _DOCUMENTS), *_THEORY]
 
 
 def test_readme_examples_run():
@@ -25,6 +25,13 @@ def test_readme_examples_run():
         assert f"{eval(code, names):.{len(number[1]) - 2}f}" == number[1]
         checked += 1
     assert checked == 3
+
+
+def test_changelog_is_short():
+    """CHANGELOG has at most 60 lines; lists of moved numbers and renamed keys are in docs/changes, all in its index."""
+    assert len((ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()) <= 60
+    lists = {path.stem for path in (ROOT / "docs/changes").glob("*.md")} - {"index"}
+    assert lists == set(re.findall(r"^\w+$", (ROOT / "docs/changes/index.md").read_text(encoding="utf-8"), re.M))
 
 
 @pytest.mark.parametrize("page", PAGES)
