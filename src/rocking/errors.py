@@ -1,5 +1,6 @@
 """One family of errors: everything this package refuses is a `RockingError`."""
 
+import math
 import reprlib
 import sys
 import warnings
@@ -12,7 +13,7 @@ from pathlib import PurePath
 from types import ModuleType
 from typing import Any, Literal, Self, TypeVar
 
-from rocking.messages import Amount, Message, Parameter, Place, Spelling, as_message
+from rocking.messages import Amount, Message, Parameter, Place, Range, Spelling, as_message
 
 _EXTRAS = {
     "jinja2": "report",
@@ -32,6 +33,7 @@ _EXTRAS = {
 
 Family = TypeVar("Family", bound="RockingError")
 _SHORT = reprlib.Repr()
+_LONGEST = 500  # characters of a text that is a value
 
 
 class RockingError(Exception):
@@ -94,7 +96,9 @@ class RockingError(Exception):
     @property
     def unit(self) -> str:
         """Unit of the allowed values; empty if they have none."""
-        return getattr(self.allowed, "unit", "")
+        allowed = self.allowed
+        unit = allowed.facts.get("unit") if isinstance(allowed, Message) else getattr(allowed, "unit", None)
+        return "" if unit in {None, "-", "1"} else str(unit)
 
     @property
     def cause(self) -> str:
@@ -131,11 +135,15 @@ class RockingError(Exception):
         Returns
         -------
         dict
-            `message` (the sentence), `parameter`, `text` with its `facts`, `hint`, `places`, `more`.
+            `message` (the sentence), `parameter`, `value`, `allowed` (None, or its `sentence` and the ends of a range),
+            `unit`, `text` with its `facts`, `hint`, `places`, `more`.
         """
         return {
             "message": str(self),
             "parameter": self.parameter,
+            "value": _plain(self.value),
+            "allowed": {"sentence": str(self.allowed), **_ends(self.allowed)} if self.allowed else None,
+            "unit": self.unit,
             **self.message.data(),
             "hint": as_message(self.hint).data(),
             "places": [asdict(place) for place in self.places],
@@ -254,6 +262,23 @@ class RockingError(Exception):
         self.facts = {key: bare(fact) for key, fact in self.facts.items()}
         self.places = tuple(replace(place, name=bare(place.name)) for place in self.places)
         return self
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON has it: a number, a text, true, false or None; else as Python writes it."""
+    value = value.value if isinstance(value, Amount) else value
+    value = value.item() if hasattr(value, "dtype") and not value.ndim else value
+    if value is None or isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
+        return value
+    return value[:_LONGEST] if isinstance(value, str) else _SHORT.repr(value)[:_LONGEST]
+
+
+def _ends(allowed: Any) -> dict[str, Any]:
+    """Return the ends of a range; None for one that is not finite."""
+    if not isinstance(allowed, Range):
+        return {}
+    low, high = (end if math.isfinite(end) else None for end in (allowed.low, allowed.high))
+    return {"low": low, "high": high, "low_open": allowed.low_open, "high_open": allowed.high_open}
 
 
 def _shown(value: Any) -> str:

@@ -90,7 +90,7 @@ def test_what_the_server_refuses_stands_beside_its_field(asked: Any) -> None:
     parameter = {"kind": "parameter", "path": "time_step", "shown": "time_step"}
     data = {
         "parameter": "time_step", "text": "{parameter} must be a number {allowed}, got {value}",
-        "places": [], "more": 0,
+        "value": "0.5", "allowed": {"sentence": "> 0"}, "unit": "", "places": [], "more": 0,
         "facts": {"parameter": parameter, "allowed": allowed, "value": "0.5"}, "hint": {"text": "", "facts": {}},
     }  # fmt: skip
     message = "time_step must be a number > 0, got 0.5"

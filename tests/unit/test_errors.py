@@ -9,6 +9,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import rocking as rk
@@ -95,6 +96,20 @@ def test_data_of_any_number_is_json():
     facts = {"x": Amount(math.nan, "m"), "count": 10**400, "ratio": math.inf}
     data = RecordError("{x}, {count}, {ratio}", **facts).data()["facts"]
     assert (data["x"]["value"], data["count"], data["ratio"]) == (None, 10**400, "inf")
+
+
+def test_value_and_limits_are_data():
+    """A number stays at full precision, and the ends of a range are numbers; a value of another kind is a text."""
+    length = Range(0.0, math.inf, "m", low_open=True)
+    data = InvalidValueError(parameter="width", value=np.float64(-1 / 3), allowed=length).data()
+    assert (data["value"], data["unit"]) == (-1 / 3, "m")
+    assert data["allowed"] == {"sentence": "> 0 m", "low": 0.0, "high": None, "low_open": True, "high_open": False}
+    data = caught(rk.Block, width="x" * 1000, height=2.0).data()
+    assert (data["value"], data["allowed"], data["unit"]) == ("x" * 500, {"sentence": "a number [m]"}, "m")
+    assert [InvalidValueError(value=value).data()["value"] for value in (True, None, math.nan, [0.5])] == [
+        True, None, "nan", "[0.5]",
+    ]  # fmt: skip
+    assert RecordError("there is no such file").data()["allowed"] is None
 
 
 # texts of other libraries, or of processes, which have no parts

@@ -46,7 +46,9 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
         refusal = _refusal(error)
         refusal.add_hint("see rocking --help")
     except OSError as error:
-        refusal = RockingError(f"{error.strerror or error}: {error.filename or ''}".rstrip(": "))
+        refusal = RockingError(
+            "{fault}: {file}" if error.filename else "{fault}", fault=error.strerror or str(error), file=error.filename
+        )
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
@@ -71,14 +73,19 @@ def _refusal(error: Any) -> "RockingError":
     from rocking.bodies.formats.words import from_pydantic
     from rocking.cli.options import key_of
     from rocking.errors import InvalidValueError
+    from rocking.messages import Message
 
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     if hasattr(error, "possibilities") and (key := key_of(str(getattr(error, "option_name", "")))):
-        return InvalidValueError(message.rstrip("."), hint=f"it is a key: {key}")
+        return InvalidValueError(
+            "{fault}", parameter=error.option_name, fault=message.rstrip("."),
+            hint=Message("it is a key: {key}", {"key": key}),
+        )  # fmt: skip
     if isinstance(error.__cause__, ValidationError) and getattr(error, "param", None) is not None:
         problems = error.__cause__.errors(include_url=False)
         return from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems])
-    return InvalidValueError(message.rstrip("."))
+    options = error.param.opts if getattr(error, "param", None) is not None else [getattr(error, "option_name", "")]
+    return InvalidValueError("{fault}", parameter=options[0] or "", fault=message.rstrip("."))
 
 
 class _Notes:

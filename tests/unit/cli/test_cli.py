@@ -148,7 +148,9 @@ def test_with_json_a_refusal_is_data(run):
     error = json.loads(err)["error"]
     assert (code, out, error["parameter"]) == (2, "", "body.block.width")
     assert error["message"] == "--width must be a number > 0 m, got -1"
-    assert (error["facts"]["allowed"]["low"], error["facts"]["allowed"]["unit"]) == (0.0, "m")
+    assert (error["value"], error["allowed"]["low"], error["allowed"]["high"], error["unit"]) == (-1, 0.0, None, "m")
+    unknown = json.loads(run("cor", "--wide", 1, "--json")[2])["error"]
+    assert (unknown["parameter"], unknown["message"].split(":")[0]) == ("--wide", "No such option")
     code, out, err = run("cor", "--width", -1, "--height", 4)
     assert (code, out, err) == (2, "", f"rocking: {error['message']}\n")
 
