@@ -39,7 +39,9 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
 
                 register_own()
             # without arguments the help is the answer
-            code = application(arguments)(args=arguments or ["--help"], prog_name="rocking", standalone_mode=False)
+            code = application(arguments)(
+                args=arguments or ["--help"], prog_name="rocking", standalone_mode=False, obj=main
+            )
     except RockingError as error:
         refusal = error.without_file(unnamed_file)
     except click_exception as error:

@@ -1,7 +1,6 @@
 """The commands and their help; a command is imported when it is called, all of them for the list."""
 
-from collections.abc import Sequence
-from importlib import import_module
+from collections.abc import Callable, Sequence
 
 import typer
 
@@ -9,7 +8,6 @@ from rocking.cli.completion import words_on_the_line
 from rocking.cli.spelling import Command
 from rocking.version import SOFTWARE
 
-_MODULES = {"models": "catalogues", "formats": "catalogues", "assess": "predict"}
 COMMANDS = {
     "cor": "Print the coefficient of restitution of a body under every model, with its interval and what it implies.",
     "equilibria": (
@@ -51,7 +49,7 @@ COMMANDS = {
         "Run an example in this folder: write its files, show the commands and what they answer; or list what there is."
     ),
 }
-"""What each command does; the command itself is in the module of its name, imported when it is called."""
+"""What each command does; the command itself is imported when it is called."""
 
 
 def application(arguments: Sequence[str] | None = None) -> typer.Typer:
@@ -69,8 +67,7 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     app.callback()(_root)
     for name, summary in COMMANDS.items():
         if arguments is None or name == named:
-            command = getattr(import_module(f"rocking.cli.{_MODULES.get(name, name)}"), name)
-            app.command(name, cls=Command, help=summary)(command)
+            app.command(name, cls=Command, help=summary)(_command(name))
         elif named not in COMMANDS:
             app.command(name, short_help=summary)(_nothing)
     if named not in COMMANDS:
@@ -82,6 +79,95 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
                 one.cls = Command
             app.add_typer(group, short_help=group.info.help)
     return app
+
+
+def _command(name: str) -> Callable[..., None]:  # noqa: PLR0911, PLR0912, PLR0915 - one import for each command
+    match name:
+        case "cor":
+            from rocking.cli.cor import cor
+
+            return cor
+        case "equilibria":
+            from rocking.cli.equilibria import equilibria
+
+            return equilibria
+        case "simulate":
+            from rocking.cli.simulate import simulate
+
+            return simulate
+        case "predict":
+            from rocking.cli.predict import predict
+
+            return predict
+        case "assess":
+            from rocking.cli.predict import assess
+
+            return assess
+        case "validate":
+            from rocking.cli.validate import validate
+
+            return validate
+        case "identify":
+            from rocking.cli.identify import identify
+
+            return identify
+        case "map":
+            from rocking.cli.map import map
+
+            return map
+        case "minimum":
+            from rocking.cli.minimum import minimum
+
+            return minimum
+        case "spectrum":
+            from rocking.cli.spectrum import spectrum
+
+            return spectrum
+        case "fragility":
+            from rocking.cli.fragility import fragility
+
+            return fragility
+        case "inventory":
+            from rocking.cli.inventory import inventory
+
+            return inventory
+        case "codes":
+            from rocking.cli.codes import codes
+
+            return codes
+        case "paper":
+            from rocking.cli.paper import paper
+
+            return paper
+        case "models":
+            from rocking.cli.catalogues import models
+
+            return models
+        case "motion":
+            from rocking.cli.motion import motion
+
+            return motion
+        case "motions":
+            from rocking.cli.motions import motions
+
+            return motions
+        case "convert":
+            from rocking.cli.convert import convert
+
+            return convert
+        case "formats":
+            from rocking.cli.catalogues import formats
+
+            return formats
+        case "serve":
+            from rocking.cli.serve import serve
+
+            return serve
+        case "example":
+            from rocking.cli.example import example
+
+            return example
+    raise KeyError(name)
 
 
 def _nothing() -> None:

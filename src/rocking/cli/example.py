@@ -2,7 +2,7 @@
 
 import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +17,7 @@ from rocking.errors import InvalidValueError
 
 
 def example(
+    context: typer.Context,
     name: Annotated[
         str | None,
         typer.Argument(help="One example; all are listed if left out.", autocompletion=completion.examples),
@@ -31,7 +32,7 @@ def example(
         chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}
         deliver(_Listed(chosen, whole=name is None), as_json=as_json)
         return
-    _run(known[checks.one_of("example", name, known)], force=force)
+    _run(known[checks.one_of("example", name, known)], context.obj, force=force)
 
 
 @dataclass(frozen=True)
@@ -59,10 +60,8 @@ class _Listed:
                 page.line(f"$ {command}", "bold")
 
 
-def _run(chosen: examples.Example, *, force: bool) -> None:
+def _run(chosen: examples.Example, run: Callable[[list[str]], None], *, force: bool) -> None:
     """Write the files and run the commands, one after the other as if they were typed; the first that fails ends it."""
-    from rocking.cli import main
-
     page = Page()
     there = [name for name in chosen.outputs if Path(name).exists()]
     if folder := next((name for name in there if Path(name).is_dir()), None):
@@ -77,7 +76,7 @@ def _run(chosen: examples.Example, *, force: bool) -> None:
         page.line(f"\n$ {command}", "bold")
         sys.stdout.flush()
         try:
-            main(shlex.split(command)[1:])
+            run(shlex.split(command)[1:])
         except SystemExit as end:
             if end.code:
                 raise

@@ -3,8 +3,7 @@
 import inspect
 import numbers
 from collections.abc import Mapping, Sequence
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,25 +13,26 @@ from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.restitution._implied import energy_bound
 from rocking.restitution._model import RestitutionModel
-
-if TYPE_CHECKING:
-    pass
+from rocking.restitution.calibrated import Calibrated
+from rocking.restitution.contact_bed import ContactBedModel
+from rocking.restitution.distributed_impulse import DistributedImpulse
+from rocking.restitution.fixed import Fixed
+from rocking.restitution.horizontal_momentum import HorizontalMomentum
+from rocking.restitution.housner import Housner
+from rocking.restitution.ked import Ked
+from rocking.restitution.plastic_winkler import PlasticWinkler
+from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 BOUND_ROUNDING = 1e-9
 """A coefficient may exceed its energy bound by this, relative to the bound: rounding of I_O and r together."""
 
-# the class, or its name in the module of the model's name: those of this package are imported when first asked for
-_MODELS: dict[str, type[RestitutionModel] | str] = {
-    "housner": "Housner",
-    "ked": "Ked",
-    "horizontal-momentum": "HorizontalMomentum",
-    "shifted-impulse": "ShiftedImpulse",
-    "distributed-impulse": "DistributedImpulse",
-    "plastic-winkler": "PlasticWinkler",
-    "contact-bed": "ContactBedModel",
-    "calibrated": "Calibrated",
-    "fixed": "Fixed",
-}
+_MODELS: dict[str, type[RestitutionModel]] = {
+    kind.name: kind
+    for kind in (
+        Housner, Ked, HorizontalMomentum, ShiftedImpulse, DistributedImpulse, PlasticWinkler, ContactBedModel,
+        Calibrated, Fixed,
+    )
+}  # fmt: skip
 
 
 def models() -> dict[str, type[RestitutionModel]]:
@@ -49,7 +49,7 @@ def models() -> dict[str, type[RestitutionModel]]:
     >>> rk.restitution.models()["ked"].__name__
     'Ked'
     """
-    return {name: _imported(name, found) for name, found in list(_MODELS.items())}
+    return dict(_MODELS)
 
 
 def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
@@ -82,8 +82,8 @@ def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = (
     if not isinstance(name, str) or not name:
         raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
     check_complete(kind)
-    if name in _MODELS and _kind(name) not in {kind, *over}:
-        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_kind(name).__name__}")
+    if name in _MODELS and _MODELS[name] not in {kind, *over}:
+        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_MODELS[name].__name__}")
     _MODELS[name] = kind
     return kind
 
@@ -153,17 +153,6 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
     return Interface(found, eta=eta)
 
 
-def _kind(name: str) -> type[RestitutionModel]:
-    return _imported(name, _MODELS[name])
-
-
-def _imported(name: str, found: type[RestitutionModel] | str) -> type[RestitutionModel]:
-    if isinstance(found, str):
-        kind: type[RestitutionModel] = getattr(import_module(f"{__package__}.{name.replace('-', '_')}"), found)
-        _MODELS[name] = found = kind
-    return found
-
-
 def _factor(eta: Any) -> float:
     return checks.within("eta", eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
 
@@ -177,7 +166,7 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     if name not in _MODELS:
         there, near = ", ".join(list(_MODELS)), checks.nearest(name, _MODELS)
         raise UnknownModelError(f"no restitution model named {name!r}; there are {there}", hint=near)
-    return built(_kind(name), name, given), eta
+    return built(_MODELS[name], name, given), eta
 
 
 def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, Any]:

@@ -5,13 +5,13 @@ then it runs `rocking COMMAND WORDS ...` there, with limits, and opens nothing t
 server does: its standard input is a pipe.
 """
 
+# ruff: noqa: F401 - modules that are imported ahead
 import json
 import os
 import sys
 import tempfile
 import threading
-from contextlib import suppress
-from importlib import import_module
+from collections.abc import Iterator
 from pathlib import Path
 from runpy import run_module
 from typing import Any
@@ -20,13 +20,31 @@ _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], t
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/mime.types")
 
 
-# so many modules take a second, which is most of what a question takes
-_AHEAD = (
-    "typer", "rocking.spec.documents.prediction", "rocking.spec.construction", "rocking.prediction",
-    "rocking.bodies.formats", "rocking.restitution.from_file", "rocking.plots.style", "scipy.signal",
-    "matplotlib.backends.backend_svg", "matplotlib.backends.backend_pdf", "rocking.reports", "rocking.quantities",
-    "trimesh",
-)  # fmt: skip
+def _imports() -> Iterator[None]:
+    """Import what most questions need, step by step: these modules take a second, most of the time of a question."""
+    import typer
+
+    import rocking.spec.documents.prediction
+
+    yield
+    import rocking.prediction
+    import rocking.spec.construction
+
+    yield
+    import rocking.bodies.formats
+    import rocking.restitution.from_file
+
+    yield
+    import matplotlib.backends.backend_pdf
+    import matplotlib.backends.backend_svg
+    import scipy.signal
+
+    import rocking.plots.style
+
+    yield
+    import trimesh
+
+    import rocking.reports
 
 
 def main() -> None:
@@ -46,10 +64,9 @@ def main() -> None:
 
     threading.Thread(target=listen, daemon=True).start()
     _limit()
-    for name in _AHEAD:
-        if not told.is_set():
-            with suppress(ImportError):
-                import_module(name)
+    imports = _imports()
+    while not told.is_set() and next(imports, "done") is None:
+        pass
     told.wait()
     _answer(**json.loads(question))
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
-from importlib import import_module
+from functools import cache
 from os import PathLike
 from pathlib import Path
 
@@ -20,38 +20,39 @@ from rocking.motions.formats.stations import Places
 from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 
-LAST_RESORT = "columns"
-"""Numbers without a header say nothing about themselves: tried only where no other format recognises a file."""
-
-_CLASSES = {
-    "peer": "peer.Peer",
-    "esm": "esm.Esm",
-    "cosmos": "cosmos.Cosmos",
-    "csmip-v1": "csmip_v1.CsmipV1",
-    "csmip-v2": "csmip_v2.CsmipV2",
-    "usc": "csmip_v1.Usc",
-    "smc-usgs": "smc.SmcUsgs",
-    "smc-boore": "smc.SmcBoore",
-    "knet": "knet.Knet",
-    "cwa": "cwa.Cwa",
-    "geonet-v1a": "geonet.GeonetV1A",
-    "geonet-v2a": "geonet.GeonetV2A",
-    "bhrc": "bhrc.Bhrc",
-    "csmnc": "csmnc.Csmnc",
-    "nsmn": "nsmn.Nsmn",
-    "unam": "unam.Unam",
-    "itaca": "itaca.Itaca",
-    "csn": "csn.Csn",
-    "slist": "slist.Slist",
-    "eqsig": "eqsig.Eqsig",
-    "miniseed": "miniseed.MiniSeed",
-    "sac": "sac.Sac",
-    LAST_RESORT: "columns.Columns",
-}
-"""Module and class of every format, in the order in which they are tried; a new one is one file and one line here."""
-
 _STARTS = ("starttime", "Record Time", "first time")
 """What miniSEED and SAC, K-NET, and columns say about the time of the first sample."""
+
+
+@cache
+def _classes() -> tuple[type[RecordFormat], ...]:
+    """Return every format in the order in which they are tried; a new one is one file, one import and one name here."""
+    from rocking.motions.formats.bhrc import Bhrc
+    from rocking.motions.formats.columns import Columns
+    from rocking.motions.formats.cosmos import Cosmos
+    from rocking.motions.formats.csmip_v1 import CsmipV1, Usc
+    from rocking.motions.formats.csmip_v2 import CsmipV2
+    from rocking.motions.formats.csmnc import Csmnc
+    from rocking.motions.formats.csn import Csn
+    from rocking.motions.formats.cwa import Cwa
+    from rocking.motions.formats.eqsig import Eqsig
+    from rocking.motions.formats.esm import Esm
+    from rocking.motions.formats.geonet import GeonetV1A, GeonetV2A
+    from rocking.motions.formats.itaca import Itaca
+    from rocking.motions.formats.knet import Knet
+    from rocking.motions.formats.miniseed import MiniSeed
+    from rocking.motions.formats.nsmn import Nsmn
+    from rocking.motions.formats.peer import Peer
+    from rocking.motions.formats.sac import Sac
+    from rocking.motions.formats.slist import Slist
+    from rocking.motions.formats.smc import SmcBoore, SmcUsgs
+    from rocking.motions.formats.unam import Unam
+
+    return (
+        Peer, Esm, Cosmos, CsmipV1, CsmipV2, Usc, SmcUsgs, SmcBoore, Knet, Cwa, GeonetV1A, GeonetV2A, Bhrc, Csmnc, Nsmn,
+        Unam, Itaca, Csn, Slist, Eqsig, MiniSeed, Sac,
+        Columns,  # the last resort: numbers without a header describe nothing
+    )  # fmt: skip
 
 
 def formats() -> dict[str, RecordFormat]:
@@ -62,14 +63,13 @@ def formats() -> dict[str, RecordFormat]:
     dict of str to RecordFormat
         In the order in which they are tried.
     """
-    return {name: format_named(name) for name in _CLASSES}
+    return {kind.name: kind() for kind in _classes()}
 
 
 def format_named(name: str) -> RecordFormat:
-    """Return one record format, imported when it is asked for."""
-    module, _, kind = _CLASSES[checks.one_of("format", name, _CLASSES)].partition(".")
-    made: RecordFormat = getattr(import_module(f"rocking.motions.formats.{module}"), kind)()
-    return made
+    """Return one record format."""
+    known = formats()
+    return known[checks.one_of("format", name, known)]
 
 
 def read_record(
@@ -364,7 +364,7 @@ def _seconds(said: str) -> float:
 
 
 def _recognised(source: Source) -> RecordFormat:
-    known = [format_named(name) for name in _CLASSES if name != LAST_RESORT]
+    *known, last = formats().values()
     found = [one for one in known if one.recognises(source)]
     if len(found) > 1:
         names = ", ".join(one.name for one in found)
@@ -372,7 +372,6 @@ def _recognised(source: Source) -> RecordFormat:
         raise source.error(None, f"it could be {names}", hint=hint)
     if found:
         return found[0]
-    last = format_named(LAST_RESORT)
     if near := next((one for one in known if one.resembles(source)), None):
         hint = Message("say {option} to see where", {"option": Option("motion.format", near.name)})
         raise source.error(None, f"its header is nearly that of {near.name}; damaged?", hint=hint)
@@ -384,7 +383,7 @@ def _recognised(source: Source) -> RecordFormat:
     raise last.refusal(source) or source.error(
         None,
         (_UNKNOWN_QUANTITY if speaks else _UNKNOWN).text,
-        formats=", ".join(_CLASSES),
+        formats=", ".join(formats()),
         **({"quantity": Message(held or "")} if speaks else {}),
     )
 
