@@ -16,7 +16,7 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from rocking import plausibility
 from rocking.bodies.block import Block
-from rocking.bodies.formats.schema import Positive, StrictTable
+from rocking.bodies.formats.schema import BlockSides, Positive
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import NORMAL_95
 from rocking.errors import InvalidValueError, MeasurementError, located
@@ -33,7 +33,7 @@ Word = Annotated[str, Field(min_length=1, max_length=300)]
 Coefficient = Annotated[float, Field(gt=0.0, le=2.0)]
 
 
-class Measurement(StrictTable):
+class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a block
     """One measured coefficient of restitution, or a series of them, of one homogeneous rectangle.
 
     Parameters
@@ -94,8 +94,6 @@ class Measurement(StrictTable):
     )
     note: Word | None = Field(None, description="anything else")
     slenderness_ratio: Positive | None = Field(None, description="h/b [-]; or width and height")
-    width: Positive | None = Field(None, description="full width [m]")
-    height: Positive | None = Field(None, description="full height [m]")
     mass: Positive | None = Field(None, description="mass [kg]")
     r: Coefficient | None = Field(None, description="coefficient, a ratio of velocities [-]; or series")
     series: Annotated[list[Coefficient], Field(min_length=2, max_length=_MOST)] | None = Field(
@@ -154,7 +152,7 @@ class Measurement(StrictTable):
     def ratio(self) -> float:
         """Slenderness ratio h/b [-]."""
         if self.width is not None and self.height is not None:
-            return self.height / self.width
+            return float(self.height / self.width)
         return self.slenderness_ratio or math.nan
 
     @property
@@ -268,7 +266,7 @@ def _value(key: str, field: str) -> Any:
         return field  # which is refused as no number
 
 
-_NUMBERS = {"slenderness_ratio", "width", "height", "mass", "r", "series", "uncertainty", "low", "high"}
+_NUMBERS = {"slenderness_ratio", "mass", "r", "series", "uncertainty", "low", "high", *BlockSides.model_fields}
 
 
 def dataset_of(rows: Sequence[Measurement], name: str) -> DataSet:
@@ -317,9 +315,10 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
         "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,
     }  # fmt: skip
     try:
-        return Measurement.model_validate({**keys, **known})
+        row: Measurement = Measurement.model_validate({**keys, **known})
     except ValidationError as error:
         raise from_pydantic(error.errors(include_url=False)) from error
+    return row
 
 
 def write_measurements(rows: Sequence[Measurement], path: str | Path) -> Path:

@@ -12,6 +12,7 @@ Mass = Annotated[float, Field(gt=0.0, le=1e36)]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[Pair], Field(min_length=3)]
 UnitName = Literal["m", "cm", "mm", "ft", "in"]
+_FILE_UNIT = "[unit of the file]"
 
 
 class StrictTable(BaseModel):
@@ -61,8 +62,8 @@ class ShapeTable(KnownTable):
 class BlockTable(ShapeTable):
     """A rectangle, on its corners or on feet within its base."""
 
-    width: Positive = Field(description="full width [unit of the file]")
-    height: Positive = Field(description="full height [unit of the file]")
+    width: Positive = Field(description=f"full width {_FILE_UNIT}")
+    height: Positive = Field(description=f"full height {_FILE_UNIT}")
 
 
 BLOCK_KEYS = tuple(
@@ -71,14 +72,26 @@ BLOCK_KEYS = tuple(
 """Keys of a block in its short form, beside the unit."""
 
 
-def _optional(name: str) -> Any:
-    field = BlockTable.model_fields[name]
-    return Optional[field.rebuild_annotation()], Field(None, description=field.description)  # noqa: UP045
+def _optional(*names: str, unit: str = _FILE_UNIT) -> Any:
+    fields = {name: BlockTable.model_fields[name] for name in names}
+    return {
+        name: (
+            Optional[field.rebuild_annotation()],  # noqa: UP045
+            Field(None, description=(field.description or "").replace(_FILE_UNIT, unit)),
+        )
+        for name, field in fields.items()
+    }
 
 
-_SIZES: Any = {name: _optional(name) for name in BLOCK_KEYS if name not in KnownTable.model_fields}
-BlockInput: Any = create_model("BlockInput", __base__=StrictTable, **_SIZES)
+BlockInput: Any = create_model(
+    "BlockInput",
+    __base__=StrictTable,
+    **_optional(*(name for name in BLOCK_KEYS if name not in KnownTable.model_fields)),
+)
 """The sizes of a block in its short form, where another body may stand in their place."""
+
+BlockSides: Any = create_model("BlockSides", __base__=StrictTable, **_optional("width", "height", unit="[m]"))
+"""Width and height of a block, where its slenderness may stand in their place."""
 
 
 class TrapezoidTable(ShapeTable):

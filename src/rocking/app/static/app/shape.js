@@ -1,5 +1,7 @@
 /** Inputs that come from outside, checked before a view reads them: the right kinds in the right places. */
 
+import { SHAPES } from "/app/shapes.js";
+
 const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
 
 /** The inputs of a document from outside, empty tables left out; null if they cannot be such a document.
@@ -42,7 +44,8 @@ const eachOf = (table, keys, check) => keys.every((key) => maybe(check)(table[ke
 const withoutNulls = (table) =>
   Object.fromEntries(Object.entries(table).filter(([, value]) => value !== null && value !== undefined));
 
-const SIZES = ["width", "height", "depth", "base", "top", "lean", "radius", "ground"];
+const FIELDS = Object.values(SHAPES).flatMap(({ fields }) => fields);
+const SIZES = [...FIELDS.filter(([, , more]) => more?.unit !== "").map(([key]) => key), "depth", "ground"];
 
 /** Keys of a body that are lengths, or lists of them. */
 export const LENGTHS = new Set([...SIZES, "feet", "outline", "holes", "points", "contact", "centre"]);
@@ -63,7 +66,7 @@ const isSection = (section) =>
 /** @param {any} body */
 const isBody = (body) =>
   isSized(body) && UNITS.has(body.units) && maybe(isText)(body.name)
-  && eachOf(body, ["block", "trapezoid", "ellipse", "regular_polygon"], isSized)
+  && eachOf(body, Object.keys(SHAPES), isSized)
   && maybe(isSection)(body.section)
   && maybe((table) => isTable(table) && isList(isPair)(table.points))(body.mass_points);
 

@@ -2,8 +2,9 @@
 
 import { html, useRef, useState } from "/parts/preact.js";
 import { Choice, Field, Note, NumberField, Segmented } from "/parts/fields.js";
-import { SHAPES, asShape, shapeOf, tableOfShape, withKey } from "/views/body-shapes.js";
+import { asShape, shapeOf, tableOfShape, withKey } from "/views/body-shapes.js";
 import { METRES, fromMetres, inUnits } from "/views/body-units.js";
+import { SHAPES } from "/app/shapes.js";
 import { t } from "/app/words.js";
 
 const UNITS = Object.keys(METRES).map((unit) => [unit, unit]);

@@ -1,35 +1,9 @@
-/** The shapes that can be chosen: their fields, and a first size taken from the body before. */
+/** The shape of a body: its table, and a first size taken from the body before. */
 
 import { spanOf } from "/app/extremes.js";
 import { changedAt } from "/app/inputs.js";
+import { SHAPES } from "/app/shapes.js";
 import { fromMetres } from "/views/body-units.js";
-
-const SIDES = { unit: "", min: 3, max: 10000, step: 1, whole: true };
-
-/** Shapes with the fields of each; a field is a length unless it says otherwise. */
-/** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
-export const SHAPES = {
-  block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },
-  trapezoid: {
-    words: "Trapezoid",
-    fields: [
-      ["base", "Base"], ["top", "Top"], ["height", "Height"],
-      ["lean", "Lean", { min: null, help: "How far the top is shifted to the right." }],
-    ],
-  },
-  ellipse: {
-    words: "Ellipse",
-    fields: [
-      ["width", "Width"], ["height", "Height"],
-      ["sides", "Sides", SIDES],
-    ],
-  },
-  regular_polygon: {
-    words: "Regular polygon",
-    fields: [["sides", "Sides", SIDES], ["radius", "Radius"]],
-  },
-  section: { words: "Polygon", fields: [] },
-};
 
 /** Which shape an Inputs body is. @param {any} body @returns {string} */
 export const shapeOf = (body) => Object.keys(SHAPES).find((each) => body[each]) ?? (

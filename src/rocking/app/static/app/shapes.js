@@ -1,0 +1,28 @@
+/** The shapes that can be chosen, with their fields. */
+
+const SIDES = { unit: "", min: 3, max: 10000, step: 1, whole: true };
+
+/** Shapes with the fields of each; a field is a length unless it says otherwise. */
+/** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
+export const SHAPES = {
+  block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },
+  trapezoid: {
+    words: "Trapezoid",
+    fields: [
+      ["base", "Base"], ["top", "Top"], ["height", "Height"],
+      ["lean", "Lean", { min: null, help: "How far the top is shifted to the right." }],
+    ],
+  },
+  ellipse: {
+    words: "Ellipse",
+    fields: [
+      ["width", "Width"], ["height", "Height"],
+      ["sides", "Sides", SIDES],
+    ],
+  },
+  regular_polygon: {
+    words: "Regular polygon",
+    fields: [["sides", "Sides", SIDES], ["radius", "Radius"]],
+  },
+  section: { words: "Polygon", fields: [] },
+};
