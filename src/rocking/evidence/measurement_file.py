@@ -38,6 +38,8 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
 
     Parameters
     ----------
+    width, height : float, optional
+        Full sizes of the block [m].
     source, licence : str
         Publication, or whoever measured it; under what others may use it.
     interface : str
@@ -50,8 +52,6 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
         Who measured; the set of the row, if not the laboratory; of what the block is; DOI of the source; anything else.
     slenderness_ratio : float, optional
         h/b; or `width` and `height` [-].
-    width, height : float, optional
-        Full sizes of the block [m].
     mass : float, optional
         Its mass [kg].
     r : float, optional
