@@ -65,9 +65,34 @@ def _unescaped(string: str) -> str:
     )
 
 
+LETTERS = {"ₚ": "_p", "\N{GREEK SMALL LETTER ALPHA}": "alpha", "π": "pi", "ω": "omega", "`": "", "_": " ", "-": " "}
+"""Letters of the page by the words of the server."""
+
+
 def plain(text: str) -> str:
-    """Return a text without capitals and marks at its ends, which the page adds to words of the server."""
-    return text.strip(" .,:;").lower()
+    """Return a text as sources have it: no unit, no capitals, no marks at its ends, letters in words, no dashes."""
+    text = re.sub(r"\s\[[^]]*\]", "", text)
+    for letter, word in LETTERS.items():
+        text = text.replace(letter, word)
+    return " ".join(text.split()).strip(" .,:;").lower()
+
+
+def names_of(tree: ast.AST) -> Iterator[str]:
+    """Yield the names of fields and parameters of a module, which doors spell with spaces."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            yield node.target.id
+
+
+def descriptions_of(tree: ast.AST) -> Iterator[str]:
+    """Yield the descriptions of a module: its docstrings' sentences and parameters, which the server sends."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (text := ast.get_docstring(node)):
+            for part in re.split(r"\n\s*\n|\n(?=\w[\w, ]* : )", text):
+                whole = part.partition("\n    ")[2] or part
+                yield from (sentence.removeprefix("Return ") for sentence in (whole, *re.split(r"(?<=\.)\s", whole)))
 
 
 def extracted() -> tuple[set[Key], set[str]]:
@@ -76,6 +101,7 @@ def extracted() -> tuple[set[Key], set[str]]:
     for path in SOURCE.rglob("*.py"):
         tree = ast.parse(path.read_text("utf-8"))
         messages.update(messages_of(tree))
+        literals.update((*names_of(tree), *descriptions_of(tree)))
         literals.update(
             node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
         )

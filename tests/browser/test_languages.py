@@ -220,7 +220,8 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     info = served.api("info", method="GET")
     made = [one["domain"] for one in info["models"]]
     made += [each for one in info["models"] for each in (*one["assumptions"], *one["known_defects"])]
-    made += [one["title"] for one in info["formats"]] + [one["summary"] for one in info["families"]]
+    made += [one["title"] for one in (*info["formats"], *info["families"])]
+    made += [one["origin"] for one in info["families"]]
     steps = [*info["steps"].values(), *info["targets"].values()]
     made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
     made += [

@@ -35,9 +35,10 @@ from rocking.reports.document import (
 )
 from rocking.reports.document import table as report_table
 from rocking.reports.motion_sources import motion_sources
-from rocking.reports.response_facts import OUTCOME_WORDS, ModelAgreement, measures_of, restitution_words
+from rocking.reports.response_facts import ModelAgreement, measures_of, restitution_words
 from rocking.version import SOFTWARE
 
+_OUTCOMES = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
 _KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
 _LONGEST_LISTING = 12_000
@@ -234,7 +235,7 @@ def _coefficient(row: CoefficientRow) -> list[object]:
 def _outcome(label: str, response: Response, friction: float) -> list[object]:
     facts, contact = response.outcome_answer(), response.contact
     fell = response.outcome is Outcome.OVERTURNED
-    word = OUTCOME_WORDS[response.outcome] + (f" to the {facts['side']}" if fell else "")
+    word = _OUTCOMES[response.outcome] + (f" to the {facts['side']}" if fell else "")
     peaks = math.degrees(response.peak_rotation), facts["peak_ratio"]
     return [
         restitution_words(label),

@@ -16,10 +16,15 @@ from rocking.plots.labels import Traces, traces
 from rocking.quantities import Quantity
 from rocking.restitution import models
 
-OUTCOME_WORDS = {
-    Outcome.OVERTURNED: "overturns",
-    Outcome.ROCKED: "stays standing",
-    Outcome.NO_UPLIFT: "is never lifted",
+_ALL = {
+    Outcome.OVERTURNED: Message("With every one of these models the body overturns."),
+    Outcome.ROCKED: Message("With every one of these models the body stays standing."),
+    Outcome.NO_UPLIFT: Message("With every one of these models the body is never lifted."),
+}
+_SOME = {
+    Outcome.OVERTURNED: Message("overturns with {models}"),
+    Outcome.ROCKED: Message("stays standing with {models}"),
+    Outcome.NO_UPLIFT: Message("is never lifted with {models}"),
 }
 _ROCKING = "Still rocking when the computation ends: with {models}."
 _PULLED = "The ground would have to pull, and the verdict assumes contact: with {models}."
@@ -41,9 +46,9 @@ class ModelAgreement:
 
     @classmethod
     def of(cls, responses: Mapping[str, Response]) -> "ModelAgreement":
-        groups: dict[str, list[str]] = {}
+        groups: dict[Outcome, list[str]] = {}
         for name, one in responses.items():
-            groups.setdefault(OUTCOME_WORDS[one.outcome], []).append(name)
+            groups.setdefault(one.outcome, []).append(name)
         rocking = ", ".join(name for name, one in responses.items() if one.still_rocking)
         pulled = ", ".join(name for name, one in responses.items() if one.lost_contact)
         doubts = [Message(_ROCKING, {"models": rocking})] if rocking else []
@@ -51,10 +56,8 @@ class ModelAgreement:
             doubts.append(Message(_PULLED, {"models": pulled}))
         if len(groups) == 1:
             (outcome,) = groups
-            return cls(False, Message(f"With every one of these models the body {outcome}."), tuple(doubts))
-        first, *others = (
-            Message(f"{word} with {{models}}", {"models": ", ".join(names)}) for word, names in groups.items()
-        )
+            return cls(False, _ALL[outcome], tuple(doubts))
+        first, *others = (_SOME[outcome].of({"models": ", ".join(names)}) for outcome, names in groups.items())
         for other in others:
             first = Message("{first}, {second}", {"first": first, "second": other})
         return cls(True, Message("The model decides: the body {outcomes}.", {"outcomes": first}), tuple(doubts))

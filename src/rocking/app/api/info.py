@@ -60,9 +60,10 @@ PulseFacts: Any = shape("PulseFacts", "A kind of pulse.", summary=str, parameter
 FamilyFacts: Any = shape(
     "FamilyFacts",
     "A family of synthetic motions.",
-    "name summary time_step",
+    "name time_step",
     title=str,
     generator=str,
+    origin=str,
 )
 FormatFacts: Any = shape(
     "FormatFacts",
@@ -150,7 +151,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
         },
         "families": [
             {
-                "name": name, "title": one.title, "summary": f"{one.title}; {one.origin}", "generator": one.generator,
+                "name": name, "title": one.title, "origin": one.origin, "generator": one.generator,
                 "time_step": one.time_step,
             }
             for name, one in families().items()

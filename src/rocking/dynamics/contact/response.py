@@ -207,13 +207,16 @@ class ContactResponse(ResponseBase):
 
     @property
     def _ending(self) -> str:
-        text, rotation = "{outcome}", np.degrees(self.peak_rotation)
+        ending = Message(self.outcome.value)
         if self.peak_rotation > 0.0 and self.outcome is not Outcome.OVERTURNED:
-            text += ", largest rotation {rotation:.4g} degrees"
+            rotation = np.degrees(self.peak_rotation)
+            ending = Message(
+                "{outcome}, largest rotation {rotation:.4g} degrees", {"outcome": ending, "rotation": rotation}
+            )
         if self.sliding_distance > 0.0:
-            text += ", slid {distance:.4g} m in all"
-        outcome = Message(self.outcome.value)
-        return Message(text, {"outcome": outcome, "rotation": rotation, "distance": self.sliding_distance})
+            facts = {"outcome": ending, "distance": self.sliding_distance}
+            ending = Message("{outcome}, slid {distance:.4g} m in all", facts)
+        return ending
 
     @property
     def _last_motion(self) -> tuple[str, float, str]:

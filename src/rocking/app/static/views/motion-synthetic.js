@@ -1,6 +1,7 @@
 /** A synthetic motion: a family, a seed and a member, scaled to a level if one likes. */
 import { html } from "/parts/preact.js";
 import { Button, Choice, NumberField, Segmented } from "/parts/fields.js";
+import { t } from "/app/words.js";
 
 const LEVELS = [["", "As drawn"], ["pga", "To a PGA"], ["pgv", "To a PGV"]];
 /** @type {{ [key in "pga" | "pgv"]: { label: string, unit: string, usual: number } }} */
@@ -18,6 +19,7 @@ export const usualSynthetic = () => ({ synthetic: "pulse-like", seed: 0, member:
 export const Synthetic = ({ app, motion, onChange }) => {
   if (!motion) return null;
   const { families } = app.info;
+  const family = families.find(({ name }) => name === motion.synthetic);
   const { pga, pgv, ...drawn } = motion;
   const kind = KINDS.find((key) => motion[key] !== undefined) ?? "";
   /** @param {Partial<Server.MotionInput>} changes */
@@ -29,7 +31,7 @@ export const Synthetic = ({ app, motion, onChange }) => {
     <div class="synthetic-editor">
       <${Choice} label="Family" options=${families.map(({ name }) => [name, name.replaceAll("-", " ")])} value=${motion.synthetic}
         on=${(synthetic) => change({ synthetic })} />
-      <p class="field-help">${families.find(({ name }) => name === motion.synthetic)?.summary}</p>
+      <p class="field-help">${family && t("{sentence}; {more}", { sentence: family.title, more: family.origin })}</p>
       <div class="fields">${whole("Seed", "seed", "The same seed draws the same motions, everywhere.")}
         ${whole("Member", "member", "Which motion of the family: 0, 1, 2, ...")}</div>
       <${Button} onClick=${() => change({ member: (motion.member ?? 0) + 1 })}>Another one<//>
