@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -140,34 +140,48 @@ class Display:
 
     >>> display = Display(length="mm")
     >>> display.text("semi_diagonal", 0.5), display.text("slenderness_angle", 0.25), display.heading("duration")
-    ('500 mm', '14.3 deg', 'duration [s]')
+    ('500 mm', '14.32 deg', 'duration [s]')
+
+    An acceleration in another unit than g stands in g too.
+
+    >>> display.text("uplift_acceleration", 2.94199), Display(acceleration="g").text("uplift_acceleration", 2.94199)
+    ('2.942 m/s2 (0.3 g)', '0.3 g')
     """
 
     length: str = "m"
     acceleration: str = "m/s2"
     angle: str = "deg"
+    own: Mapping[str, Quantity] = field(default_factory=dict)  # quantities of the answer alone
+    units: Mapping[str, str] = field(default_factory=dict)  # units of single quantities, by name
+
+    def entry(self, name: str) -> Quantity:
+        """Return the quantity of a column; a part or a label is text."""
+        return quantity(name, self.own) or Quantity(name, "", "")
 
     def unit(self, entry: Quantity) -> str:
         """Return the unit of a quantity for the reader; empty for numbers without one."""
         own = {"m": self.length, "m/s2": self.acceleration, "rad": self.angle, "1": ""}
-        return own.get(entry.unit, entry.unit)
+        return self.units.get(entry.name) or own.get(entry.unit, entry.unit)
 
     def heading(self, name: str) -> str:
         """Return the heading of a column: label and unit."""
-        entry = _entry(name)
+        entry = self.entry(name)
         return f"{entry.heading} [{unit}]" if (unit := self.unit(entry)) else entry.heading
 
     def cell(self, name: str, value: Any) -> str:  # noqa: PLR0911 - one a kind
         """Return a value in the unit of the reader, without the unit; what does not exist is a dash."""
+        value = value.tolist() if hasattr(value, "tolist") else value
         if value is None or (isinstance(value, float) and math.isnan(value)):
             return "-"
-        entry = _entry(name)
+        entry = self.entry(name)
         if isinstance(value, bool):
             return "yes" if value else "no"
         if isinstance(value, str):
             return entry.spelled.get(value, value.replace("_", " "))
         if isinstance(value, (list, tuple)):
             return ("-" if entry.is_text else ", ").join(self.cell(name, each) for each in value)
+        if entry.words is not None:
+            return entry.words(value)
         if math.isinf(value):
             return "infinite"
         size = UNITS.get(entry.unit, {}).get(self.unit(entry), 1.0)
@@ -177,19 +191,41 @@ class Display:
 
     def text(self, name: str, value: Any) -> str:
         """Return a value with its unit."""
-        cell, unit = self.cell(name, value), self.unit(_entry(name))
-        return f"{cell} {unit}" if unit and cell != "-" else cell
+        cell, unit = self.cell(name, value), self.unit(self.entry(name))
+        beside = f" ({self._in_g(name).text(name, value)})" if self._is_beside_g(name) and cell != "-" else ""
+        return f"{cell} {unit}{beside}" if unit and cell != "-" else cell
 
-    def lines(self, values: Mapping[str, Any], names: Sequence[str]) -> Iterator[tuple[str, str]]:
-        """Return label and text of those of some quantities that an answer has."""
+    def lines(
+        self, values: Mapping[str, Any], names: Sequence[str], *, in_full: bool = False
+    ) -> Iterator[tuple[str, str]]:
+        """Return label and text of those of some quantities that an answer has, of a body also those of its sides.
+
+        In full: the label is the meaning of the quantity.
+
+        >>> sides = {"left": {"semi_diagonal": 0.5}, "right": {"semi_diagonal": 0.6}}
+        >>> list(Display().lines({"mass": 2.0, "sides": sides}, ("mass", "semi_diagonal")))
+        [('mass', '2 kg'), ('R', '0.5 m left, 0.6 m right')]
+        """
         for name in names:
-            if (value := values.get(name)) is not None and not (isinstance(value, float) and math.isnan(value)):
-                yield _entry(name).heading, self.text(name, value)
+            entry = self.entry(name)
+            of_sides = {foot: self.text(name, side[name]) for foot, side in values.get("sides", {}).items()
+                        if name in side}  # fmt: skip
+            value = values.get(name)
+            if len({*of_sides.values()}) > 1:
+                text = ", ".join(f"{each} {foot}" for foot, each in of_sides.items())
+            elif of_sides:
+                text = next(iter(of_sides.values()))
+            elif value is None or (isinstance(value, float) and math.isnan(value)):
+                continue
+            else:
+                text = self.text(name, value)
+            yield entry.meaning if in_full else entry.heading, text
 
     def table(self, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = ()) -> "list[ShownColumn]":
         """Return the columns of a table as a reader sees them: of those named that it has; of all if none are named.
 
-        A quantity with an interval, as value, low and high or in columns of their own, has a second column for it.
+        A quantity with an interval, as value, low and high or in columns of their own, has a second column for it;
+        an acceleration in another unit than g has one in g.
 
         >>> rows = [{"observed": 0.5, "observed_low": 0.25, "observed_high": 0.75}]
         >>> [(column.heading, column.cells) for column in Display().table(rows)]
@@ -204,10 +240,21 @@ class Display:
         values, lows, highs = (rows.columns.get(f"{name}{end}") for end in ("", "_low", "_high"))
         if any(isinstance(each, Mapping) for each in values or ()):
             values, lows, highs = ([each[key] for each in values or ()] for key in ("value", "low", "high"))
-        yield ShownColumn(self.heading(name), [self.cell(name, each) for each in values or ()], _entry(name).is_text)
+        entry, cells = self.entry(name), [self.cell(name, each) for each in values or ()]
+        yield ShownColumn(self.heading(name), cells, entry.is_text or entry.words is not None)
+        if self._is_beside_g(name):
+            yield ShownColumn(f"{entry.heading} [g]", [self._in_g(name).cell(name, each) for each in values or ()])
         if lows is not None and highs is not None:
-            ends = ([self.cell(name, each) for each in column] for column in (lows, highs))
-            yield ShownColumn("95 %", ["-" if "-" in pair else " to ".join(pair) for pair in zip(*ends, strict=True)])
+            ends = ([self.cell(f"{name}_low", each) for each in column] for column in (lows, highs))
+            texts = ["-" if "-" in pair else " to ".join(pair) for pair in zip(*ends, strict=True)]
+            yield from [ShownColumn("95 %", texts)] if {*texts} != {"-"} else []
+
+    def _is_beside_g(self, name: str) -> bool:
+        entry = self.entry(name)
+        return entry.unit == "m/s2" and self.unit(entry) != "g"
+
+    def _in_g(self, name: str) -> "Display":
+        return replace(self, units={name: "g"})
 
 
 @dataclass(frozen=True)
@@ -217,8 +264,3 @@ class ShownColumn:
     heading: str
     cells: list[str]
     is_text: bool = False  # whether its cells are words, set flush left
-
-
-def _entry(name: str) -> Quantity:
-    """Return the quantity of a column; a part or a label is text."""
-    return quantity(name) or Quantity(name, "", "")

@@ -1,11 +1,11 @@
 """Every result once: its name, unit and meaning, and what its codes stand for; tables, files, answers read it here."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from rocking.outcome import UNCOUNTED, ContactMode, Outcome, Regime, Status
+from rocking.outcome import UNCOUNTED, ContactMode, Outcome, Regime, Status, mode_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,7 @@ class Quantity:
     label: str = ""  # heading of a column or a line for readers; the name, if empty
     digits: str = ".4g"  # how a number is written for readers
     spelled: dict[str, str] = field(default_factory=dict)  # words for readers in place of short ones
+    words: Callable[[int], str] | None = None  # of numbers that readers see as words
 
     @property
     def heading(self) -> str:
@@ -102,7 +103,7 @@ _HISTORY = (
     Quantity("overturned", "1", "1 it overturned, 0 it did not, NaN where there is no result: neither"),
     Quantity(
         "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts, "
-        f"{UNCOUNTED} overturned in space, where they are not counted",
+        f"{UNCOUNTED} overturned in space, where they are not counted", label="outcome", words=mode_words,
     ),
     Quantity("side", "1", "side to which it overturned: 1 right, -1 left, 0 it did not"),
     Quantity("peak_rotation", "rad", "rotation of largest size; a quarter turn if it overturned"),
@@ -225,17 +226,17 @@ _BODY = (
     Quantity("assumed", "", "assumed values that no input gave, a sentence each"),
     Quantity("warnings", "", "doubts about the input or the result, a sentence each; none if all is well"),
     Quantity("repairs", "", "changes of the mesh, a sentence each"),
-    Quantity("mass", "kg", "mass"),
+    Quantity("mass", "kg", "mass", digits=".6g"),
     Quantity("half_width", "m", "horizontal distance of the centre of mass from a foot"),
-    Quantity("volume", "m3", "volume"),
+    Quantity("volume", "m3", "volume", digits=".6g"),
     Quantity("size", "m", "sides of the bounding box"),
     Quantity("parts", "1", "number of parts"),
-    Quantity("centre", "m", "centre of mass"),
-    Quantity("centre_height", "m", "height of the centre of mass above the ground"),
+    Quantity("centre", "m", "centre of mass", label="centre of mass", digits=".5g"),
+    Quantity("centre_height", "m", "height of the centre of mass above the ground", digits=".5g"),
     Quantity("inertia", "kg m2", "inertia tensor about the centre of mass"),
-    Quantity("moment_of_inertia", "kg m2", "moment of inertia about the centre of mass"),
+    Quantity("moment_of_inertia", "kg m2", "moment of inertia about the centre of mass", digits=".5g"),
     Quantity("foot_positions", "m", "x of the left and of the right foot"),
-    Quantity("base_vertices", "m", "vertices x, y of the base"),
+    Quantity("base_vertices", "m", "vertices x, y of the base", digits=".5g"),
     Quantity("outline", "m", "vertices x, y"),
     Quantity("holes", "m", "vertices x, y of every hole"),
     Quantity("density", "kg/m3", "density"),
@@ -243,13 +244,13 @@ _BODY = (
     Quantity("masses", "kg", "masses of the points"),
     Quantity("ground", "m", "height of the ground"),
     Quantity("base_contact", "m", "stretches of the base that touch the ground, from x to x"),
-    Quantity("base_centre", "m", "centre x, y of a round base"),
-    Quantity("base_radius", "m", "radius of a round base"),
+    Quantity("base_centre", "m", "centre x, y of a round base", digits=".5g"),
+    Quantity("base_radius", "m", "radius of a round base", digits=".5g"),
     Quantity("gravity", "m/s2", "acceleration of gravity"),
     Quantity("slenderness_ratio", "1", "slenderness h/b", label="h/b"),
-    Quantity("slenderness_angle", "rad", "slenderness angle alpha = atan(b/h)", label="alpha", digits=".3g"),
-    Quantity("semi_diagonal", "m", "distance R of the centre of mass from the foot", label="R"),
-    Quantity("frequency_parameter", "rad/s", "frequency parameter p", label="p"),
+    Quantity("slenderness_angle", "rad", "slenderness angle alpha = atan(b/h)"),
+    Quantity("semi_diagonal", "m", "distance R of the centre of mass from the foot", label="R", digits=".5g"),
+    Quantity("frequency_parameter", "rad/s", "frequency parameter p", label="p", digits=".5g"),
     Quantity("uplift_acceleration", "m/s2", "ground acceleration at uplift, g tan(alpha)", label="uplift at"),
 )
 _IMPACT_MODELS = (
@@ -259,7 +260,7 @@ _IMPACT_MODELS = (
     Quantity("admissible", "1", "1 if one impulse on the base can cause the impact without creating energy, 0 if not"),
     Quantity("energy_ratio", "1", "kinetic energy after over before the impact"),
     Quantity("energy", "J", "energy"),
-    Quantity("share", "1", "fraction"),
+    Quantity("share", "1", "fraction", digits=".2%"),
     Quantity("ked_energy_shares", "1", "kinetic energy after each stage of KED over the energy before the impact"),
     Quantity("velocity", "m/s", "velocity x, y at points"),
     Quantity("energy_left", "1", "fraction of the energy after an impact on each foot"),
@@ -271,8 +272,8 @@ _IMPACT_MODELS = (
     Quantity("behind_closest", "1", "error beyond that of the closest model: value, low, high"),
     Quantity("measurements", "1", "number of measurements"),
     Quantity("rounding", "1", "half of the last printed digit of the measurements"),
-    Quantity("edge_start", "m", "first corner x, y of the edge"),
-    Quantity("edge_end", "m", "second corner x, y of the edge"),
+    Quantity("edge_start", "m", "first corner x, y of the edge", label="from", digits=".5g"),
+    Quantity("edge_end", "m", "second corner x, y of the edge", label="to", digits=".5g"),
     Quantity("nearest_edge", "m", "distance of the plumb line from the nearest edge of the support polygon"),
     Quantity("barrier", "m", "rise of the centre of mass that leaves the pose", label="energy barrier"),
     Quantity("down", "1", "direction of gravity in axes of the body"),
@@ -287,10 +288,10 @@ _IMPACT_MODELS = (
     Quantity("edges_left_out", "1", "number of less slender edges, which are not computed"),
 )
 _STUDIES = (
-    Quantity("uplift_ratio", "1", "PGA over that of uplift", label="/ uplift"),
+    Quantity("uplift_ratio", "1", "PGA over that of uplift", label="/ uplift", digits=".6f"),
     Quantity("bracket_width", "m/s2", "width of the bracket of a crossing"),
-    Quantity("mode_below", "1", "mode below a crossing"),
-    Quantity("mode_above", "1", "mode above a crossing"),
+    Quantity("mode_below", "1", "mode below a crossing", label="below", words=mode_words),
+    Quantity("mode_above", "1", "mode above a crossing", label="above", words=mode_words),
     Quantity("minimum_acceleration", "m/s2", "smallest PGA with overturning"),
     Quantity("certain_acceleration", "m/s2", "PGA above which every history overturns"),
     Quantity("overturning_intervals", "m/s2", "intervals of PGA with overturning"),
@@ -332,7 +333,7 @@ _STUDIES = (
     Quantity("choices", "1", "differences between choices: fractions, ratios and distances of curves"),
     Quantity("slope_error", "1", "standard error of the slope"),
     Quantity("p_value", "1", "p value"),
-    Quantity("misfit", "1", "misfit to the target spectrum"),
+    Quantity("misfit", "1", "misfit to the target spectrum", digits=".2f"),
     Quantity("misfit_of_mean", "1", "misfit of the mean to the target spectrum"),
     Quantity("least_ratio", "1", "smallest ratio of the mean to the target spectrum"),
     Quantity("motions_with_vertical", "1", "number of motions with a vertical component"),
@@ -409,15 +410,15 @@ _MOTION = (
     Quantity("support", "", "what moves: the ground, or a floor of a building"),
     Quantity("provenance", "", "source of the motion, and each processing step, in order"),
     Quantity("scale", "1", "scale factor of the motion"),
-    Quantity("duration", "s", "duration of the motion"),
+    Quantity("duration", "s", "duration of the motion", digits=".6g"),
     Quantity("peak_ground_acceleration", "m/s2", "largest acceleration of the motion, scaled", label="PGA"),
     Quantity("peak_ground_velocity", "m/s", "largest velocity of the motion from rest, scaled", label="PGV"),
-    Quantity("pga", "m/s2", "peak ground acceleration"),
-    Quantity("pgv", "m/s", "peak ground velocity"),
+    Quantity("pga", "m/s2", "peak ground acceleration", label="PGA"),
+    Quantity("pgv", "m/s", "peak ground velocity", label="PGV"),
     Quantity("peak_ground_displacement", "m", "largest displacement of the motion", label="PGD"),
     Quantity("end_velocity", "m/s", "velocity at the end of the motion"),
     Quantity("peak_vertical_acceleration", "m/s2", "largest vertical acceleration of the motion"),
-    Quantity("time_step", "s", "time between samples of the record"),
+    Quantity("time_step", "s", "time between samples of the record", digits=".6g"),
     Quantity("acceleration", "m/s2", "acceleration of the motion"),
     Quantity("vertical_acceleration", "m/s2", "vertical acceleration of the motion"),
     Quantity("damping_ratio", "1", "damping ratio of the spectrum"),
@@ -557,6 +558,17 @@ QUANTITIES: dict[str, Quantity] = {
     )
 }
 """All of them, by name."""
+
+
+def closely(**digits: str) -> dict[str, Quantity]:
+    """Return quantities with other digits for readers, for an answer that states them more closely.
+
+    >>> closely(time=".2f")["time"].digits
+    '.2f'
+    """
+    return {name: replace(QUANTITIES[name], digits=each) for name, each in digits.items()}
+
+
 # what answers have besides: parts, sentences, labels, and numbers whose quantity is of their answer alone
 _PARTS = """
     adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.bodies import Block
 from rocking.cli import options
 from rocking.cli.exports import Export, Exports, write_records
-from rocking.cli.numbers import in_unit, row
+from rocking.cli.numbers import row
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import LENGTH_UNITS, percent
+from rocking.conventions import percent
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def codes(
             problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
             threads=threads, progress=progress, **problem.stated,
         )  # fmt: skip
-    found = replace(found, bodies=_names(problem, arguments.length or "m"))
+    found = replace(found, bodies=_names(problem, Display(arguments.length or "m")))
     deliver(CodesAnswer(found), exports, as_json=as_json)
 
 
@@ -136,9 +136,9 @@ def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
     return tables
 
 
-def _names(problem: "StudyProblem", length: str) -> tuple[str, ...]:
+def _names(problem: "StudyProblem", display: Display) -> tuple[str, ...]:
     return tuple(
-        f"{body.width / LENGTH_UNITS[length]:.4g} x {in_unit(body.height, length)}"
+        f"{display.cell('size', body.width)} x {display.text('size', body.height)}"
         if isinstance(body, Block)
         else type(body).__name__
         for body in problem.bodies

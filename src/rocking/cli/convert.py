@@ -8,18 +8,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import plausibility
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, deliver
-from rocking.conventions import ACCELERATION_UNITS, g
+from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError
+from rocking.quantities import closely
 from rocking.spec.motion_tables import MotionKeys
 
 if TYPE_CHECKING:
     from rocking.motions.motion import GroundMotion
     from rocking.spec.motion_tables import ComponentsTable
     from rocking.spec.reading import InputFiles
+
+_PEAKS = ("peak_ground_acceleration", "peak_ground_velocity", "peak_ground_displacement", "end_velocity")
+_CLOSELY = closely(**dict.fromkeys(_PEAKS, ".6g"))
 
 
 def _as(form: str) -> Any:
@@ -152,17 +156,10 @@ class Conversion:
             page.line(f"{axis}  {pair[1].name}".strip(), "bold")
             for line in pair[1].provenance:
                 page.line(f"  {line}", "dim")
-            rows += [
-                (
-                    f"{axis} {name}".strip(),
-                    *(f"{value:.6g}" for value in _facts(motion).values()),
-                    f"{motion.peak / g:.4g}",
-                )
-                for name, motion in zip(("before", "after"), pair, strict=True)
-            ]
+            named = zip(("before", "after"), pair, strict=True)
+            rows += [{"": f"{axis} {name}".strip(), **_facts(motion)} for name, motion in named]
         page.line()
-        head = ("", "samples", "step [s]", "PGA [m/s2]", "PGV [m/s]", "PGD [m]", "v at end [m/s]", "PGA [g]")
-        page.table(head, rows, ("",))
+        page.rows(rows, (), Display(own=_CLOSELY), most=len(rows))
         if not self.files:
             page.line("Nothing was written: --out FILE.at2 writes it, --out FILE.png draws it before and after.")
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
-from rocking.cli.numbers import in_unit, recommendation_values, show_recommendation, side_line
+from rocking.cli.numbers import recommendation_values, show_recommendation
 from rocking.cli.page import Page, deliver
-from rocking.conventions import FEET, Foot, g
+from rocking.conventions import g
 from rocking.errors import InvalidValueError, located
 from rocking.spec.bodies import body_moved
 from rocking.spec.fields import JobTable
@@ -24,6 +24,8 @@ from rocking.spec.settings_tables import SettingsTable
 
 if TYPE_CHECKING:
     from rocking.reports.body_facts import ImpactAnswer
+
+_SHOWN = ("model", "coefficient", "impulse_ratio", "energy_loss", "friction_demand")
 
 
 class BodyDocument(JobTable):
@@ -165,58 +167,36 @@ class PlaneAnswer:
         ])  # fmt: skip
 
     def show(self, page: Page) -> None:
-        from rocking.restitution import energy_balance
+        from rocking.cli.study import SIDE, body_words
+        from rocking.evidence._coefficient_table import outside_evidence
 
-        impact = self.impact
-        for line in self._body_lines():
+        body, answer = self.impact.body, self.answer()
+        display = Display(self.length, own=answer.quantities)
+        names = ("centre", "slenderness_ratio", *SIDE, "uplift_acceleration")
+        page.line(body_words(body, answer["body"], display, names))
+        for line in body.assumed:
             page.line(line)
-        for foot, rows in impact.tables.items():
+        if body.is_symmetric and (outside := outside_evidence(body)):
+            page.line(outside)
+        for foot, rows in answer["coefficients"].items():
             page.line()
-            where = f" (landing on the {foot} foot)" if len(impact.tables) > 1 else ""
+            where = f" (landing on the {foot} foot)" if len(answer["coefficients"]) > 1 else ""
             page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
-            bold = {k for k, row in enumerate(rows) if row.name == "calibrated"}
-            head = ("model", "r", "+-", "k", "loss", "friction", "")
-            page.table(head, [_row(row) for row in rows], ("model", ""), bold=bold)
-            page.warn(dict.fromkeys(f"{row.name}: {warning}" for row in rows for warning in row.warnings))
-        page.line(
-            "+- is the 95 % interval of one measured body, from each model's misfit to 39 published measurements;"
-        )
-        page.line(
-            "k: implied impulse position over half base; loss: share of kinetic energy; friction: needed at impact."
-        )
-        for foot in impact.tables:
-            shares = energy_balance(impact.body, onto=foot).shares
+            records = [row.values for row in rows]
+            page.rows(records, _SHOWN, display, bold=_bold(records), most=len(rows), dense=False)
+            page.warn(dict.fromkeys(f"{row['model']}: {warning}" for row in rows for warning in row["warnings"]))
+        page.line("95 %: interval of one measured body, from each model's misfit to 39 published measurements;")
+        page.line("k: implied impulse position over half base; friction demand: at the impact.")
+        for foot, shares in answer["ked_energy_shares"].items():
             kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
             page.line(f"KED's kinetic energy onto the {foot} foot: {kept}.")
-        for name, report in impact.identities.items():
+        for name, report in self.impact.identities.items():
             broken = [check for check in report if not check.holds]
             page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")
             for check in broken:
                 page.line(f"  {check.sentence}")
         show_recommendation(page, self.recommendation)
 
-    def _body_lines(self) -> list[str]:
-        from rocking.evidence._coefficient_table import outside_evidence
 
-        body, gravity = self.impact.body, self.impact.gravity
-        x, y = (in_unit(place, self.length) for place in body.centre)
-        lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x}, y = {y}", *body.assumed]
-        feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
-        for foot in feet:
-            side = body.side(foot, gravity)
-            uplift = side.uplift_acceleration
-            lines.append(
-                f"{'' if body.is_symmetric else f'{foot} foot: '}h/b = {side.slenderness_ratio:.4g}, "
-                f"{side_line(side, self.length)}, uplift at {uplift:.3g} m/s2 ({uplift / gravity:.3g} g)"
-            )
-        if body.is_symmetric and (outside := outside_evidence(body)):
-            lines.append(outside)
-        return lines
-
-
-def _row(row: Any) -> tuple[str, ...]:
-    implied = row.implication
-    return (
-        row.name, f"{row.coefficient:.6f}", f"{row.half_interval:.3f}", f"{implied.impulse_ratio:.3f}",
-        f"{100.0 * implied.energy_loss:.2f} %", f"{implied.friction_demand:.3f}", "!" if row.warnings else "",
-    )  # fmt: skip
+def _bold(records: list[dict[str, Any]]) -> set[int]:
+    return {k for k, row in enumerate(records) if row["model"] == "calibrated"}

@@ -15,7 +15,6 @@ from rocking.cli import options
 from rocking.cli.arguments import Arguments
 from rocking.cli.cor import named_body
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
-from rocking.cli.numbers import in_unit
 from rocking.cli.page import Page, deliver
 from rocking.cli.solids import show_body
 from rocking.errors import InvalidValueError
@@ -140,7 +139,8 @@ class EquilibriaAnswer:
 
     def show(self, page: Page) -> None:
         found, number = self.found, self.pose.number
-        show_body(page, self.solid, self.length)
+        answer, display = self.answer(), Display(self.length)
+        show_body(page, answer["body"], display)
         page.line()
         ways = "one way" if len(found.stable) == 1 else f"{len(found.stable)} ways"
         page.line(
@@ -148,11 +148,10 @@ class EquilibriaAnswer:
             if found.saddles
             else f"It can stand in {ways}."
         )
-        for ring in found.rings:
-            what = "rolls" if ring.kind == "stable" else "can be balanced"
-            lean, height = f"{math.degrees(ring.tilt):.3g} deg", in_unit(ring.height, self.length)
+        for ring in answer["rings"]:
+            what = "rolls" if ring["kind"] == "stable" else "can be balanced"
+            lean, height = display.text("tilt", ring["tilt"]), display.text("centre_height", ring["centre_height"])
             page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
-        answer, display = self.answer(), Display(self.length)
         names = ("pose", "centre_height", "energy", "nearest_edge", "barrier")
         page.rows(answer["stable"], names, display, bold={number}, most=len(found.stable))
         page.line()

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
 from rocking.quantities import Quantity
@@ -179,10 +179,10 @@ class FragilityAnswer:
         return summaries_of(self.problem.motions)
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines, source_lines
+        from rocking.cli.study import source_lines, subject_lines
 
         first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
-        page.facts(body_lines(self.problem.bodies[0], self.problem.settings, self.length))
+        page.facts(subject_lines(self.problem, Display(self.length)))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
             *source_lines(self.sources),

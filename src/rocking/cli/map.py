@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 
 MOST_CELLS = 10_000_000  # a larger map is a campaign
 _LINE = 1e-4  # how closely the boundary of a picture is bisected: finer than a pixel
+_RESTITUTIONS = {
+    "first": Quantity("first", "", "restitution", label="restitution"),
+    "second": Quantity("second", "", "restitution that is compared with it", label="against"),
+}
+_FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
 _LAST = 3  # overturning after more impacts than that is printed together; JSON parts it
 
 _AXIS = (
@@ -218,7 +223,8 @@ class MapAnswer:
             "overturning": self.extent(),
             "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
-        }, {which: Quantity(which, axis.unit, axis.words) for which, axis in axis_of.items()})  # fmt: skip
+        }, {which: Quantity(which, axis.unit, axis.words, label=axis.name) for which, axis in axis_of.items()}
+        | _RESTITUTIONS)  # fmt: skip
 
     def _sensitivity(self) -> dict[str, Any] | None:
         if self.compared is None:
@@ -249,71 +255,63 @@ class MapAnswer:
         return {"x": [float(x.min()), float(x.max())], "y": [float(y.min()), float(y.max())], "first": first}
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines, source_lines
-        from rocking.conventions import percent
+        from rocking.cli.study import source_lines, subject_lines
         from rocking.motions.summary import MotionSummary
 
-        problem, arrays = self.problem, self.arrays
+        problem, answer = self.problem, self.answer()
+        written = {which: self.written.get(axis.name, "") for which, axis in zip("xy", self.axes, strict=True)}
+        display = Display(self.length, own=answer.quantities, units=written)
         varied = "friction" in {axis.name for axis in self.axes}
-        page.facts(body_lines(problem.bodies[0], problem.settings, self.length, varied=varied))
-        page.line(f"motion:       {arrays.attributes['motion']}")
+        page.facts(subject_lines(problem, display, varied=varied))
+        page.line(f"motion:       {self.arrays.attributes['motion']}")
         page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
-        page.line(f"restitution:  {arrays.attributes['restitution']};  engine: {arrays.attributes['engine']}")
-        for name, axis in zip(("x", "y"), self.axes, strict=True):
-            span = self._span(axis, (axis.values[0], axis.values[-1]))
-            page.line(f"{name}:            {span.replace(' ', ', ', 1)}, {axis.values.size} values")
+        page.line(f"restitution:  {answer['restitution']};  engine: {answer['engine']}")
+        for which in "xy":
+            values = answer[which]["values"]
+            span = _span(display, which, (values[0], values[-1])).replace(" ", ", ", 1)
+            page.line(f"{which}:            {span}, {values.size} values")
         page.line()
-        page.table(("how it ends", "cells", "share"), self._share_rows(), ("how it ends",))
+        page.rows(_grouped(answer["modes"]), ("mode", "count", "share"), display, dense=False)
         page.line()
-        page.line(self._begins())
-        for line in self._islands_sentences():
+        page.line(_begins(display, answer["overturning"]))
+        for line in _islands_sentences(display, answer["islands"]):
             page.line(line)
-        page.warn(filter(None, [arrays.attributes["contact"]]))
-        if arrays.points is not None:
-            page.line(f"Refined along boundaries: {arrays.points} points.")
+        page.warn(filter(None, [answer["contact"]]))
+        if self.arrays.points is not None:
+            page.line(f"Refined along boundaries: {self.arrays.points} points.")
         if self.compared is not None:
             page.line()
-            head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
-            rows = [
-                (a, b, str(f.count), percent(f.share), str(f.only_second), str(f.only_first))
-                for a, b, f in self._pairs()
-            ]
-            page.table(head, rows, head[:2], whole=(0, 1))
+            page.rows(answer["sensitivity"]["pairs"], _FLIPS, display, dense=False)
             page.line(self.compared.verdict)
 
-    def _share_rows(self) -> list[tuple[str, ...]]:
-        """Return a row for each way to end; under long records the many late ones are one row."""
-        shares = mode_shares(self.arrays["mode"])
-        late, rows = [one for one in shares if one["mode"] > _LAST], [one for one in shares if one["mode"] <= _LAST]
-        if len(late) > 1:
-            total = {name: sum(one[name] for one in late) for name in ("count", "share")}
-            late = [{"meaning": f"overturns after {_LAST + 1} or more impacts", **total}]
-        return [(one["meaning"], str(one["count"]), f"{100.0 * one['share']:.2f} %") for one in [*rows, *late]]
 
-    def _begins(self) -> str:
-        extent, (x, y) = self.extent(), self.axes
-        if extent is None:
-            return "Nothing on this map overturns."
-        first = extent["first"]
-        return (
-            f"Overturning begins at {y.name} = {self._value(y, first['y'])}, where {x.name} = "
-            f"{self._value(x, first['x'])}; it lies within {self._span(x, extent['x'])}, {self._span(y, extent['y'])}."
-        )
+def _grouped(shares: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return a row for each way to end; under long records the many late ones are one row."""
+    late, rows = [one for one in shares if one["mode"] > _LAST], [one for one in shares if one["mode"] <= _LAST]
+    if len(late) > 1:
+        total = {name: sum(one[name] for one in late) for name in ("count", "share")}
+        late = [{"mode": f"overturns after {_LAST + 1} or more impacts", **total}]
+    return [*rows, *late]
 
-    def _islands_sentences(self) -> list[str]:
-        islands, (x, y) = self.islands, self.axes
-        lines = list(islands.sentences)
-        if len(islands):
-            largest = islands[0]
-            cells = f"{largest.cells} cell{'s' if largest.cells != 1 else ''}"
-            lines.insert(1, f"The largest has {cells}: {self._span(x, largest.x)}, {self._span(y, largest.y)}.")
-        return lines
 
-    def _span(self, axis: "Axis", ends: Sequence[float]) -> str:
-        unit, size = self.unit(axis)
-        low, high = (f"{end / size:.4g}" for end in ends)
-        return f"{axis.name} {low if low == high else f'{low} to {high}'}{'' if unit == '1' else f' {unit}'}"
+def _begins(display: Display, extent: dict[str, Any] | None) -> str:
+    if extent is None:
+        return "Nothing on this map overturns."
+    x, y = (f"{display.entry(which).heading} = {display.text(which, extent['first'][which])}" for which in "xy")
+    within = ", ".join(_span(display, which, extent[which]) for which in "xy")
+    return f"Overturning begins at {y}, where {x}; it lies within {within}."
 
-    def _value(self, axis: "Axis", value: float) -> str:
-        unit, size = self.unit(axis)
-        return f"{value / size:.4g}{'' if unit == '1' else f' {unit}'}"
+
+def _islands_sentences(display: Display, islands: dict[str, Any]) -> list[str]:
+    lines = list(islands["sentences"])
+    if islands["all"]:
+        largest = islands["all"][0]
+        cells = f"{largest['cells']} cell{'s' if largest['cells'] != 1 else ''}"
+        lines.insert(1, f"The largest has {cells}: {', '.join(_span(display, w, largest[w]) for w in 'xy')}.")
+    return lines
+
+
+def _span(display: Display, which: str, ends: Sequence[float]) -> str:
+    low, high = (display.cell(which, end) for end in ends)
+    entry = display.entry(which)
+    return f"{entry.heading} {low if low == high else f'{low} to {high}'} {display.unit(entry)}".rstrip()

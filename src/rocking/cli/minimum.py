@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
-from rocking.answers import Answer, AnswerRows
+from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
-from rocking.cli.numbers import beside_g, in_unit
+from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver, sentence
-from rocking.conventions import ACCELERATION_UNITS, g, percent
+from rocking.conventions import g, percent
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
-from rocking.outcome import UNCOUNTED
+from rocking.quantities import closely
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.questions.minimum_acceleration import MinimumTable
 
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from rocking.studies.minimum_acceleration import Transitions
 
 _SPOKEN = 4  # stretches of overturning that a sentence names
-_MOST_ROWS = 12  # crossings that the terminal lists
+_SHOWN = ("peak_ground_acceleration", "uplift_ratio", "mode_below", "mode_above")
+_CLOSELY = closely(peak_ground_acceleration=".6f", uplift_acceleration=".6g")
 
 
 def _crossings(transitions: "Transitions") -> AnswerRows:
@@ -136,32 +137,31 @@ class MinimumAnswer:
             "failed": transitions.failed,
             "contact": transitions.contact,
             "sentence": stretches(transitions),
-        })  # fmt: skip
+        }, _CLOSELY)  # fmt: skip
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_lines, source_lines
+        from rocking.cli.study import source_lines, subject_lines
         from rocking.motions.summary import MotionSummary
 
-        problem, transitions, unit = self.problem, self.transitions, beside_g(self.acceleration)
-        lifts = transitions.uplift_acceleration
-        page.facts(body_lines(problem.bodies[0], problem.settings, self.length))
+        problem, transitions, answer = self.problem, self.transitions, self.answer()
+        display = Display(self.length, beside_g(self.acceleration), own=answer.quantities)
+        lifts = answer["uplift_acceleration"]
+        page.facts(subject_lines(problem, display))
         page.line(f"motion:       {problem.motions[0].name}, scaled")
         page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
-        page.line(f"restitution:  {self.label}")
+        page.line(f"restitution:  {answer['restitution']}")
         slides = problem.settings.friction * problem.settings.gravity
-        first = "lifts it:     " if lifts < slides else "slides from:  "
-        page.line(f"{first}{_g(min(lifts, slides))}, {in_unit(min(lifts, slides), unit, '.6g')}")
+        first = "lifts it" if lifts < slides else "slides from"
+        page.facts([(first, display.text("uplift_acceleration", min(lifts, slides)))])
         page.line()
-        if transitions.minimum is not None and (peak := problem.motions[0].peak) > 0.0:
-            share = f"{transitions.minimum / peak:.4g} times this motion"
-            page.line(f"The lowest at which it overturns is {share}, {_g(transitions.minimum)}.", "bold")
-        page.line(sentence(stretches(transitions)), "bold")
+        lowest = answer["minimum_acceleration"]
+        if lowest is not None and (peak := problem.motions[0].peak) > 0.0:
+            at = display.text("minimum_acceleration", lowest)
+            page.line(f"The lowest at which it overturns is {lowest / peak:.4g} times this motion, {at}.", "bold")
+        page.line(sentence(answer["sentence"]), "bold")
         if len(transitions):
-            head, rows = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above"), _crossings(transitions).records
             page.line()
-            page.table(head, [_row(one, ACCELERATION_UNITS[unit]) for one in rows[:_MOST_ROWS]])
-            if len(rows) > _MOST_ROWS:
-                page.line(f"{len(rows) - _MOST_ROWS} more crossings above these; --json and --out a.csv have all.")
+            page.rows(answer["crossings"], _SHOWN, display, dense=False)
         if transitions.failed:
             page.warn([f"{transitions.failed} of {transitions.samples} histories could not be computed"])
         page.warn(filter(None, [transitions.contact]))
@@ -211,17 +211,3 @@ def _stretch(transitions: "Transitions", falls: tuple[tuple[float, float], ...],
 
 def _g(acceleration: float) -> str:
     return f"{acceleration / g:.4g} g"
-
-
-def _row(crossing: dict[str, Any], size: float) -> tuple[str, ...]:
-    acceleration = crossing["peak_ground_acceleration"]
-    numbers = acceleration / g, acceleration / size, crossing["uplift_ratio"]
-    return *(f"{value:.6f}" for value in numbers), _short(crossing["mode_below"]), _short(crossing["mode_above"])
-
-
-def _short(mode: int) -> str:
-    if mode < 0:
-        return "stays standing" if mode == -1 else "not lifted"
-    if mode == UNCOUNTED:
-        return "falls"
-    return "falls, no impact" if mode == 0 else f"falls, {mode} impact{'s' if mode > 1 else ''}"

@@ -1,6 +1,5 @@
 """`rocking motion`: what a record or a pulse is, and how strong."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,12 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
-from rocking.answers import Answer
+from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
-from rocking.cli.numbers import beside_g, in_unit
+from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, deliver
-from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
 from rocking.spec.motion_tables import MotionKeys
 
@@ -24,6 +22,11 @@ if TYPE_CHECKING:
     from rocking.motions.spectrum import ResponseSpectrum
 
 _MOST_PERIODS = 1000
+_HEAD = (
+    "kind", "format", "event", "date", "station", "component", "vertical_component", "samples", "time_step",
+    "file_unit", "duration", "peak_vertical_acceleration",
+)  # fmt: skip
+_SPECTRUM = ("period", "pseudo_acceleration", "pseudo_velocity", "spectral_displacement")
 
 
 def _write_csv(answer: "MotionPage", path: Path) -> None:
@@ -135,40 +138,15 @@ class MotionPage:
         return answer | {"spectrum": spectrum_answer(self.spectrum)}
 
     def show(self, page: Page) -> None:
-        unit, spectrum = beside_g(self.acceleration), self.spectrum
-        page.line(self.motion.name, "bold")
-        for name, value in self._head(unit):
-            page.line(f"  {name + ':':<12} {value}")
-        for line in self.samples.provenance if hasattr(self.motion, "metadata") else ():
+        answer, date = self.answer(), getattr(self.motion, "metadata", {}).get("date")
+        display = Display(acceleration=beside_g(self.acceleration), own=answer.quantities)
+        page.line(answer["name"], "bold")
+        page.values(display.lines({**answer.values, "date": date}, _HEAD))
+        for line in answer["provenance"] if answer["kind"] == "record" else ():
             page.line(f"  {line}", "dim")
-        page.line()
-        head = ("intensity measure", "value", "unit", "")
-        rows: Sequence[Sequence[str]] = [_measure_row(one, unit) for one in self.measures.values()]
-        page.table(head, rows, ("intensity measure", "unit", ""), whole={0, 1, 2})
-        page.line()
-        page.line(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", "bold")
-        accelerations = spectrum.pseudo_acceleration / ACCELERATION_UNITS[unit], spectrum.pseudo_acceleration / g
-        columns = (spectrum.periods, *accelerations, spectrum.pseudo_velocity, spectrum.displacement)
-        rows = [tuple(f"{value:.4g}" for value in row) for row in zip(*columns, strict=True)]
-        page.table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), rows, whole={0})
-
-    def _head(self, unit: str) -> list[tuple[str, str]]:
-        motion: Any = self.motion
-        if not hasattr(motion, "metadata"):
-            return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
-        metadata = motion.metadata
-        keys = ("format", "event", "date", "station", "component", "vertical component")
-        facts = [(key.replace("vertical component", "vertical"), metadata[key]) for key in keys if metadata.get(key)]
-        samples = f"{len(motion)} at {motion.time_step:.6g} s, the file in {metadata.get('unit', 'm/s2')}"
-        facts += [("samples", samples), ("duration", f"{motion.duration:.6g} s")]
-        if motion.vertical is not None:
-            peak = f"{in_unit(motion.peak_vertical, unit)} ({motion.peak_vertical / g:.4g} g) at most"
-            facts.append(("upwards", peak))
-        return facts
-
-
-def _measure_row(measure: "Measure", unit: str) -> tuple[str, ...]:
-    if measure.unit != "m/s2":
-        return measure.name, f"{measure.value:.4g}", measure.unit, ""
-    value, name = in_unit(measure.value, unit).split()
-    return measure.name, value, name, f"= {measure.value / g:.4g} g"
+        page.line("\nIntensity", "bold")
+        page.values(display.lines(answer["intensity"], [*answer["intensity"]], in_full=True))
+        spectrum = answer["spectrum"]
+        damping = display.text("damping_ratio", spectrum["damping_ratio"])
+        page.line(f"\nResponse spectrum, damping ratio {damping}", "bold")
+        page.rows(AnswerRows({name: spectrum[name].tolist() for name in _SPECTRUM}), (), display, most=_MOST_PERIODS)

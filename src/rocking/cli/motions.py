@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking import checks
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
-from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RockingError
 from rocking.messages import Message, Option
-from rocking.quantities import Quantity
+from rocking.quantities import QUANTITIES, Quantity
 
 if TYPE_CHECKING:
     from rocking.motions.flatfiles import Flatfile
     from rocking.motions.selection import Selection
 
 _MOST_PROCESSES = 8  # that are started where nobody says how many
+_SHOWN = ("pga", "pgv", "arias", "d5_95")
 
 
 def _csv(answer: "SetAnswer", path: Path) -> None:
@@ -143,20 +143,17 @@ class SetAnswer:
         return Answer({**facts, "records": rows, "left_out": left_out}, measured)
 
     def show(self, page: Page) -> None:
-        columns, unit = self.flatfile.table.columns, beside_g(self.acceleration)
-        head = ["record", "components", f"PGA [{unit}]", "PGV [m/s]", "Arias [m/s]", "D5-95 [s]"]
-        rows = []
-        for k, name in enumerate(columns["record"].values.tolist()):
-            seen = [axis for axis in "xyz" if columns[f"pga_{axis}"].values[k] == columns[f"pga_{axis}"].values[k]]
-            lead = max(seen, key=lambda axis: (axis != "z", columns[f"pga_{axis}"].values[k]))
-            pga, *more = (float(columns[f"{one}_{lead}"].values[k]) for one in ("pga", "pgv", "arias", "d5_95"))
-            cells = [name, " ".join(seen), f"{pga / ACCELERATION_UNITS[unit]:.4g}", *(f"{each:.4g}" for each in more)]
+        columns, answer, rows = self.flatfile.table.columns, self.answer(), []
+        for k, row in enumerate(answer["records"]):
+            seen = [axis for axis in "xyz" if row[f"pga_{axis}"] == row[f"pga_{axis}"]]
+            lead = max(seen, key=lambda axis: (axis != "z", row[f"pga_{axis}"]))
+            shown = {"record": row["record"], "components": " ".join(seen)}
+            shown |= {name: row[f"{name}_{lead}"] for name in _SHOWN}
             if self.chosen is not None and len(self.chosen.factors) == len(self.flatfile.table):
-                cells += [f"{self.chosen.factors[k]:.3g}", f"{self.chosen.misfits[k]:.2f}"]
-            rows.append(cells)
-        if rows and len(rows[0]) > len(head):
-            head += ["factor", "misfit"]
-        page.table(head, rows, ("record", "components"))
+                shown |= {"scale": self.chosen.factors[k], "misfit": self.chosen.misfits[k]}
+            rows.append(shown)
+        own = {name: Quantity(name, columns[f"{name}_x"].unit, "") for name in _SHOWN if name not in QUANTITIES}
+        page.rows(rows, (), Display(acceleration=beside_g(self.acceleration), own=own), most=len(rows))
         page.line()
         page.line(f"{len(rows)} records; the component with the largest peak is shown, files have all of them.")
         if self.chosen is not None:

@@ -1,6 +1,5 @@
 """Numbers with units, as they are typed, and as they are printed."""
 
-import math
 import re
 from collections.abc import Mapping
 from contextlib import suppress
@@ -8,7 +7,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.cli.page import Page
-from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray
+from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 
 MOST_VALUES = 100_000  # no row of values has more
@@ -63,6 +62,7 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
 def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
     """Return the unit of every kind in a text such as ``mm,g``, None where none was given.
 
+    >>> from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
     >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
     (('mm', 'g'), (None,))
     """
@@ -76,15 +76,6 @@ def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None,
     return tuple(units)
 
 
-def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
-    """Return a length [m] or an acceleration [m/s2] in the unit in which the question was asked.
-
-    >>> in_unit(0.5, "mm"), in_unit(1.0, "gal")
-    ('500 mm', '100 gal')
-    """
-    return f"{value / {**LENGTH_UNITS, **ACCELERATION_UNITS}[unit]:{digits}} {unit}"
-
-
 def beside_g(unit: str) -> str:
     """Return the unit in which an acceleration is written where it stands in g too: m/s2 in place of g."""
     return "m/s2" if unit == "g" else unit
@@ -95,14 +86,6 @@ def number_or_name(text: str | None) -> float | str | None:
     with suppress(TypeError, ValueError):
         return float(text or "")
     return text
-
-
-def side_line(side: Any, length: str) -> str:
-    """Return what decides how a body rocks about one foot; length: the unit in which it is written."""
-    return (
-        f"alpha = {side.slenderness_angle:.4g} rad ({math.degrees(side.slenderness_angle):.3g} deg), "
-        f"R = {in_unit(side.semi_diagonal, length)}, p = {side.frequency_parameter:.4g} rad/s"
-    )
 
 
 def recommendation_values(found: Any) -> dict[str, Any]:

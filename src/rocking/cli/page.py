@@ -2,6 +2,7 @@
 
 import json
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
@@ -105,9 +106,19 @@ class Page:
         columns = (display or Display()).table(rows, names)
         cells = list(zip(*(column.cells for column in columns), strict=True))
         left = [column.heading for column in columns if column.is_text]
-        self.table([column.heading for column in columns], cells[:most], left, bold=bold, **{"dense": True, **layout})
+        head, numbers = [each.heading for each in columns], [k for k, each in enumerate(columns) if not each.is_text]
+        widths = [max([1, *map(len, column.cells)]) for column in columns]
+        if sum(max(len(name), width) + 2 for name, width in zip(head, widths, strict=True)) > self._console.width:
+            head = [wrap(name, widths[k]) if k in numbers else name for k, name in enumerate(head)]
+        layout = {"dense": True, "whole": numbers, **layout}
+        self.table(head, cells[:most], left, bold=bold, **layout)
         if len(cells) > most:
             self.line(f"... and {len(cells) - most} more; --json has them all", style="dim")
+
+
+def wrap(name: str, width: int) -> str:
+    """Return a heading over as many lines as the width of its column needs; no word is cut."""
+    return "\n".join(textwrap.wrap(name, width, break_long_words=False))
 
 
 def sentence(text: str) -> str:

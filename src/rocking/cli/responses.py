@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rocking.answers import Answer, Display
-from rocking.bodies import Block, Body
+from rocking.bodies import Body
 from rocking.cli.page import Page, sentence
 from rocking.conventions import given_or_assumed
 from rocking.dynamics import SpatialStart
@@ -101,6 +101,8 @@ class ResponseAnswer:
         return answer | more
 
     def show(self, page: Page) -> None:
+        from rocking.cli.study import body_words
+
         answer, display = self.answer(), self.display
         page.line(f"{body_words(self.problem.body, answer['body'], display)}; {self._moved(answer)}")
         page.line(f"Restitution: {self._restitution(answer)}")
@@ -220,23 +222,6 @@ def _grouped(rows: dict[str, tuple[str, ...]], shown: set[str]) -> dict[str, tup
 def _range(cells: Sequence[str]) -> str:
     ordered = sorted(set(cells), key=lambda cell: (cell == "-", len(cell.partition(".")[0]), cell))
     return ordered[0] if len(ordered) == 1 else f"{ordered[0]}-{ordered[-1]}"
-
-
-def body_words(body: Any, answer: Answer, display: Display) -> str:
-    """Return body, size, mass and slenderness in words."""
-    words = answer["kind"]
-    if isinstance(body, Block):
-        width, height = (display.cell("size", side) for side in (body.width, body.height))
-        words = f"Block {width} x {height} {display.length}"
-    elif "size" in answer:
-        sides = " x ".join(display.cell("size", side) for side in answer["size"].tolist())
-        words = f"{answer['name'] or 'Solid'}, {sides} {display.length}"
-    words = f"{words}, {display.text('mass', answer['mass'])}"
-    if "sides" not in answer:
-        return words
-    angles = [display.text("slenderness_angle", side["slenderness_angle"]) for side in answer["sides"].values()]
-    angle = angles[0] if body.is_symmetric else f"{angles[0]} left, {angles[1]} right"
-    return f"{words}, slenderness angle {angle}"
 
 
 def _motion_words(axis: str, motion: Any, answer: Answer, display: Display) -> str:

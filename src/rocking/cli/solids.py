@@ -1,6 +1,7 @@
 """`rocking cor` of solids: every edge of the base, and what follows when the body falls back from it."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.bodies.solid import Corner, Edge, RoundBase, Solid, SupportPolygon
-from rocking.cli.numbers import in_unit, recommendation_values, show_recommendation
+from rocking.cli.numbers import recommendation_values, show_recommendation
 from rocking.cli.page import Page
-from rocking.conventions import LENGTH_UNITS
+from rocking.quantities import closely
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3  # edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]
@@ -26,6 +27,11 @@ ROUND_BASE = (
 """What must be known before a plane coefficient of a round base is used."""
 
 _MOST = 12  # corners of a base that are printed
+
+_PLACES = ("edge_start", "edge_end", "base_vertices", "base_centre", "centre")
+_GEOMETRY = (
+    "edge", "edge_start", "edge_end", "slenderness_angle", "slenderness_ratio", "semi_diagonal", "frequency_parameter",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,26 +99,24 @@ class SolidAnswer:
         write_records(path, [_record(edge, name) for edge in self.edges for name in edge["coefficients"]])
 
     def show(self, page: Page) -> None:
-        show_body(page, self.solid, self.length)
+        answer, display = self.answer(), Display(self.length, own=closely(coefficient=".6f"))
+        show_body(page, answer["body"], display)
         page.line()
         numbered = not isinstance(self.solid.base, RoundBase)
         page.line("Edges it may rock about" if numbered else "Directions it may be tipped in", "bold")
-        places = (f"from (x, y) {self.length}", f"to (x, y) {self.length}")
-        head = ("edge", *places, "alpha rad", "deg", "h/b", f"R {self.length}", "p rad/s")
-        page.table(head, [_geometry(edge, self.length) for edge in self.edges], ("edge",))
+        shown = [_rounded(edge) for edge in self.edges]
+        page.rows(shown, _GEOMETRY, display, most=len(shown), dense=False)
         page.line()
         page.line("Coefficient of restitution, angular velocity after / before", "bold")
         rows = []
         for edge in self.edges:
             results = edge["coefficients"].values()
-            values = (f"{r['coefficient']:.6f}{' !' if r['flags'] else ''}" for r in results)
+            values = (f"{display.cell('coefficient', r['coefficient'])}{' !' if r['flags'] else ''}" for r in results)
             rows.append((edge["edge"], edge["lands_on"], *values))
         page.table(("from edge", "onto", *self.edges[0]["coefficients"]), rows, ("from edge", "onto"))
         if self.left_out:
             page.line(f"{self.left_out} edges that are less slender are left out", "dim")
-        page.warn(self._flags())
-        for sentence in self.notes:
-            page.line(f"! {sentence}")
+        page.warn([*self._flags(), *self.notes])
         show_recommendation(page, self.recommendation)
 
     def _flags(self) -> list[str]:
@@ -210,48 +214,22 @@ def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
     }
 
 
-def show_body(page: Page, solid: Solid, length: str) -> None:
+def show_body(page: Page, body: Answer, display: Display) -> None:
     """Write mass, centre, base and repairs of a body in space."""
-    x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
-    size = " x ".join(f"{side / LENGTH_UNITS[length]:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
-    parts = len(solid.local_parts)
-    page.line(
-        f"{solid.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
-        f"volume {solid.volume:.6g} m3"
-    )
-    middle = f"x = {_rounded(x, length)} {length}, y = {_rounded(y, length)} {length}"
-    page.line(f"centre of mass at {middle}, {in_unit(z, length, '.5g')} above the ground")
-    page.line(_base(solid, length))
-    for sentence in solid.assumed:
+    from rocking.cli.study import body_words
+
+    page.line(body_words(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre", "centre_height")))
+    base = _rounded(body["base"])
+    if corners := base.get("base_vertices"):
+        listed = ", ".join(f"({display.cell('base_vertices', each)})" for each in corners[:_MOST])
+        page.line(f"base: {len(corners)} corners, {listed}{' ...' if len(corners) > _MOST else ''} {display.length}")
+    page.values(display.lines(base, ("base_radius", "base_centre")))
+    for sentence in body["assumed"]:
         page.line(sentence)
-    page.warn(solid.repairs)
+    page.warn(body["repairs"])
 
 
-def _base(solid: Solid, length: str) -> str:
-    base = solid.base
-    if isinstance(base, RoundBase):
-        x, y = base.centre.tolist()
-        middle = f"({_rounded(x, length)}, {_rounded(y, length)}) {length}"
-        return f"base: a circle of radius {in_unit(base.radius, length, '.5g')} about {middle}"
-    vertices = getattr(base, "vertices", None)
-    points = [] if vertices is None else vertices.tolist()
-    listed = ", ".join(f"({_rounded(x, length)}, {_rounded(y, length)})" for x, y in points[:_MOST])
-    return f"base: {len(points)} corners, {listed}{' ...' if len(points) > _MOST else ''} {length}"
-
-
-def _rounded(place: float, length: str) -> str:
-    # a nanometre is rounding
-    return f"{(round(place, 9) + 0.0) / LENGTH_UNITS[length]:.5g}"
-
-
-def _geometry(edge: dict[str, Any], length: str) -> tuple[str, ...]:
-    alpha, unit = edge["slenderness_angle"], LENGTH_UNITS[length]
-    return (
-        edge["edge"],
-        *(f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in (edge["edge_start"], edge["edge_end"])),
-        f"{alpha:.4f}",
-        f"{math.degrees(alpha):.2f}",
-        f"{edge['slenderness_ratio']:.3f}",
-        f"{edge['semi_diagonal'] / unit:.{4 if length == 'm' else 2}f}",
-        f"{edge['frequency_parameter']:.4f}",
-    )
+def _rounded(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values with places to a nanometre, below which they are rounding."""
+    arrays = {name: np.asarray(value) for name, value in values.items() if name in _PLACES and value is not None}
+    return {**values, **{name: (array.round(9) + 0.0).tolist() for name, array in arrays.items()}}

@@ -14,8 +14,14 @@ from rocking.conventions import FEET, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table, default_models
 from rocking.evidence.measurements import all_measurements
+from rocking.quantities import Quantity, closely
 from rocking.restitution import IdentityCheck, RestitutionModel, energy_balance, identity_report, models
 
+CLOSELY = closely(coefficient=".6f", friction_demand=".3f", impulse_ratio=".3f") | {
+    f"coefficient{end}": Quantity(f"coefficient{end}", "1", "end of the 95 % interval", digits=".3f")
+    for end in ("_low", "_high")
+}
+"""Digits of a model's coefficient and of what it implies."""
 _MOST_VERTICES = 2000  # vertices of a ring that is drawn
 _RATIOS = np.geomspace(0.8, 12.0, 40)
 
@@ -86,7 +92,7 @@ class ImpactAnswer:
             "identities": {
                 name: {check.name: check.holds for check in report} for name, report in self.identities.items()
             },
-        })  # fmt: skip
+        }, CLOSELY)  # fmt: skip
 
 
 def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -> bool:

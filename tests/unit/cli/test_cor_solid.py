@@ -56,7 +56,7 @@ def test_round_base(run, answered, file):
         )  # I / m = R2 / 4 + H2 / 12 + R2 + H2 / 4
     page = run(file(DRUM), "--restitution", "housner")[1]
     assert "Directions it may be tipped in" in page
-    assert "a circle of radius 0.5 m" in page
+    assert "  Base radius           0.5 m\n" in page
 
 
 def test_round_base_says_that_it_rolls(run, answered, file):

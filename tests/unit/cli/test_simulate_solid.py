@@ -161,7 +161,7 @@ def test_free_rocking_of_a_solid(answered, tmp_path, friction, free):
 def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp_path):
     """The page has tilt, direction and balance; a file says the same; a motion has no initial tilt."""
     page = printed(body, "--free", "-0.5", "--friction", "0.8")
-    assert "released at -7.018 deg, -0.5 of 14 deg" in page
+    assert "released at -7.018 deg, -0.5 of 14.04 deg" in page
     document = tmp_path / "question.toml"
     document.write_text('[body]\nfile = "prism.toml"\n[response]\nfree = -0.5\nfriction = 0.8\n', encoding="utf-8")
     assert answered(document)["impacts"] == answered(body, "--free", "-0.5", "--friction", "0.8")["impacts"]

@@ -96,7 +96,7 @@ def record(tmp_path):
 
 
 IN_MM = ("--width", "500", "--height", "2000", "--density", "2000", "--units", "mm,g")
-RADIUS = "alpha = 0.245 rad (14 deg), R = 1031 mm, p = 2.671 rad/s"  # R = sqrt(250^2 + 1000^2), p^2 = 3 g/(4 R)
+RADIUS = "slenderness angle 14.04 deg, R 1030.8 mm, p 2.6712 rad/s"  # R = sqrt(250^2 + 1000^2), p^2 = 3 g/(4 R)
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_block_in_mm_is_told_in_mm(printed, command, more, record):
 def test_centre_of_a_block_in_mm(printed):
     """Half of 500 and of 2000 mm."""
     out = printed("cor", *IN_MM[:-1], "mm")
-    assert "centre of mass at x = 250 mm, y = 1000 mm" in out
+    assert "centre of mass 250, 1000 mm" in out
     assert RADIUS in out
 
 
@@ -145,19 +145,19 @@ def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     out = printed(command, str(path), *ground)
     assert "500 x 600 x 2000 mm" in out
     if command == "cor":
-        assert "1000 mm above the ground" in out
+        assert "centre height 1000 mm" in out
         assert "(-250, -300)" in out
     if command == "cor":
-        assert "R mm" in out
-        assert "1030.78" in out  # sqrt(250^2 + 1000^2)
+        assert "R [mm]" in out
+        assert "1030.8" in out  # sqrt(250^2 + 1000^2)
 
 
 def test_accelerations_stand_in_the_unit_of_the_record_beside_g(printed, record):
     """A record in gal: its peak, its spectrum, and what lifts and overturns a block are in gal; one in g, in m/s2."""
     out = printed("motion", record, "--units", "gal")
     assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
-    assert "0.33  gal" in out
+    assert "0.33 gal (0.0003365 g)" in out
     assert "PSA [m/s2]" in printed("motion", record, "--units", "g")
     out = printed("minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
-    assert "lifts it:     0.25 g, 245.166 gal" in out  # g tan(alpha) = 980.665 / 4
+    assert "lifts it:     245.166 gal (0.25 g)" in out  # g tan(alpha) = 980.665 / 4
     assert "m/s2" not in out

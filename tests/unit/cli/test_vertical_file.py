@@ -40,7 +40,7 @@ def test_motion_tells_both(run, answered, files, tmp_path):
     assert answer["vertical_component"] == "UP"
     assert [name in line for name, line in zip(("90.at2", "UP.at2"), answer["provenance"], strict=True)] == [True] * 2
     assert "vertical_acceleration [m/s2]" in (tmp_path / "out.csv").read_text(encoding="utf-8")
-    assert "upwards" in run("motion", along, f"z={up}")[1]
+    assert "Peak vertical acceleration" in run("motion", along, f"z={up}")[1]
     assert answered("motion", along)["peak_vertical_acceleration"] is None
 
 
