@@ -1,8 +1,12 @@
-/** Numbers as people read them: a real minus sign, thin spaces, powers of ten. */
+/** Numbers as people read them: the decimal mark of their language, a real minus sign, thin spaces, powers of ten.
+ * Inputs, files, links and code have points: they take numbers as they are. */
+
+import { language } from "/app/language.js";
 
 const MINUS = "\u2212";
 const THIN = "\u202f";
 const NONE = "\u2013";
+const MARK = new Intl.NumberFormat(language).formatToParts(0.5).find(({ type }) => type === "decimal")?.value ?? ".";
 const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
 /** A number with so many significant digits.
@@ -15,6 +19,15 @@ export const number = (value, digits = 4) => {
   const text = size >= 1e6 || size < 1e-4 ? scientific(size, digits) : plain(size, digits);
   return given < 0 ? MINUS + text : text;
 };
+
+/** A number with so many decimals. @param {number} value @param {number} digits */
+export const fixed = (value, digits) => {
+  const text = Math.abs(value).toFixed(digits);
+  return (value < 0 && Number(text) > 0 ? MINUS : "") + text.replace(".", MARK);
+};
+
+/** Numbers in a row, with a mark between them that is in none of them. @param {(number | string)[]} values */
+export const numbers = (values) => values.map((value) => number(value)).join(MARK === "," ? "; " : ", ");
 
 /** A number and its unit; a pure number has the unit "" or "-".
  * @param {number | null | undefined} value @param {string} [unit] @param {number} [digits] */
@@ -54,7 +67,7 @@ const plain = (size, digits) => {
   const [whole, fraction = ""] = expanded(size, digits).split(".");
   const trimmed = fraction.replace(/0+$/, "");
   const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, THIN) : whole;
-  return trimmed ? `${grouped}.${trimmed}` : grouped;
+  return trimmed ? `${grouped}${MARK}${trimmed}` : grouped;
 };
 
 /** @param {number} size @param {number} digits */
@@ -66,7 +79,7 @@ const expanded = (size, digits) => {
 /** @param {number} size @param {number} digits */
 const scientific = (size, digits) => {
   const [mantissa, power] = size.toExponential(digits - 1).split("e");
-  return `${String(Number(mantissa))}\u00d710${raised(String(Number(power)))}`;
+  return `${String(Number(mantissa)).replace(".", MARK)}\u00d710${raised(String(Number(power)))}`;
 };
 
 /** @param {string} text */

@@ -1,6 +1,7 @@
 /** The start: sign in, read the link, build the app object, show the first view. */
 
-import { language, t } from "/app/words.js"; // first: what the others draw is said in its words
+import { t } from "/app/words.js"; // first: what the others draw is said in its words
+import { language } from "/app/language.js";
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";

@@ -1,6 +1,6 @@
 /** The server's refusals in the words of the page, made from their facts: fields, regions counted from one, its units. */
 
-import { number, pretty } from "/app/format.js";
+import { number, numbers, pretty } from "/app/format.js";
 import { t, told } from "/app/words.js";
 
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
@@ -122,7 +122,7 @@ const range = ({ low, high, low_open: lowOpen, high_open: highOpen, unit }, unit
   const behind = shown ? ` ${pretty(shown)}` : "";
   if (high === null) return t(lowOpen ? "more than {limit}" : "at least {limit}", { limit: low === 0 ? from : `${from}${behind}` });
   if (low === null) return t(highOpen ? "less than {limit}" : "at most {limit}", { limit: `${to}${behind}` });
-  return t("in {interval}", { interval: `${lowOpen ? "(" : "["}${from}, ${to}${highOpen ? ")" : "]"}${behind}` });
+  return t("in {interval}", { interval: `${lowOpen ? "(" : "["}${numbers([low / scale, high / scale])}${highOpen ? ")" : "]"}${behind}` });
 };
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index.

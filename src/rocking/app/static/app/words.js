@@ -1,10 +1,8 @@
 /** The page in another language: scripts say English, and one catalogue has every text of theirs, looked up exactly. */
 
-import { number } from "/app/format.js";
+import { fixed, number } from "/app/format.js";
+import { KEY, NAMES, choose, language } from "/app/language.js";
 
-/** @type {{ [code: string]: string }} */
-const NAMES = { en: "English", de: "Deutsch", it: "Italiano", zh: "中文" };
-const KEY = "rocking.language";
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
 const UNTOUCHED = ["pre", "code", "textarea", "script", "style"]; // elements whose text stays as it is
 const PLACE = /\{(\w+)(?::\.?(\d*)(\w))?\}/g; // {name}, or {name:.3g} of a number
@@ -12,21 +10,6 @@ const PLACE = /\{(\w+)(?::\.?(\d*)(\w))?\}/g; // {name}, or {name:.3g} of a numb
 /** @type {Map<string, string | string[]>} */
 const catalogue = new Map(); // translations by their English texts; of a text with plural forms a list of them
 
-const choose = /** @type {HTMLSelectElement | null} */ (document.getElementById("language"));
-
-/** The language of the page: the one that was chosen in this browser, or the first that it asks for. */
-const chosen = () => {
-  if (!choose) return "en"; // a page in English alone
-  try {
-    const kept = localStorage.getItem(KEY);
-    if (kept && kept in NAMES) return kept;
-  } catch {
-    // Nothing is kept: the browser's own languages decide.
-  }
-  return navigator.languages.map((code) => code.slice(0, 2)).find((code) => code in NAMES) ?? "en";
-};
-
-export const language = chosen();
 const plurals = new Intl.PluralRules(language);
 const lists = new Intl.ListFormat(language === "en" ? "en-GB" : language);
 
@@ -50,7 +33,7 @@ const formOf = (text, count = 1, context = "") => {
 /** @param {string} form @param {{ [name: string]: any }} facts @param {(fact: any) => string} [spelling] */
 const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (place, name, digits, kind) => {
   if (!(name in facts)) return place;
-  if (kind && typeof facts[name] === "number") return kind === "f" ? facts[name].toFixed(digits || 6) : number(facts[name], Number(digits || 6));
+  if (kind && typeof facts[name] === "number") return kind === "f" ? fixed(facts[name], Number(digits || 6)) : number(facts[name], Number(digits || 6));
   return spelling(facts[name]);
 });
 
@@ -112,7 +95,7 @@ const translate = (element) => {
 
 choose?.append(...Object.entries(NAMES).map(([code, name]) => new Option(name, code, false, code === language)));
 choose?.addEventListener("change", () => {
-  localStorage.setItem(KEY, choose.value);
+  localStorage.setItem(KEY, choose?.value ?? language);
   location.reload();
 });
 

@@ -5,7 +5,8 @@ import { createContext, html, useContext, useLayoutEffect, useRef, useState } fr
 import { freshId } from "/app/dom.js";
 import { faults } from "/app/faults.js";
 import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
-import { language, t } from "/app/words.js";
+import { language } from "/app/language.js";
+import { t } from "/app/words.js";
 
 /** @param {string} stem */
 const useId = (stem) => useRef(freshId(stem)).current;

@@ -1,4 +1,5 @@
 /** Play, speed, scrubbing and what the ground does: the controls under the stage. */
+import { fixed } from "/app/format.js";
 import { el, svg } from "/app/dom.js";
 import { t } from "/app/words.js";
 
@@ -17,12 +18,6 @@ const GROUNDS = [
 const PLAY = "M3 1.5v13l11-6.5z";
 const PAUSE = "M3 1.5h3.6v13H3zM9.4 1.5H13v13H9.4z";
 const DEGREES = 180 / Math.PI;
-
-/** @param {number} value @param {number} digits */
-const fixed = (value, digits) => {
-  const text = Math.abs(value).toFixed(digits);
-  return value < 0 && Number(text) > 0 ? `\u2212${text}` : text;
-};
 
 /** @param {string} label @param {string[][]} options @param {string} value @param {string} testid @param {(value: string) => unknown} onChange */
 const choice = (label, options, value, testid, onChange) => {
@@ -93,10 +88,10 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   /** @param {number} now @param {number} end @param {number} rotation @param {number} share */
   const tell = (now, end, rotation, share) => {
     range.value = String(end > 0 ? (1000 * now) / end : 0);
-    time.textContent = `${now.toFixed(3)} s`;
+    time.textContent = `${fixed(now, 3)} s`;
     place.textContent = t("\u03b8 = {rotation}\u00b0, {share} of \u03b1", { rotation: fixed(rotation * DEGREES, 2), share: fixed(share, 2) });
     const degrees = fixed(rotation * DEGREES, 1);
-    range.setAttribute("aria-valuetext", t("{time} seconds, {angle} degrees", { time: now.toFixed(2), angle: degrees }));
+    range.setAttribute("aria-valuetext", t("{time} seconds, {angle} degrees", { time: fixed(now, 2), angle: degrees }));
   };
   /** @param {string} mode @param {number} times @param {boolean} rides */
   const tellGround = (mode, times, rides) => {

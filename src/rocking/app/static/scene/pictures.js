@@ -1,4 +1,5 @@
 /** What one frame of the scene is made of. Nothing here makes objects: a frame leaves no garbage behind. */
+import { fixed } from "/app/format.js";
 import { holdBody, pixelOf } from "/scene/camera.js";
 
 const STEPS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
@@ -19,7 +20,7 @@ export const tickText = (value, step) => {
   let text = TICKS.get(key);
   if (text === undefined) {
     const digits = step < 0.01 ? 3 : step < 0.1 ? 2 : step < 1 ? 1 : 0;
-    text = `${key < 0 ? "\u2212" : ""}${Math.abs(key).toFixed(digits)} m`;
+    text = `${fixed(key, digits)} m`;
     if (TICKS.size > 2000) TICKS.clear();
     TICKS.set(key, text);
   }

@@ -1,4 +1,5 @@
 /** Answers of the API as tracks that the scene plays. */
+import { fixed } from "/app/format.js";
 import { Track } from "/scene/track.js";
 
 /** Returns one model's history for the scene; of a body that overturned with the fall until it lies on the ground.
@@ -18,7 +19,7 @@ export const actorOf = (answer, style) => {
     share: new Track(time, sharesOf(seen, answer.body)),
     impactTimes: Float64Array.from(impacts, (one) => one.time),
     impactFeet: Float64Array.from(impacts, (one) => (one.onto === "right" ? 1 : 0)),
-    impactWords: impacts.map((one) => `r = ${one.coefficient.toFixed(3)}`),
+    impactWords: impacts.map((one) => `r = ${fixed(one.coefficient, 3)}`),
   };
 };
 

@@ -1,5 +1,6 @@
 /** One instant of the scene as an SVG: the ground, the bodies of all models, and which is which. */
 
+import { fixed } from "/app/format.js";
 import { svg } from "/app/dom.js";
 import { legendOf, under } from "/charts/curves.js";
 import { SvgPen } from "/charts/pen.js";
@@ -15,5 +16,5 @@ export const sceneStill = (stage, now, names) => {
   stage.paint(/** @type {any} */ (pen), camera, readColours(stage.canvas), play, now);
   const legend = legendOf(play.actors.map(({ colour, dash }, k) => ({ label: names[k], colour, dash })), camera.width);
   const drawing = svg("svg", { width: camera.width, height: camera.height }, pen.node);
-  return { node: under(legend, camera.width, camera.height, drawing), title: t("The body at {time} s", { time: now.toFixed(3) }), alt: play.words };
+  return { node: under(legend, camera.width, camera.height, drawing), title: t("The body at {time} s", { time: fixed(now, 3) }), alt: play.words };
 };

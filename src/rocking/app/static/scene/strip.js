@@ -1,4 +1,5 @@
 /** The strip under the stage: every rotation over alpha, drawn once, with a line at the present instant. */
+import { fixed } from "/app/format.js";
 import { highest } from "/app/extremes.js";
 import { t } from "/app/words.js";
 import { readColours } from "/scene/theme.js";
@@ -110,7 +111,7 @@ export class Strip {
     }
     pen.setLineDash([]);
     const { end } = this.play;
-    pen.fillText(`${end.toFixed(end < 10 ? 2 : 1)} s`, this.width - RIGHT, this.height - 5);
+    pen.fillText(`${fixed(end, end < 10 ? 2 : 1)} s`, this.width - RIGHT, this.height - 5);
     pen.textAlign = "left";
     pen.fillText("0 s", LEFT, this.height - 5);
     pen.textAlign = "center";

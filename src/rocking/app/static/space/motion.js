@@ -1,5 +1,6 @@
 /** Playing the motion of a body in space: one time for the picture, the curve of the tilt, and the words. */
 
+import { fixed } from "/app/format.js";
 import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
 import { highest } from "/app/extremes.js";
 import { lineChart } from "/charts/line.js";
@@ -109,7 +110,7 @@ export const MotionScene = ({ question, answer }) => {
           event.preventDefault();
           seek(clock.now + (stride * (event.shiftKey ? 0.5 : 0.05)));
         }} />
-      <output>${now.value.toFixed(2)} s</output>
+      <output>${fixed(now.value, 2)} s</output>
     </div>
     <${Choice} label="Speed" value=${speed} options=${SPEEDS} />
     <div ref=${curve} data-own=${question.name}></div>`;

@@ -1,3 +1,4 @@
+import { fixed } from "/app/format.js";
 import { t } from "/app/words.js";
 /** The motion of a body in space: where it is at an instant, what touches then, and that in words. */
 
@@ -59,7 +60,7 @@ export class Played {
   /** What is seen at an instant that was shown. @param {number} instant */
   words(instant) {
     const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
-    const facts = { time: instant.toFixed(2), tilt: (this.tilt * DEGREES).toFixed(2), contact: contactWords(vertices.length, sliding.length) };
+    const facts = { time: fixed(instant, 2), tilt: fixed(this.tilt * DEGREES, 2), contact: contactWords(vertices.length, sliding.length) };
     return instant >= this.fell ? t("At {time} s: tilted {tilt}\u00b0, {contact}; it has overturned.", facts)
       : t("At {time} s: tilted {tilt}\u00b0, {contact}.", facts);
   }

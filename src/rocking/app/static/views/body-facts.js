@@ -1,7 +1,7 @@
 /** The numbers of a body: one column, or one for each side where they differ. */
 
 import { html } from "/parts/preact.js";
-import { number, quantity } from "/app/format.js";
+import { number, numbers, quantity } from "/app/format.js";
 import { sameSides } from "/drawing/body-picture.js";
 import { Note } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
@@ -29,7 +29,7 @@ export const Facts = ({ app, facts: body }) => {
     row("Frequency parameter p", "rad/s", (side) => side.frequency_parameter),
     row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration),
     row("Uplift acceleration", "g", (side) => side.uplift_acceleration / body.gravity),
-    ["Foot, x", ...(differ ? feet : [feet.map((foot) => number(foot)).join(", ")]), "m"],
+    ["Foot, x", ...(differ ? feet : [numbers(feet)]), "m"],
     whole("Centre of mass, x", "m", settled(body.centre[0], body)),
     whole("Centre of mass, y", "m", settled(body.centre[1], body)),
     whole("Mass", "kg", body.mass),

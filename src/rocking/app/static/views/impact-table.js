@@ -1,7 +1,7 @@
 /** The table of the models, and their warnings in plain words. */
 
 import { html } from "/parts/preact.js";
-import { percent } from "/app/format.js";
+import { fixed, percent } from "/app/format.js";
 import { Note, sentence } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { Swatch, wordsOf } from "/views/response-labels.js";
@@ -19,7 +19,7 @@ export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
   const shown = rows.map((row) => [
     html`<span class="model-name" title=${answer.titles?.[row.model]}><${Swatch} label=${row.model} />${wordsOf(row.model)}</span>`,
-    row.coefficient, `${row.coefficient_low.toFixed(4)} \u2026 ${row.coefficient_high.toFixed(4)}`, row.impulse_ratio,
+    row.coefficient, `${fixed(row.coefficient_low, 4)} \u2026 ${fixed(row.coefficient_high, 4)}`, row.impulse_ratio,
     percent(row.energy_loss), row.friction_demand, row.admissible ? "yes" : html`<strong class="bad">no</strong>`,
   ]);
   const copied = () => rows.map((row) => [

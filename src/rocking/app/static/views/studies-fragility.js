@@ -3,7 +3,7 @@ import { html, useMemo, useSignal } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
 import { Fetched } from "/charts/pictured.js";
-import { quantity } from "/app/format.js";
+import { number, quantity } from "/app/format.js";
 import { Choice, Note, stopped } from "/parts/fields.js";
 import { Table } from "/parts/table.js";
 import { greek, plainWords } from "/views/studies-words.js";
@@ -128,4 +128,4 @@ const rowOf = (state, fit) => {
 };
 
 /** @param {number | null} value */
-const shown = (value) => (value == null ? "unbounded" : Number(value.toPrecision(4)).toString());
+const shown = (value) => (value == null ? "unbounded" : number(value));

@@ -1,6 +1,6 @@
 /** The studies there are: how far each is, and what can be done with it. */
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
-import { number } from "/app/format.js";
+import { fixed, number } from "/app/format.js";
 import { t, userText } from "/app/words.js";
 
 /** @type {Words} */
@@ -30,7 +30,7 @@ const duration = (seconds) => {
   if (seconds < 1.5) return t("a second");
   if (seconds < 90) return `${Math.round(seconds)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
-  return `${(seconds / 3600).toFixed(1)} h`;
+  return `${fixed(seconds / 3600, 1)} h`;
 };
 
 /** @param {Server.StudyFacts} study */

@@ -1,0 +1,21 @@
+/** The language of the page. */
+
+/** @type {{ [code: string]: string }} */
+export const NAMES = { en: "English", de: "Deutsch", it: "Italiano", zh: "中文" };
+export const KEY = "rocking.language";
+
+export const choose = /** @type {HTMLSelectElement | null} */ (document.getElementById("language"));
+
+/** The language of the page: the one that was chosen in this browser, or the first that it asks for. */
+const chosen = () => {
+  if (!choose) return "en"; // a page in English alone
+  try {
+    const kept = localStorage.getItem(KEY);
+    if (kept && kept in NAMES) return kept;
+  } catch {
+    // Nothing is kept: the browser's own languages decide.
+  }
+  return navigator.languages.map((code) => code.slice(0, 2)).find((code) => code in NAMES) ?? "en";
+};
+
+export const language = chosen();
