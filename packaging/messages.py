@@ -17,6 +17,10 @@ FOLDER, PAGE = SOURCE / "language", SOURCE / "app/static"
 TEMPLATE = FOLDER / "messages.pot"
 DATE = datetime(2000, 1, 1, tzinfo=UTC)  # of every compiled catalogue: files change with their messages alone
 HEADER = 'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"\n'
+LABEL = (
+    r'\b(?:aria-label|title|placeholder|alt|aria-description|aria-valuetext|label|help|caption|lead|words)="([^"\0]*)"'
+)
+"""Attributes of a template that are read."""
 STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
 
 Key = tuple[str, str, str]
@@ -52,8 +56,8 @@ def messages_of_script(text: str) -> Iterator[Key]:
 
 
 def literals_of_script(text: str) -> Iterator[str]:
-    """Yield the strings of a script or page, and the texts between its tags."""
-    for string in re.findall(STRING, text):
+    """Yield the strings of a script or page, those put together with + as one, and the texts between its tags."""
+    for string in re.findall(STRING, re.sub(r'"\s*\+\s*"', "", text)):
         yield _unescaped(string)
     for part in re.findall(r"[>}`]([^<>{}`$]+)(?=[<$`])", text):
         yield html.unescape(_unescaped(" ".join(part.split())))
@@ -67,6 +71,39 @@ def _unescaped(string: str) -> str:
 
 LETTERS = {"ₚ": "_p", "\N{GREEK SMALL LETTER ALPHA}": "alpha", "π": "pi", "ω": "omega", "`": "", "_": " ", "-": " "}
 """Letters of the page by the words of the server."""
+
+
+def texts_of_templates(script: str) -> Iterator[str]:
+    """Yield what the templates html`...` of a script state: texts between tags and expressions, labels of elements."""
+    for start in re.finditer(r"\bhtml`", script):
+        text, _ = _template(script, start.end())
+        for label in re.findall(LABEL, text):
+            yield " ".join(_unescaped(label).split())
+        for part in re.split(r"<[^>]*>|\0", text):
+            yield " ".join(_unescaped(part).split())
+
+
+def _template(script: str, at: int) -> tuple[str, int]:
+    """Return a template from a position, a zero in the place of each expression, and the position of its end."""
+    text = ""
+    while script[at] != "`":
+        if script.startswith("${", at):
+            text, at = text + "\0", _after_expression(script, at + 2)
+        else:
+            text, at = text + script[at], at + 1
+    return text, at
+
+
+def _after_expression(script: str, at: int) -> int:
+    depth = 1
+    while depth:
+        if script[at] == "`":
+            at = _template(script, at + 1)[1]
+        elif string := re.compile(STRING).match(script, at):
+            at = string.end() - 1
+        depth += {"{": 1, "}": -1}.get(script[at], 0)
+        at += 1
+    return at
 
 
 def plain(text: str) -> str:

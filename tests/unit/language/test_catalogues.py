@@ -80,6 +80,30 @@ def test_messages_are_found_in_modules_and_scripts():
     assert {"Some text", "more"} <= {text.strip() for text in SCRIPT["literals_of_script"](script)}
 
 
+UNTRANSLATED = {"CSV", "GIF", "--out", "question.toml"}
+"""Texts of templates that are the same in every language: names of formats, an option, a file."""
+
+
+def without_message(scripts):
+    """Return the texts of templates that are no message, of scripts by their names."""
+    known = {part for text, many, _ in SCRIPT["keys"](SCRIPT["read"](SCRIPT["TEMPLATE"])) for part in (text, many)}
+    return {
+        (name, text) for name, script in scripts.items() for text in SCRIPT["texts_of_templates"](script)
+        if re.search(r"[^\W\d_]{2,}", text) and text not in known | UNTRANSLATED
+    }  # fmt: skip
+
+
+def test_every_text_of_a_template_is_a_message():
+    """Texts and labels, also of templates in templates; that of the API is English. Negative control: two are none."""
+    page = SCRIPT["PAGE"]
+    paths = [path for path in page.rglob("*.js") if "vendor" not in path.parts and path.name != "api-docs.js"]
+    scripts = {path.name: path.read_text("utf-8") for path in paths}
+    assert sum(len(set(SCRIPT["texts_of_templates"](script))) for script in scripts.values()) > 300
+    assert without_message(scripts) == set()
+    odd = 'html`<p title="An odd title">${a && html`<b>Body</b> ${"}`"} An odd\n text`}</p>`'
+    assert without_message({"odd.js": odd}) == {("odd.js", "An odd title"), ("odd.js", "An odd text")}
+
+
 @pytest.mark.parametrize("code", CATALOGUES)
 def test_every_message_is_translated(code):
     """No message is empty, and none of more than three words is left in English but names of authors."""
