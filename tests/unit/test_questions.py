@@ -14,7 +14,7 @@ from rocking.spec import bodies, reading
 from rocking.spec.documents.identification import IdentificationDocument
 from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.questions import question_in
-from rocking.spec.questions.overturning_map import MapQuestion
+from rocking.spec.questions.map import MapQuestion
 from rocking.spec.reading import checked
 from rocking.spec.reference import reference, steps, targets
 from rocking.studies import axes

@@ -1,9 +1,12 @@
 """The commands and their help; a command is imported when it is called, all of them for the list."""
 
 from collections.abc import Callable, Sequence
+from inspect import getdoc
+from pkgutil import iter_modules
 
 import typer
 
+from rocking import spec
 from rocking.cli.completion import words_on_the_line
 from rocking.cli.spelling import Command
 from rocking.version import SOFTWARE
@@ -30,6 +33,7 @@ COMMANDS = {
         "Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."
     ),
     "fragility": "Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known.",
+    "histories": "Compute every history of a body under motions, with scale factors and restitution models.",
     "inventory": "Print which objects of a list stay standing at a level of shaking, the worst first, in plain words.",
     "codes": "Print what code methods say of bodies, how many that they call safe overturn, and how far off they are.",
     "paper": "Recompute the paper: every table, figure, erratum and claim, and the league of all models.",
@@ -52,6 +56,17 @@ COMMANDS = {
 """What each command does; the command itself is imported when it is called."""
 
 
+def added_studies() -> dict[str, str]:
+    """Return the studies that are files of `rocking.spec.questions` alone, by kind, and what each is."""
+    files = {module.name for module in iter_modules([f"{folder}/questions" for folder in spec.__path__])}
+    if files <= COMMANDS.keys():  # the questions themselves take long to be imported
+        return {}
+    from rocking.spec.questions import questions
+
+    classes = {kind: question for kind, question in questions().items() if question.own_table() not in COMMANDS}
+    return {kind: (getdoc(question) or "").partition("\n")[0] for kind, question in classes.items()}
+
+
 def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     """Return the command line application; for the words of one call, the command they name, or a list."""
     named = next(iter(arguments or words_on_the_line()), "")
@@ -65,12 +80,13 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for name, summary in COMMANDS.items():
+    commands = COMMANDS if named in COMMANDS else COMMANDS | added_studies()
+    for name, summary in commands.items():
         if arguments is None or name == named:
             app.command(name, cls=Command, help=summary)(_command(name))
-        elif named not in COMMANDS:
+        elif named not in commands:
             app.command(name, short_help=summary)(_nothing)
-    if named not in COMMANDS:
+    if named not in commands:
         from rocking.cli.campaign import campaign
         from rocking.cli.evidence import evidence
 
@@ -167,7 +183,9 @@ def _command(name: str) -> Callable[..., None]:  # noqa: PLR0911, PLR0912, PLR09
             from rocking.cli.example import example
 
             return example
-    raise KeyError(name)
+    from rocking.cli.histories import command_of
+
+    return command_of(name)
 
 
 def _nothing() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks
 from rocking.bodies.formats import FORMATS, describes_solid
-from rocking.cli.numbers import units_of
+from rocking.cli.numbers import units_of, value_of
 from rocking.cli.spelling import typed
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
@@ -20,6 +20,7 @@ from rocking.spec.reading import is_pattern, tables_in
 
 if TYPE_CHECKING:
     import typer
+    from pydantic import BaseModel
 
 Tables = dict[str, Any]
 
@@ -146,6 +147,13 @@ class Arguments:
                 raise InvalidValueError(f"{option[:100]} and --set {name}.{key} say the same: leave one out")
         return {**{key: value for key, value in values.items() if value is not None}, **sets}
 
+    def values(self, table: "type[BaseModel]") -> Tables:
+        """Return the values of keys of a table that options say."""
+        return {
+            name: value_of(field, f"--{name.replace('_', '-')}", self.options[name])
+            for name, field in table.model_fields.items() if self.options.get(name) is not None
+        }  # fmt: skip
+
     @property
     def sizes(self) -> dict[str, str]:
         """The sizes of a block that were typed, as they are spelt, by their key."""
@@ -189,15 +197,13 @@ class Arguments:
         return keys or ({"model": self.options["restitution"]} if usual is None else usual)
 
     def body_table(self, file: str | None) -> Tables:
-        from rocking.bodies.formats.schema import BLOCK_KEYS
+        from rocking.bodies.formats.schema import BlockTable
 
-        values = {name: self.options.get(name) for name in BLOCK_KEYS}
-        if values["centre"] is not None:
-            values["centre"] = numbers_in("--centre", values["centre"])
+        values = self.values(BlockTable)
         if file is not None:
             in_toml = Path(file).suffix.lower() == ".toml"
-            stated = any(values[name] is not None for name in ("density", *_KNOWN))
-            if self.sizes or values["depth"] is not None or (stated and in_toml):
+            stated = not {"density", *_KNOWN}.isdisjoint(values)
+            if self.sizes or "depth" in values or (stated and in_toml):
                 raise InvalidValueError("give a body file or dimensions, not both")
             return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
         if set(self.sizes) not in map(set, _SIZES):
@@ -265,16 +271,6 @@ class Arguments:
                 groups.append([])
             groups[-1].append(word)
         return [table(group) for group in groups]
-
-
-def numbers_in(name: str, text: str) -> list[float]:
-    """Return numbers with commas between; name: the option, for the refusal."""
-    try:
-        return [float(word) for word in text.split(",")]
-    except ValueError as error:
-        raise InvalidValueError(
-            f"{name} must be numbers with commas between, such as 0.42,0.7, got {text!r:.60}"
-        ) from error
 
 
 def _place(word: str) -> Tables:

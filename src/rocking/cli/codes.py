@@ -1,7 +1,6 @@
 """`rocking codes`: what published rules say of bodies, and what their histories show."""
 
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -46,7 +45,7 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
 EXPORTS = {"csv": Export((".csv",), _csv)}
 
 
-@partial(options.sized, listed=("width", "height"))
+@options.takes(options.SIZES, options.SEVERAL_SIZES)
 def codes(
     context: typer.Context,
     body: options.BodyFile = None,

@@ -2,7 +2,6 @@
 
 import sys
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -52,7 +51,7 @@ EXPORTS = {
 }
 
 
-@partial(options.sized, before="onto")
+@options.takes(options.SIZES, before="onto")
 def cor(
     context: typer.Context,
     body: options.BodyFile = None,

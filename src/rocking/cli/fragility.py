@@ -10,7 +10,7 @@ from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.questions.fragility import FragilityTable
+from rocking.spec.questions.fragility import ExportTable, FragilityTable
 
 if TYPE_CHECKING:
     from rocking.cli.arguments import Arguments
@@ -57,7 +57,19 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 """Files of the curves of one restitution."""
 
 
-@options.sized
+@options.takes(
+    options.keys(
+        FragilityTable,
+        "measure",
+        "levels",
+        "states",
+        "factor",
+        levels=f"{options.ROW}; with units, 0.05g:1g:20",
+        states=": 0.2,0.5 or 0.5,overturning",
+    ),
+    before="restitution",
+)
+@options.takes(options.SIZES)
 def fragility(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -76,16 +88,6 @@ def fragility(
             "overturn; cloud: motions as they are."
         ),
     ] = "stripes",
-    measure: Annotated[str, options.key(FragilityTable, "measure")] = "pga",
-    levels: Annotated[
-        str | None,
-        options.key(
-            FragilityTable, "levels",
-            ": FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C; with units, 0.05g:1g:20",
-        ),
-    ] = None,
-    states: Annotated[str, options.key(FragilityTable, "states", ": 0.2,0.5 or 0.5,overturning")] = "0.5",
-    factor: Annotated[float | None, options.key(FragilityTable, "factor")] = None,
     restitution: options.Restitutions = None,
     sets: options.Set = None,
     friction: options.Friction = None,
@@ -101,7 +103,7 @@ def fragility(
             " all states, always; refuse, each state alone, and no files for FEMA P-58, PELICUN and OpenQuake.",
             rich_help_panel=options.OUTPUT,
         ),
-    ] = "keep-uplift",
+    ] = ExportTable.model_fields["crossing"].default,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
@@ -168,7 +170,7 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     if factor is not None:
         if kind != "cloud":
             raise InvalidValueError(f"--factor is for --analysis cloud: {kind} brings every motion to the levels")
-        own["factor"] = checks.positive("--factor", factor)
+        own["factor"] = factor
     written = "g" if wanted.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:

@@ -40,7 +40,7 @@ def _excel(answer: Any, path: Path) -> None:
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF, "excel": Export((".xlsx",), _excel, "openpyxl")}
 
 
-@options.sized
+@options.takes(options.SIZES)
 def identify(
     context: typer.Context,
     body: Annotated[

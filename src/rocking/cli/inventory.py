@@ -26,14 +26,16 @@ NOTHING_ASSESSED = 1
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 
+@options.takes(
+    options.keys(InventoryTable, "columns"),
+    options.keys(InventoryTable, "pga", "pgv", panel=_SHAKING),
+    before="motion",
+)
 def inventory(
     context: typer.Context,
     objects: Annotated[
         Path, typer.Argument(help="List as .xlsx, .ods or CSV: name, width, depth, height and more, with units.")
     ],
-    columns: Annotated[str | None, options.key(InventoryTable, "columns")] = None,
-    pga: Annotated[str | None, options.key(InventoryTable, "pga", rich_help_panel=_SHAKING)] = None,
-    pgv: Annotated[str | None, options.key(InventoryTable, "pgv", rich_help_panel=_SHAKING)] = None,
     motion: Annotated[
         list[str] | None,
         typer.Option(help="Record file, again for more; as recorded without a level.", rich_help_panel=_SHAKING),
@@ -128,14 +130,10 @@ def _problem(context: typer.Context) -> "StudyProblem":
 
     arguments = Arguments(context, "motion", "settings", "inventory")
     options, named = arguments.options, arguments.options["motion"] or ()
-    levels = {name: options[name] for name in ("pga", "pgv")}
-    if None not in levels.values():
+    objects, values = str(options["objects"]), arguments.values(InventoryTable)
+    if {"pga", "pgv"} <= values.keys():
         raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
-    table = arguments.table(
-        "inventory",
-        {"objects": str(options["objects"]), "columns": options["columns"], **levels},
-        {"objects": str(options["objects"])},
-    )
+    table = arguments.table("inventory", {**values, "objects": objects}, {"objects": objects})
     synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
     if synthetic is not None and not {"pga", "pgv"} & set(table):
         raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")

@@ -14,7 +14,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import mode_shares
 from rocking.quantities import Quantity
-from rocking.spec.questions.overturning_map import MapTable
+from rocking.spec.questions.map import MapTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,16 +39,20 @@ _AXIS = (
 )
 
 
-@options.sized
+@options.takes(options.SIZES)
+@options.takes(options.keys(MapTable, "refine"))
+@options.takes(
+    options.keys(
+        MapTable, "x", "y", x=_AXIS, defaults={"x": "frequency_ratio=0.5:10:100", "y": "amplitude_ratio=1:12:100"}
+    ),
+    before="restitution",
+)
 def map(
     context: typer.Context,
     body: options.BodyFile = None,
     record: options.Record = None,
     motion: options.Motion = None,
-    x: Annotated[str, options.key(MapTable, "x", _AXIS)] = "frequency_ratio=0.5:10:100",
-    y: Annotated[str, options.key(MapTable, "y")] = "amplitude_ratio=1:12:100",
     restitution: options.Restitutions = None,
-    refine: Annotated[int | None, options.key(MapTable, "refine")] = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
@@ -65,7 +69,7 @@ def map(
     if (problem := problem_in(context, body, "map")) is None:
         arguments = Arguments(context, *TABLES, "map")
         length = arguments.length
-        table, written = _table(arguments, x, y, refine)
+        table, written = _table(arguments)
         problem = body_and_motion(arguments, "overturning-map", table, restitution or ["ked"])
     with bar("histories", quiet=as_json) as progress:
         arrays, compared = _computed(problem, progress, threads, picture="picture" in exports.names)
@@ -93,23 +97,18 @@ def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, pi
     return MapArrays(axes, variables, first.attrs), result
 
 
-def _table(arguments: "Arguments", x: str, y: str, refine: int | None) -> tuple[dict[str, Any], dict[str, str]]:
+def _table(arguments: "Arguments") -> tuple[dict[str, Any], dict[str, str]]:
     """Return the table [map], and the units that axes were written in, by their name."""
     from rocking.errors import InvalidValueError
 
-    restitutions = arguments.options["restitution"] or ()
     axes, written = {}, {}
-    for option, text in (("x", x), ("y", y)):
-        axes[option], unit = _axis(f"--{option}", text)
+    for option in ("x", "y"):
+        axes[option], unit = _axis(f"--{option}", arguments.options[option])
         if unit:
             written[axes[option]["axis"]] = unit
-    if restitutions and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
+    if arguments.options["restitution"] and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
         raise InvalidValueError("--restitution is an axis of this map: leave the option out")
-    if refine is not None and not 1 <= refine <= 12:
-        raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
-    if refine is not None and len(restitutions) > 1:
-        raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
-    return arguments.table("map", {**axes, "refine": refine}), written
+    return arguments.table("map", {**arguments.values(MapTable), **axes}), written
 
 
 def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:

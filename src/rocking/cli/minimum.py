@@ -5,18 +5,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking import checks
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import g, percent
-from rocking.errors import InvalidValueError
 from rocking.messages import Message
 from rocking.quantities import closely
 from rocking.spec.construction import COMPLEMENTARITY
-from rocking.spec.questions.minimum_acceleration import MinimumTable
+from rocking.spec.questions.minimum import MinimumTable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,17 +46,17 @@ def _write_csv(answer: "MinimumAnswer", path: "Path") -> None:
 EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 
-@options.sized
+@options.takes(
+    options.keys(MinimumTable, lowest=": 0.1g, 1m/s2", highest=": 5g"),
+    options.keys(MinimumTable, "points", "levels", panel=options.HOW),
+    options.SIZES,
+)
 def minimum(
     context: typer.Context,
     body: options.BodyFile = None,
     record: options.Record = None,
     motion: options.Motion = None,
     restitution: options.Restitution = "ked",
-    lowest: Annotated[str | None, options.key(MinimumTable, "lowest", ": 0.1g, 1m/s2")] = None,
-    highest: Annotated[str | None, options.key(MinimumTable, "highest", ": 5g")] = None,
-    points: Annotated[int, options.key(MinimumTable, "points", rich_help_panel=options.HOW)] = 400,
-    levels: Annotated[int, options.key(MinimumTable, "levels", rich_help_panel=options.HOW)] = 4,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
@@ -75,20 +73,11 @@ def minimum(
     if (problem := problem_in(context, body, "minimum")) is None:
         arguments = Arguments(context, *TABLES, "minimum")
         length, acceleration = arguments.length, arguments.acceleration
-        table = arguments.table("minimum", {**_range(lowest, highest), "points": points, "levels": levels})
+        table = arguments.table("minimum", arguments.values(MinimumTable))
         problem = body_and_motion(arguments, "minimum-acceleration", table, [restitution])
     with bar("histories", quiet=as_json) as progress:
         answer = MinimumAnswer(problem, problem.answer(progress, threads), length or "m", acceleration or "m/s2")
     deliver(answer, exports, as_json=as_json)
-
-
-def _range(lowest: str | None, highest: str | None) -> dict[str, float]:
-    """Return the range of accelerations as keys of the table [minimum] [m/s2]."""
-    texts = {"lowest": lowest, "highest": highest}
-    ends = {name: checks.quantity(f"--{name}", text, "m/s2")[0] for name, text in texts.items() if text is not None}
-    if len(ends) == 2 and not ends["lowest"] < ends["highest"]:
-        raise InvalidValueError(f"--lowest must be below --highest, got {lowest} and {highest}")
-    return ends
 
 
 @dataclass(frozen=True)

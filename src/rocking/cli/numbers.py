@@ -3,12 +3,16 @@
 import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking import checks
 from rocking.cli.page import Page
-from rocking.conventions import FloatArray
+from rocking.conventions import UNITS, FloatArray
 from rocking.errors import InvalidValueError
+from rocking.spec.fields import Values, kinds_of, meaning_and_unit
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
 
 MOST_VALUES = 100_000  # no row of values has more
 
@@ -40,10 +44,30 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
 
 def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
     """Return a row of values [unit], and the unit in which all were written, empty if none."""
-    from rocking.spec.fields import Values
-
     table, written = values_table(name, text, unit, spacing)
     return Values.model_validate(table).numbers(), written
+
+
+def numbers_in(name: str, text: str) -> list[float]:
+    """Return numbers with commas between; name: the option, for the refusal."""
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError as error:
+        raise InvalidValueError(
+            f"{name} must be numbers with commas between, such as 0.42,0.7, got {text!r:.60}"
+        ) from error
+
+
+def value_of(field: "FieldInfo", option: str, typed: Any) -> Any:
+    """Return the value of a key of a table from what was typed for its option."""
+    if not isinstance(typed, str):
+        return typed
+    kind, (_, unit) = kinds_of(field)[0], meaning_and_unit(field.description or "")
+    if kind is float:
+        return checks.quantity(option, typed, unit)[0]
+    if kind is Values:
+        return values_table(option, typed, unit if unit in UNITS else "1")[0]
+    return numbers_in(option, typed) if kind == list[float] else typed
 
 
 def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:

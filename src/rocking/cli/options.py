@@ -1,25 +1,88 @@
 """Options of the commands; what they mean is said once, by the tables of `rocking.spec`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from functools import wraps
 from inspect import Parameter, Signature, signature
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats.schema import BLOCK_KEYS, BlockTable
 from rocking.cli import completion
+from rocking.conventions import UNITS
 from rocking.spec.documents.prediction import PredictTable
-from rocking.spec.motion_tables import ComponentsTable, MotionKeys
+from rocking.spec.fields import kinds_of, meaning_and_unit
+from rocking.spec.motion_tables import ComponentsTable
 from rocking.spec.settings_tables import StudySettingsTable
 
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+Options = dict[str, tuple[Any, Any]]  # annotation and default of options by name
+NONE: Mapping[str, Any] = {}
 SIZE, SHAKING, HOW, OUTPUT = "Size, in place of a body file", "What shakes it", "How it is computed", "Output"
+
+
+ROW = ": FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C"
+"""What the help of a key of numbers goes on with."""
 
 
 def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
     """Return the option of a key of a table, with the key's description as its help."""
-    text = table.model_fields[name].description or ""
+    text = (table.model_fields[name].description or "").replace("unit of the file", "m, or --units")
     return typer.Option(help=f"{text[:1].upper()}{text[1:]}{more}.".replace("[", r"\["), **options)
+
+
+def keys(
+    table: type[Any],
+    *names: str,
+    panel: str | None = None,
+    kind: Any = None,
+    defaults: Mapping[str, Any] = NONE,
+    **more: str,
+) -> Options:
+    """Return options of keys of a table, by their names: type, default and help are those of the fields.
+
+    kind: the type of all of them, if not that of the field; defaults: those of keys that a file must state; more: keys
+    whose help goes on after the description.
+    """
+    made = {}
+    for name in dict.fromkeys((*names, *more)):
+        field = table.model_fields[name]
+        usual = defaults.get(name) if field.default is PydanticUndefined else field.default
+        usual = ",".join(map(str, usual)) if isinstance(usual, list) else usual
+        option = key(table, name, more.get(name, ""), rich_help_panel=panel)
+        of_one = kind or _type_of(field)
+        made[name] = Annotated[of_one if usual is not None else of_one | None, option], usual
+    return made
+
+
+def takes(*groups: Options, before: str = "sets") -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command options in front of one of its own, of which it has none yet; `Arguments` reads them."""
+
+    def whole(command: Callable[..., None]) -> Callable[..., None]:
+        own = dict(signature(command).parameters)
+        added = {name: option for group in groups for name, option in group.items() if name not in own}
+
+        @wraps(command)
+        def taking(**values: Any) -> None:
+            command(**{name: value for name, value in values.items() if name in own})
+
+        every = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own.values()]
+        at = list(own).index(before)
+        every[at:at] = [Parameter(n, Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in added.items()]
+        taking.__signature__ = Signature(every)  # type: ignore[attr-defined]
+        taking.__annotations__ = {**command.__annotations__, **{n: annotation for n, (annotation, _) in added.items()}}
+        return taking
+
+    return whole
+
+
+def _type_of(field: "FieldInfo") -> Any:
+    """Return the type of the option of a key; text where its value has a unit, or is no single number."""
+    kinds, (_, unit) = kinds_of(field), meaning_and_unit(field.description or "")
+    return kinds[0] if len(kinds) == 1 and kinds[0] in {int, float, bool} and not UNITS.get(unit) else str
 
 
 Density = Annotated[float | None, typer.Option(help=r"Density of a block or a mesh \[kg/m3].", rich_help_panel=SIZE)]
@@ -29,40 +92,9 @@ Units = Annotated[
         help="Units: of lengths m, cm, mm, ft, in; of a record m/s2, cm/s2, mm/s2, gal, g, g/10, mg; or mm,g."
     ),
 ]
-
-
-def _size(name: str, *, listed: bool = False) -> Any:
-    text = (BlockTable.model_fields[name].description or "").replace("unit of the file", "m, or --units")
-    option = typer.Option(
-        help=f"{text[:1].upper()}{text[1:]}{': A,B,C' * listed}.".replace("[", r"\["), rich_help_panel=SIZE
-    )
-    kind: Any = str if listed or name == "centre" else float
-    return Annotated[kind | None, option]
-
-
-_SIZES = {name: _size(name) for name in BLOCK_KEYS} | {"density": Density, "units": Units}
-
-
-def sized(command: Callable[..., None], before: str = "sets", listed: Sequence[str] = ()) -> Callable[..., None]:
-    """Give a command the sizes of a block as options, in front of one of its own; `Arguments` reads them.
-
-    listed: sizes that may have several values.
-    """
-    own = signature(command).parameters
-    added = {name: kind for name, kind in _SIZES.items() if name not in own}
-    added |= {name: _size(name, listed=True) for name in listed}
-
-    @wraps(command)
-    def sized_command(**values: Any) -> None:
-        command(**{name: value for name, value in values.items() if name not in added})
-
-    sizes = [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in added.items()]
-    at = list(own).index(before)
-    every = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own.values()]
-    every[at:at] = sizes
-    sized_command.__signature__ = Signature(every)  # type: ignore[attr-defined]
-    sized_command.__annotations__ = {**command.__annotations__, **added}
-    return sized_command
+SIZES = {**keys(BlockTable, *BLOCK_KEYS, panel=SIZE), "density": (Density, None), "units": (Units, None)}
+"""The sizes of a block, in place of a body file."""
+SEVERAL_SIZES = keys(BlockTable, panel=SIZE, kind=str, width=": A,B,C", height=": A,B,C")
 
 
 RecordUnits = Annotated[
@@ -146,7 +178,6 @@ Seed = Annotated[
     int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=SHAKING)
 ]
 ScaledToPeak = Annotated[str | None, key(PredictTable, "pga", rich_help_panel=SHAKING)]
-Scale = Annotated[float, key(MotionKeys, "scale")]
 
 
 def count(usual: int, panel: str = SHAKING) -> Any:

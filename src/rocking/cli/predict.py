@@ -33,7 +33,7 @@ COUNT, SEED = 20, 1
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 
 
-@options.sized
+@options.takes(options.SIZES)
 def predict(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -144,7 +144,7 @@ class PredictionAnswer:
         page.warn(found.repairs)
 
 
-@options.sized
+@options.takes(options.SIZES)
 def assess(
     context: typer.Context,
     body: options.BodyFile = None,

@@ -12,7 +12,7 @@ from rocking import plausibility
 from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
-from rocking.cli.arguments import Arguments, document_file, numbers_in, parsed_sets, with_sets
+from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError, located
@@ -22,7 +22,7 @@ from rocking.outcome import Outcome
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motions_of
 from rocking.spec.documents.response import ResponseDocument, ResponseTable, ResponseTables
-from rocking.spec.motion_tables import MotionTable
+from rocking.spec.motion_tables import MotionKeys, MotionTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.response import problem_of, response_problem
 
@@ -69,7 +69,12 @@ EXPORTS = {
 }
 
 
-@options.sized
+@options.takes(options.SIZES)
+@options.takes(
+    options.keys(MotionKeys, "scale"),
+    options.keys(ResponseTable, "friction", "bounce", "start_height", "start_velocity"),
+)
+@options.takes(options.keys(ResponseTable, "free"), before="restitution")
 def simulate(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -82,13 +87,7 @@ def simulate(
         ),
     ] = None,
     motion: options.Motion = None,
-    free: Annotated[float | None, options.key(ResponseTable, "free")] = None,
     restitution: options.Restitution = "ked",
-    scale: options.Scale = 1.0,
-    friction: Annotated[float | None, options.key(ResponseTable, "friction")] = None,
-    bounce: Annotated[float | None, options.key(ResponseTable, "bounce")] = None,
-    start_height: Annotated[float | None, options.key(ResponseTable, "start_height")] = None,
-    start_velocity: Annotated[str | None, options.key(ResponseTable, "start_velocity")] = None,
     sets: options.Set = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     details: options.Details = False,
@@ -124,19 +123,9 @@ def simulate(
     deliver(answer, exports, as_json=as_json)
 
 
-_RESPONSE = ("friction", "bounce", "start_height", "start_velocity")
-
-
-def _response_options(arguments: Arguments, names: tuple[str, ...]) -> dict[str, Any]:
-    values = {name: arguments.options[name] for name in names}
-    if values["start_velocity"] is not None:
-        values["start_velocity"] = numbers_in("--start-velocity", values["start_velocity"])
-    return values
-
-
 def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
-    response = arguments.table("response", _response_options(arguments, ("free", *_RESPONSE)))
+    response = arguments.table("response", arguments.values(ResponseTable))
     free = "free" in response
     dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
@@ -173,9 +162,9 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
         raise InvalidValueError(f"give a motion or --free, not both; got {words[0][:100]!r}")
     files = CommandFiles(Path())
     with arguments.hinted():
-        own = _response_options(arguments, _RESPONSE)
         tables = {
-            "response": arguments.table("response", own), "restitution": arguments.restitution(),
+            "response": arguments.table("response", arguments.values(ResponseTable)),
+            "restitution": arguments.restitution(),
             "settings": arguments.sets.get("settings", {}),
         }  # fmt: skip
         scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})

@@ -12,7 +12,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
-from rocking.spec.questions.rocking_spectrum import SpectrumQuestion, SpectrumTable
+from rocking.spec.questions.spectrum import SpectrumQuestion, SpectrumTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +22,15 @@ if TYPE_CHECKING:
 _MOST = 10_000_000  # histories; more are a campaign
 
 
+@options.takes(options.keys(SpectrumTable, "scale"), before="units")
+@options.takes(
+    options.keys(
+        SpectrumTable,
+        periods=": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C",
+        defaults={"periods": "1:10:100"},
+    ),
+    before="restitution",
+)
 def spectrum(
     context: typer.Context,
     motions: options.SeveralRecords = None,
@@ -29,11 +38,7 @@ def spectrum(
     slenderness: Annotated[
         str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
     ] = "4,6,8",
-    periods: Annotated[
-        str, options.key(SpectrumTable, "periods", ": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C")
-    ] = "1:10:100",
     restitution: options.Restitution = "ked",
-    scale: Annotated[float, options.key(SpectrumTable, "scale")] = 1.0,
     units: options.RecordUnits = None,
     sets: options.Set = None,
     friction: options.Friction = None,
@@ -51,7 +56,8 @@ def spectrum(
         arguments = Arguments(context, "motion", "settings", "spectrum")
         if not named:
             raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))
-        own = {"slenderness_angles": _angles(slenderness), "periods": _periods(periods), "scale": scale}
+        angles, periods = _angles(slenderness), _periods(arguments.options["periods"])
+        own = {**arguments.values(SpectrumTable), "slenderness_angles": angles, "periods": periods}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
             raise InvalidValueError(f"{body} is a body, and {SpectrumQuestion.without_body}")

@@ -29,7 +29,7 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *beside
     """Return what a file with all tables describes, with the keys of `--set`; None where the word is no such file."""
     if (file := document_file(context, word, ("campaign", command), beside)) is None:
         return None
-    kinds = [kind for kind, question in questions().items() if question.command == command]
+    kinds = [kind for kind, question in questions().items() if question.own_table() == command]
     with located(str(file), "file"):
         tables = dict(tables_in(file) or {})
         if len(kinds) == 1:

@@ -1,9 +1,11 @@
 """What all tables of a job file have in common, and numbers in them. Imported only when one is read."""
 
-from typing import Annotated, Any, Literal
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic.fields import FieldInfo
 
 from rocking.bodies.formats.schema import StrictTable
 from rocking.conventions import FloatArray
@@ -17,6 +19,19 @@ Text = Annotated[str, Field(min_length=1, max_length=200)]
 def key(description: str, usual: Any = None, **limits: Any) -> Any:
     """Return a field with what it means, which options and the documentation of keys repeat."""
     return Field(default=usual, description=description, **limits)
+
+
+def meaning_and_unit(description: str) -> tuple[str, str]:
+    """Return what a description says before the unit that it ends with, and that unit; empty if none."""
+    text = description.rstrip(".")
+    meaning, bracket, unit = text.removesuffix("]").rpartition("[")
+    return (meaning.strip(), unit) if bracket and text.endswith("]") else (description.strip(), "")
+
+
+def kinds_of(field: FieldInfo) -> list[Any]:
+    """Return the types that a field takes, without their limits; a field that may be left out without None."""
+    inner = get_args(field.annotation) if get_origin(field.annotation) in {Union, UnionType} else [field.annotation]
+    return [get_args(kind)[0] if get_origin(kind) is Annotated else kind for kind in inner if kind is not NoneType]
 
 
 class JobTable(StrictTable):

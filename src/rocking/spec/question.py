@@ -48,7 +48,6 @@ class StudyQuestion(JobTable):
     """
 
     kind: ClassVar[str] = ""  # as [campaign] has it
-    command: ClassVar[str] = "campaign"  # command whose options make the tables
     without_body: ClassVar[str] = ""  # reason why there is no [body]; empty where there is one
     plane: ClassVar[bool] = False  # the bodies move along x and z alone
     one_restitution: ClassVar[bool] = False  # a picture shows one restitution
@@ -69,7 +68,7 @@ class StudyQuestion(JobTable):
 
     @classmethod
     def own_table(cls) -> str:
-        """Return the name of the table that no other study has."""
+        """Return the name of the table that no other study has, and of the command that makes it from options."""
         return next(name for name in cls.model_fields if name not in BodyQuestion.model_fields)
 
     @model_validator(mode="before")

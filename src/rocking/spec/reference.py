@@ -15,7 +15,7 @@ from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
 from rocking.spec.documents.response import ResponseTable
-from rocking.spec.fields import JobTable, Values
+from rocking.spec.fields import JobTable, Values, meaning_and_unit
 from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
 from rocking.spec.question import BodyQuestion, CampaignTable
 from rocking.spec.questions import questions
@@ -72,8 +72,8 @@ def reference() -> str:
 def _tables() -> dict[str, tuple[type[JobTable], str]]:
     """Return the tables of all questions and what they are of: those of studies as their classes have them."""
     of_studies: dict[str, tuple[type[JobTable], str]] = {}
-    for kind, question in questions().items():
-        where = f"campaigns of kind {kind}" if question.command == "campaign" else f"`rocking {question.command}`"
+    for question in questions().values():
+        where = f"`rocking {question.own_table()}`"
         of_studies = {**_within(question, where, {*BodyQuestion.model_fields}), **of_studies}
     return _TABLES | dict(sorted(of_studies.items()))
 
@@ -140,11 +140,10 @@ def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> 
 
 def _said(words: str, usual: Any, annotation: Any, *, needed: bool = False) -> dict[str, Any]:
     """Return what is said of a key, with the unit that its words end with."""
-    meaning, bracket, unit = words.rstrip(".").removesuffix("]").rpartition("[")
-    unit = unit if bracket and words.rstrip(".").endswith("]") else ""
+    meaning, unit = meaning_and_unit(words)
     return {
         "unit": unit,
-        "words": (meaning if unit else words).strip(),
+        "words": meaning,
         "kind": _kind(annotation),
         "usual": _usual(usual).strip("`"),
         "needed": needed,

@@ -16,6 +16,7 @@ from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.messages import Parameter
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
@@ -162,7 +163,11 @@ class Cases:
         bad = np.flatnonzero(~(low < high))
         if bad.size:
             k = bad[0]
-            raise InvalidValueError(f"lowest must be below highest, got {low[k]:g} and {high[k]:g} m/s2 for body {k}")
+            raise InvalidValueError(
+                f"{{lowest}} must be below {{highest}}, got {low[k]:g} and {high[k]:g} m/s2 for body {k}",
+                lowest=Parameter("minimum.lowest", "lowest"),
+                highest=Parameter("minimum.highest", "highest"),
+            )
         return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, record)
 
     @classmethod

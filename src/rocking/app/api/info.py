@@ -133,7 +133,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
     from rocking.spec.motion_tables import MotionTable, OneMotionTable
     from rocking.spec.questions import questions
     from rocking.spec.questions.inventory import InventoryTable
-    from rocking.spec.questions.minimum_acceleration import MinimumTable
+    from rocking.spec.questions.minimum import MinimumTable
     from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 

@@ -74,7 +74,6 @@ class FragilityTable(JobTable):
 class AnalysisQuestion(BodyQuestion):
     """A fragility analysis of one body."""
 
-    command: ClassVar[str] = "fragility"
     needs_motions: ClassVar[bool] = True
     of_files: ClassVar[dict[str, set[str]]] = {"export": {"bootstrap", "measures", "columns"}}
 

@@ -57,7 +57,6 @@ class InventoryQuestion(StudyQuestion):
     """Which objects of a list stay standing."""
 
     kind: ClassVar[str] = "inventory"
-    command: ClassVar[str] = "inventory"
     without_body: ClassVar[str] = "the objects stand in the file that [inventory] names"
     names_files: ClassVar[bool] = True
 

@@ -1,10 +1,13 @@
 """A new study is one file in `rocking.spec.questions`: for jobs, campaigns, exports, the application and the manual."""
 
+import json
+import re
 import sys
 
+import numpy as np
 import pytest
 
-from rocking import cli
+from rocking import cli, spec
 from rocking.app.studies.job_document import JobDocument, launched_kinds
 from rocking.campaigns.jobs import Job, JobFolder, status_of
 from rocking.errors import InvalidValueError
@@ -78,9 +81,11 @@ TABLES = {
 @pytest.fixture
 def added(tmp_path, monkeypatch):
     """Add the file of a study to the folder of studies."""
-    (tmp_path / "studies").mkdir()
-    (tmp_path / "studies" / "polarity.py").write_text(STUDY.strip() + "\n", encoding="utf-8")
-    monkeypatch.setattr(questions, "__path__", [*questions.__path__, str(tmp_path / "studies")])
+    folder = tmp_path / "questions"
+    folder.mkdir()
+    (folder / "polarity.py").write_text(STUDY.strip() + "\n", encoding="utf-8")
+    for package, path in ((spec, tmp_path), (questions, folder)):
+        monkeypatch.setattr(package, "__path__", [*package.__path__, str(path)])
     yield tmp_path
     QUESTIONS.pop("polarity", None)
     sys.modules.pop(f"{questions.__name__}.polarity", None)
@@ -104,6 +109,33 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     assert keys_of("polarity") == ["factor"]
     assert "### [polarity]" in reference()
     assert "| `factor` | number | `1.0` | scale factor of both polarities [-] |" in reference()
+
+
+def test_one_file_is_a_command(added, run, refuses, monkeypatch):
+    """Its options are the keys of its table; files say the same, and the list has it."""
+    words = [
+        "polarity",
+        "--width",
+        "0.5",
+        "--height",
+        "2",
+        "sine:amplitude=4,period=0.5",
+        "ricker:amplitude=6,period=0.9",
+    ]
+    files = [word for name in ("a.png", "a.csv") for word in ("--out", added / name)]
+    code, out, err = run(*words, "--factor", 2, "--json", *files)
+    assert (code, err) == (0, "")
+    answer = json.loads(out)
+    assert answer["scale"] == [2.0, -2.0]
+    assert 2 in np.ravel(answer["outcome"])
+    assert (added / "a.png").read_bytes().startswith(b"\x89PNG")
+    (added / "job.toml").write_text(JOB, encoding="utf-8")
+    assert json.loads(run("polarity", added / "job.toml", "--json")[1])["outcome"] == answer["outcome"]
+    monkeypatch.setenv("COLUMNS", "200")
+    assert "Scale factor of both polarities [-]. [default: 1.0]" in run("polarity", "--help")[1]
+    assert re.search(r"polarity +Every motion as recorded and reversed\.", run("--help")[1])
+    refuses((*words, "--factor", "0"), "--factor must be")
+    refuses(("polarities",), "polarit")
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import model_validator
 
 from rocking.errors import InvalidValueError, located
+from rocking.messages import Parameter
 from rocking.spec.fields import JobTable, Text, Values, key
 from rocking.spec.question import BodyQuestion, Progress
 
@@ -46,7 +47,6 @@ class MapQuestion(BodyQuestion):
     """The outcomes of one body under one motion over two parameters."""
 
     kind: ClassVar[str] = "overturning-map"
-    command: ClassVar[str] = "map"
     of_files: ClassVar[dict[str, set[str]]] = {"map": {"boundary", "tolerance"}}
 
     map: MapTable
@@ -88,7 +88,8 @@ class MapQuestion(BodyQuestion):
         if len(problem.restitutions) == 1:
             return map_arrays(*subject, problem.restitution, refine=self.map.refine, **options)
         if self.map.refine is not None:
-            raise InvalidValueError("map.refine is for one restitution: several are compared cell by cell")
+            refine = Parameter("map.refine", "map.refine")
+            raise InvalidValueError("{refine} is for one restitution: several are compared cell by cell", refine=refine)
         from rocking.studies.sensitivity import map_sensitivity
 
         return map_sensitivity(*subject, problem.restitutions, **options)

@@ -30,7 +30,6 @@ class MinimumQuestion(BodyQuestion):
     """Every acceleration at which bodies begin or cease to overturn under motions."""
 
     kind: ClassVar[str] = "minimum-acceleration"
-    command: ClassVar[str] = "minimum"
     several_bodies: ClassVar[bool] = True
     needs_motions: ClassVar[bool] = True
 

@@ -29,7 +29,6 @@ class SpectrumQuestion(StudyQuestion):
     """The peak rotations of blocks of many sizes under motions."""
 
     kind: ClassVar[str] = "rocking-spectrum"
-    command: ClassVar[str] = "spectrum"
     plane: ClassVar[bool] = True
     without_body: ClassVar[str] = (
         "a spectrum makes its own blocks; of a body, plane or in space, a map over semi_diagonal shows all sizes"

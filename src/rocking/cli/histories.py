@@ -1,0 +1,140 @@
+"""`rocking histories`, and the command of every other study without a module here: options from its own table."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from pydantic import BaseModel
+
+from rocking.answers import Answer, Display
+from rocking.cli import options
+from rocking.cli.exports import DATASET, Exports
+from rocking.cli.page import Page, bar, deliver
+from rocking.errors import InvalidValueError
+from rocking.outcome import contact_words, lost_contact, mode_shares
+from rocking.spec.fields import Values, kinds_of
+from rocking.spec.question import BodyQuestion, StudyQuestion
+from rocking.spec.questions import questions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.spec.study import StudyProblem
+
+COUNT, SEED = 20, 1  # synthetic motions by default
+_MOST = 10_000_000  # histories; more are a campaign
+_BODY: options.Options = {"body": (options.BodyFile, None)}
+_MOTIONS: options.Options = {
+    "record": (options.SeveralRecords, None),
+    "motion": (options.SeveralMotions, None),
+    "synthetic": (options.Family, None),
+    "count": (Annotated[int | None, options.count(COUNT)], None),
+    "seed": (options.Seed, None),
+}
+
+
+def command_of(kind: str) -> Callable[..., None]:
+    """Return the command that computes a kind of study in memory."""
+    question = questions()[kind]
+    own = question.own_table()
+    table: Any = question.model_fields[own].annotation
+    has_body = issubclass(question, BodyQuestion)
+    pictured = question.plot is not StudyQuestion.plot
+    exports = {name: export for name, export in DATASET.items() if pictured or name != "picture"}
+    names = [name for name, field in table.model_fields.items() if _is_option(kinds_of(field))]
+    rows = {name: options.ROW for name in names if Values in kinds_of(table.model_fields[name])}
+
+    @options.takes(options.keys(table, *names, **rows), *([_BODY] * has_body), _MOTIONS, before="restitution")
+    @options.takes(options.SIZES if has_body else {"units": (options.RecordUnits, None)})
+    @options.takes({"out": (Annotated[list[str] | None, options.out(exports)], None)}, before="as_json")
+    def command(
+        context: typer.Context,
+        restitution: options.Restitutions = None,
+        sets: options.Set = None,
+        friction: options.Friction = None,
+        threads: options.Threads = None,
+        as_json: options.AsJson = False,
+    ) -> None:
+        from rocking.cli.arguments import Arguments
+        from rocking.cli.study import TABLES, motions_of, of_body, problem_in, problem_of
+
+        files, length = Exports.of(context.params["out"], exports), None
+        first = context.params["body"] if has_body else next(iter(context.params["record"] or ()), None)
+        if (problem := problem_in(context, first, own)) is None:
+            arguments = Arguments(context, *TABLES, own)
+            length, laws = arguments.length, restitution or ["ked"]
+            stated = arguments.table(own, arguments.values(table))
+            motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
+            if has_body:
+                problem = of_body(arguments, kind, stated, laws, motions)
+            else:
+                problem = problem_of(kind, arguments, motions, restitution={"models": laws}, **{own: stated})
+        if (total := math.prod(problem.document.sizes)) > _MOST:
+            raise InvalidValueError(
+                f"there must be at most {_MOST} histories, got {total}; rocking campaign has no limit"
+            )
+        with bar("histories", total, quiet=as_json) as progress:
+            dataset = problem.answer(progress, threads)
+        deliver(HistoriesAnswer(problem, dataset, length or "m"), files, as_json=as_json)
+
+    return command
+
+
+def _is_option(kinds: list[Any]) -> bool:
+    """Return whether an option can state a key: it is no table, but for a row of numbers."""
+    return not any(isinstance(kind, type) and issubclass(kind, BaseModel) and kind is not Values for kind in kinds)
+
+
+@dataclass(frozen=True, eq=False)
+class HistoriesAnswer:
+    """The histories of a study."""
+
+    problem: "StudyProblem"
+    dataset: "xr.Dataset"
+    length: str  # unit of lengths
+
+    def draw(self) -> Any:
+        return self.problem.document.plot(_Finished(self.problem, self.dataset), None)
+
+    def answer(self) -> Answer:
+        """Return every history, and the share of each mode."""
+        dataset = self.dataset
+        return Answer({
+            "restitution": list(self.problem.restitutions),
+            "gravity": self.problem.settings.gravity,
+            **{str(name): dataset[name].values.tolist() for name in (*dataset.coords, *dataset.data_vars)},
+            "modes": mode_shares(dataset["mode"].values),
+            "contact": contact_words(lost_contact(dataset)),
+        })  # fmt: skip
+
+    def show(self, page: Page) -> None:
+        from rocking.cli.study import source_lines, subject_lines
+        from rocking.motions.summary import summaries_of
+
+        problem, answer = self.problem, self.answer()
+        if len(problem.bodies) == 1:
+            page.facts(subject_lines(problem, Display(self.length)))
+        page.facts([("restitution", ", ".join(answer["restitution"]))])
+        page.facts(source_lines(summaries_of(problem.kept_motions)))
+        page.line(
+            f"histories:    {' x '.join(f'{size} {name}' for name, size in self.dataset['mode'].sizes.items())}\n"
+        )
+        page.rows(answer["modes"], ("mode", "count", "share"), dense=False)
+        page.warn(filter(None, [answer["contact"]]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Finished:
+    """Histories as the picture of a study takes them."""
+
+    problem: "StudyProblem"
+    histories: "xr.Dataset"
+
+    def dataset(self, restitution: str | None) -> "xr.Dataset":
+        """Return the histories with one restitution, the first by default."""
+        labels = list(self.problem.restitutions)
+        label = restitution or labels[0]
+        one = self.histories.isel(restitution=labels.index(label), drop=True) if len(labels) > 1 else self.histories
+        return one.assign_attrs(restitution=label)
