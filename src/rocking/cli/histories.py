@@ -44,9 +44,8 @@ def command_of(kind: str) -> Callable[..., None]:
     pictured = question.plot is not StudyQuestion.plot
     exports = {name: export for name, export in DATASET.items() if pictured or name != "picture"}
     names = [name for name, field in table.model_fields.items() if _is_option(kinds_of(field))]
-    rows = {name: options.ROW for name in names if Values in kinds_of(table.model_fields[name])}
 
-    @options.takes(options.keys(table, *names, **rows), *([_BODY] * has_body), _MOTIONS, before="restitution")
+    @options.takes(options.keys(table, *names), *([_BODY] * has_body), _MOTIONS, before="restitution")
     @options.takes(options.SIZES if has_body else {"units": (options.RecordUnits, None)})
     @options.takes({"out": (Annotated[list[str] | None, options.out(exports)], None)}, before="as_json")
     def command(

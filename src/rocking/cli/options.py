@@ -12,7 +12,7 @@ from rocking.bodies.formats.schema import BLOCK_KEYS, BlockTable
 from rocking.cli import completion
 from rocking.conventions import UNITS
 from rocking.spec.documents.prediction import PredictTable
-from rocking.spec.fields import kinds_of, meaning_and_unit
+from rocking.spec.fields import Values, kinds_of, meaning_and_unit
 from rocking.spec.motion_tables import ComponentsTable
 from rocking.spec.settings_tables import StudySettingsTable
 
@@ -52,7 +52,7 @@ def keys(
         field = table.model_fields[name]
         usual = defaults.get(name) if field.default is PydanticUndefined else field.default
         usual = ",".join(map(str, usual)) if isinstance(usual, list) else usual
-        option = key(table, name, more.get(name, ""), rich_help_panel=panel)
+        option = key(table, name, more.get(name, ROW if Values in kinds_of(field) else ""), rich_help_panel=panel)
         of_one = kind or _type_of(field)
         made[name] = Annotated[of_one if usual is not None else of_one | None, option], usual
     return made
