@@ -87,17 +87,20 @@ _KINDS = {"bodies": "Body", "motions": "GroundMotion, Pulse, Mapping"}
 
 
 def _several(name: str, value: Any, kinds: tuple[type, ...]) -> list[Any]:
-    rule = f"{name} must be one or more of {_KINDS[name]}"
+    allowed = f"one or more of {_KINDS[name]}"
     if isinstance(value, kinds):
         return [value]
     if isinstance(value, str) or not isinstance(value, Iterable):
-        raise InvalidValueError(f"{rule}, got {checks.given(name, value)}")
+        checks.of_kind(name, value, kinds, allowed)
     items = list(value)
     if not items:
-        raise InvalidValueError(f"{rule}, got none")
+        raise InvalidValueError("{parameter} must be {allowed}, got none", parameter=name, allowed=allowed)
     for index, item in enumerate(items):
         if not isinstance(item, kinds):
-            raise InvalidValueError(f"{rule}, got {checks.given(name, item, f' at index {index}')}")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got {shown}", parameter=name, allowed=allowed, value=item,
+                shown=checks.given(name, item, f" at index {index}"),
+            )  # fmt: skip
     return items
 
 

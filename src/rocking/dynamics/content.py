@@ -29,7 +29,9 @@ def fields_of(thing: object) -> dict[str, Any]:
     # without `times` that is a model: what a law multiplies is in the coefficients already
     kind = type(thing)
     if "__dataclass_fields__" not in vars(kind) or _closes_over_something(kind):
-        raise InvalidValueError(f"{_ADVICE}; {full_name(kind)} is no dataclass, or its functions hold other values")
+        raise InvalidValueError(
+            _ADVICE + "; {type} is no dataclass, or its functions hold other values", type=full_name(kind)
+        )
     found = {each.name: getattr(thing, each.name, None) for each in fields(thing)}  # type: ignore[arg-type]
     return {name: _plain(kind, name, value) for name, value in found.items() if name != "times" or _word(value)}
 
@@ -46,7 +48,9 @@ def _plain(kind: type, name: str, value: object) -> Any:
         return [_plain(kind, name, each) for each in value]
     if _word(value):
         return value
-    raise InvalidValueError(f"{_ADVICE}; {name} of {full_name(kind)} is {value!r:.60}")
+    raise InvalidValueError(
+        _ADVICE + "; {field} of {type} is {content}", field=name, type=full_name(kind), content=f"{value!r:.60}"
+    )
 
 
 def _word(value: object) -> bool:

@@ -165,10 +165,15 @@ class SpeedRestitution(ImpactLaw):
     def __post_init__(self) -> None:
         speeds = checks.finite("at", self.at, "rad/s", least=2)
         if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
-            raise InvalidValueError(f"at must be speeds >= 0 that increase [rad/s], got {speeds[:4].tolist()}")
+            raise InvalidValueError(
+                parameter="at", allowed="speeds >= 0 that increase [rad/s]", value=speeds[:4].tolist()
+            )
         factors = checks.finite("factors", self.factors, least=2)
         if factors.size != speeds.size:
-            raise InvalidValueError(f"factors must be as many as the speeds, {speeds.size}, got {factors.size}")
+            raise InvalidValueError(
+                "{parameter} must be as many as the speeds, {speeds}, got {count}", parameter="factors",
+                speeds=speeds.size, count=factors.size,
+            )  # fmt: skip
         object.__setattr__(self, "at", speeds)
         object.__setattr__(self, "factors", _factors(factors))
 
@@ -201,7 +206,9 @@ class DrawnRestitution(ImpactLaw):
         object.__setattr__(self, "seed", checks.whole("seed", self.seed, 0, _MASK))
         cut = checks.finite("cut", self.cut, shape=(2,))
         if not np.all((cut >= 0.0) & (cut < 1.0)):
-            raise InvalidValueError(f"cut must be two probabilities in [0, 1), left and right, got {self.cut!r:.60}")
+            raise InvalidValueError(
+                parameter="cut", allowed="two probabilities in [0, 1), left and right", value=self.cut
+            )
         object.__setattr__(self, "cut", (float(cut[0]), float(cut[1])))
         object.__setattr__(self, "factors", quantiles)
         object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.shape[-1]))
@@ -368,13 +375,19 @@ def _by_side(values: Any) -> FloatArray:
     """Quantiles as a row, or as two where the sides differ, that of the right first, of which one may exceed 1."""
     if isinstance(values, Mapping):
         if set(values) != set(FEET):
-            raise InvalidValueError(f'factors by side are {{"left": .., "right": ..}}, got {values!r:.60}')
+            raise InvalidValueError(
+                "{parameter} by side are {allowed}, got {value}", parameter="factors",
+                allowed='{"left": .., "right": ..}', value=values,
+            )  # fmt: skip
         values = [values["right"], values["left"]]
     elif not (isinstance(values, np.ndarray) and values.ndim == 2 and len(values) == 2):
         return _factors(values)
     right, left = (_factors(row, _MOST_BY_SIDE) for row in values)
     if right.size != left.size:
-        raise InvalidValueError(f"factors must be as many for both sides, got {left.size} left and {right.size} right")
+        raise InvalidValueError(
+            "{parameter} must be as many for both sides, got {left} left and {right} right", parameter="factors",
+            left=left.size, right=right.size,
+        )  # fmt: skip
     if np.array_equal(right, left) and right[-1] <= 1.0:
         return right
     both = np.stack([right, left])

@@ -14,6 +14,7 @@ from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.motions.components import Components, components_of, in_plane
 
 if TYPE_CHECKING:
@@ -48,10 +49,16 @@ def row_of(name: str, values: Any) -> FloatArray:
     """Return one number or several as a row of finite numbers."""
     row = np.atleast_1d(checks.real_array(name, values))
     if row.ndim != 1 or not row.size:
-        raise InvalidValueError(f"{name} must be one number or a row of numbers, got shape {row.shape}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter=name,
+            allowed="one number or a row of numbers", shape=row.shape,
+        )  # fmt: skip
     bad = np.flatnonzero(~(np.abs(row) <= 1e6))
     if bad.size:
-        raise InvalidValueError(f"{name} must be finite and within 1e6, got {row[bad[0]]:g} at index {bad[0]}")
+        raise InvalidValueError(
+            "{parameter} must be finite and within 1e6, got {value} at index {index}", parameter=name,
+            allowed=Range(-1e6, 1e6), value=float(row[bad[0]]), index=int(bad[0]),
+        )  # fmt: skip
     return row
 
 
@@ -132,7 +139,7 @@ class Mechanics(ABC):
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
         """Return what computes the rows of a study."""
-        raise InvalidValueError(f"studies do not take {self.subject}")
+        raise InvalidValueError("studies do not take {subject}", subject=self.subject)
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
         """Return a body with its restitution, as the rows of a study take it."""
@@ -167,7 +174,7 @@ class Mechanics(ABC):
             raise InvalidValueError("give either start or rotation and angular_velocity, got both")
         kind = self.start_class()
         if not isinstance(start, kind):
-            raise InvalidValueError(f"start must be a {kind.__name__}(...), got {start!r:.60}")
+            raise InvalidValueError(parameter="start", allowed=f"a {kind.__name__}(...)", value=start)
         return start
 
     def split(
@@ -185,8 +192,9 @@ class Mechanics(ABC):
         for name, value in options.items():
             if name not in allowed and not _changes_nothing(name, value):
                 raise InvalidValueError(
-                    f"{name} does not apply to {self.subject}, got {value!r:.60}; options: {', '.join(sorted(allowed))}"
-                )
+                    "{parameter} does not apply to {subject}, got {value}; options: {options}", parameter=name,
+                    value=value, subject=self.subject, options=", ".join(sorted(allowed)),
+                )  # fmt: skip
 
 
 class PlaneMechanics(Mechanics):

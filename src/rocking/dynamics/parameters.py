@@ -172,8 +172,7 @@ class RockingParameters:
         InvalidValueError
             If it is no body, or a coefficient is negative, not finite, or would create energy.
         """
-        if not isinstance(body, Body):
-            raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {checks.given('body', body)}")
+        checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients: Mapping[Foot, float]
@@ -267,6 +266,7 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], st
     """Return the coefficients for landing left and right, and their label [-]; None leaves them to complementarity."""
     if is_none(restitution):
         raise InvalidValueError(
-            f"restitution={restitution!r} leaves impacts to complementarity, which needs friction=: give it, or a model"
-        )
+            "{parameter}={value} leaves impacts to complementarity, which needs friction=: give it, or a model",
+            parameter="restitution", value=restitution,
+        )  # fmt: skip
     return _coefficients_of(restitution, body)

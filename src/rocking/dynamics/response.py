@@ -192,7 +192,10 @@ class Response(ResponseBase):
 
         parameters, run = self.parameters, self.trajectory
         if parameters.law.kind:
-            raise InvalidValueError(f"restitution must be constant where the body may fly, got {parameters.label}")
+            raise InvalidValueError(
+                "{parameter} must be constant where the body may fly, got {law}", parameter="restitution",
+                law=parameters.label,
+            )  # fmt: skip
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
         for mu in (10.0, 3.0, 1.0) if friction == math.inf else (friction,):
             with warnings.catch_warnings():  # what was asked has been doubted

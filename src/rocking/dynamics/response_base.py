@@ -236,9 +236,13 @@ class ResponseBase(Exported):
 
         suffix = Path(path).suffix.lower()
         if suffix not in {".html", ".gif"}:
-            raise InvalidValueError(f"an animation is .html or .gif, got {Path(path).name!r}")
+            raise InvalidValueError(
+                "an animation is .html or .gif, got {value}", parameter="path", value=Path(path).name
+            )
         if suffix == ".html" and options:
-            raise InvalidValueError(f"{', '.join(options)}: these are for films (.gif); the page has its own controls")
+            raise InvalidValueError(
+                "{options}: these are for films (.gif); the page has its own controls", options=", ".join(options)
+            )
         response: Any = self
         return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)
 
@@ -281,5 +285,6 @@ def check_samples(count: float) -> None:
     """Refuse more samples than memory should hold."""
     if not count <= _MOST_SAMPLES:
         raise InvalidValueError(
-            f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
-        )
+            "the response would have {samples:.3g} samples, more than {limit:.0e}", samples=count, limit=_MOST_SAMPLES,
+            hint="a shorter duration, please",
+        )  # fmt: skip

@@ -44,13 +44,17 @@ class Rows:
         given = _UNTOLD | SIDES_UNTOLD | values
         if set(given) != set(ROWS):
             odd = sorted(set(given) ^ set(ROWS))
-            raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
+            raise InvalidValueError(
+                "rows have {names}; missing or unknown: {others}", names=", ".join(ROWS), others=", ".join(odd)
+            )
         try:
             rows = {name: _repeated(given[name], count, np.float64) for name in ROWS}
             streams = np.arange(count) if stream is None else stream
             return cls(rows, _repeated(motion, count, np.int64), _repeated(streams, count, np.int64))
         except (TypeError, ValueError) as error:
-            raise InvalidValueError(f"rows must be numbers, or arrays of {count}: {error}") from error
+            raise InvalidValueError(
+                "rows must be numbers, or arrays of {count}: {reason}", count=count, reason=str(error)
+            ) from error
 
     def __len__(self) -> int:
         return int(self.motion.size)

@@ -140,7 +140,7 @@ class CompiledEngine:
         """Return the compiled module, or say what it takes."""
         found = self.built()
         if found is None:
-            raise MissingExtraError(f'{self.not_built}; engine="reference" gives the same results, slowly')
+            raise MissingExtraError(self.not_built, hint='engine="reference" gives the same results, slowly')
         return found
 
     def chosen(self, asked: str) -> str:
@@ -161,7 +161,7 @@ class CompiledEngine:
         """Return what it will use: what the environment variable ROCKING_ISA names, or the fastest there is."""
         known, wanted = self.instruction_sets(), os.environ.get("ROCKING_ISA", "")
         if wanted and wanted not in known:
-            raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
+            raise InvalidValueError(parameter="ROCKING_ISA", allowed=f"one of {', '.join(known)}", value=wanted)
         return wanted or known[0]
 
     @property
@@ -190,7 +190,9 @@ def thread_count(threads: object) -> int:
 def check_progress(progress: object) -> None:
     """Refuse what cannot be told how far the work is."""
     if progress is not None and not callable(progress):
-        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
+        raise InvalidValueError(
+            parameter="progress", allowed="a function of the histories done, or None", value=progress
+        )
 
 
 def processors() -> int:

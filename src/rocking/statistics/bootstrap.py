@@ -59,9 +59,10 @@ def resample(
         raise InvalidValueError("kind must not be 'clusters' unless clusters= names the record of each outcome")
     if counts.scarcity:
         raise InvalidValueError(
-            f"kind must not be 'clusters' for {counts.scarcity}: drawn again they repeat one another, and the interval"
-            " would be far too narrow; take more records, or the profile interval with that caution"
-        )
+            "{parameter} must not be 'clusters' for {clusters}: drawn again they repeat one another, and the interval "
+            "would be far too narrow", parameter="kind", value="clusters", clusters=counts.scarcity,
+            hint="take more records, or the profile interval with that caution",
+        )  # fmt: skip
     failures, trials = np.split(_drawn_clusters(counts, repetitions, seed) @ counts.distinct_clusters[0], 2, axis=1)
     return failures, trials
 

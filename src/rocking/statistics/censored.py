@@ -38,7 +38,7 @@ class CensoredFit:
 def fit_moments(levels: FloatArray) -> CensoredFit:
     """Return mean and standard deviation (n - 1) of the logarithms, of levels that are all known, at least two."""
     if np.size(levels) < 2:
-        raise InvalidValueError(f"a dispersion needs at least 2 crossings, got {np.size(levels)}")
+        raise InvalidValueError("a dispersion needs at least 2 crossings, got {count}", count=np.size(levels))
     logs = np.log(checks.positive_array("levels", levels))
     return CensoredFit(
         float(np.exp(logs.mean())), float(logs.std(ddof=1)), int(logs.size), 0, "moments of the logarithms"
@@ -52,10 +52,13 @@ def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
     logs = np.log(checks.positive_array("levels", levels))
     known, bounds = logs[~censored], logs[censored]
     if known.size < 2:
-        raise InvalidValueError(f"a dispersion needs at least 2 crossings, got {known.size} of {logs.size} motions")
+        raise InvalidValueError(
+            "a dispersion needs at least 2 crossings, got {count} of {motions} motions", count=known.size,
+            motions=logs.size,
+        )  # fmt: skip
     centre, spread = float(known.mean()), float(known.std())
     if spread == 0.0 and not np.any(bounds > known[0]):
-        raise InvalidValueError(f"a dispersion needs crossings that differ, got {known.size} equal ones")
+        raise InvalidValueError("a dispersion needs crossings that differ, got {count} equal ones", count=known.size)
     spread = spread or float(bounds.max() - known[0])
     h, d = _maximum((known - centre) / spread, (bounds - centre) / spread)
     median = math.exp(centre + spread * d / h)
@@ -110,7 +113,10 @@ def _maximum(known: FloatArray, bounds: FloatArray) -> tuple[float, float]:
     gradient, _ = _slopes(at, known, bounds)
     if float(np.abs(gradient).max()) < 1e-6 * (known.size + bounds.size):
         return float(at[0]), float(at[1])
-    raise InvalidValueError(f"no lognormal distribution fits {known.size} crossings and {bounds.size} bounds")
+    raise InvalidValueError(
+        "no lognormal distribution fits {crossings} crossings and {bounds} bounds", crossings=known.size,
+        bounds=bounds.size,
+    )  # fmt: skip
 
 
 def _likelihood(at: FloatArray, known: FloatArray, bounds: FloatArray) -> float:

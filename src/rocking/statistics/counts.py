@@ -1,5 +1,6 @@
 """Outcomes checked and counted: how many of how many trials failed at each level."""
 
+import math
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 
 NARROWEST = 1e-9  # least relative distance between the lowest and the highest level [-]
 LEAST_CLUSTERS = 5  # distinct clusters below which drawing them again says nothing about clusters that were not seen
@@ -148,7 +150,10 @@ def count_outcomes(
     known: dict[Hashable, int] = {}
     cluster = np.array([known.setdefault(name, len(known)) for name in clusters], dtype=np.int64)
     if cluster.size != level.size:
-        raise InvalidValueError(f"clusters must name one cluster a level: {level.size}, got {cluster.size}")
+        raise InvalidValueError(
+            "{parameter} must name one cluster a level: {levels}, got {count}", parameter="clusters", levels=level.size,
+            count=cluster.size,
+        )  # fmt: skip
     tables = [np.zeros((len(known), distinct.size)) for _ in pooled]
     for table, values in zip(tables, (failed, number), strict=True):
         np.add.at(table, (cluster, where), values)
@@ -193,7 +198,10 @@ def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) 
 def _row(name: str, values: Any) -> FloatArray:
     array = checks.real_array(name, values)
     if array.ndim != 1 or not array.size:
-        raise InvalidValueError(f"{name} must be one row of at least one number, got shape {array.shape}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter=name,
+            allowed="one row of at least one number", shape=array.shape,
+        )  # fmt: skip
     return array
 
 
@@ -203,14 +211,18 @@ def _whole(name: str, values: Any, size: int, least: float) -> FloatArray:
     )
     array = _row(name, np.asarray(values, dtype=np.float64) if yes_or_no else values)
     if array.size != size:
-        raise InvalidValueError(f"{name} must have one number a level: {size}, got {array.size}")
+        raise InvalidValueError(
+            "{parameter} must have one number a level: {levels}, got {count}", parameter=name, levels=size,
+            count=array.size,
+        )  # fmt: skip
     bad = ~(np.isfinite(array) & (array >= least) & (array == np.round(array)) & (array < 2.0**53))
     if bad.any():
         first = int(np.argmax(bad))
         cause = "leave out levels without trials" if least > array[first] == 0.0 else "a fraction or a percentage?"
         raise InvalidValueError(
-            f"{name} must be whole numbers >= {least:g}, got {array[first]:g} at index {first}; {cause}"
-        )
+            "{parameter} must be whole numbers {allowed}, got {value} at index {index}", parameter=name,
+            allowed=Range(least, math.inf), value=float(array[first]), index=first, hint=cause,
+        )  # fmt: skip
     return array
 
 
@@ -219,17 +231,19 @@ def _none_above(name: str, part: FloatArray, whole: FloatArray, of: str = "trial
     if bad.any():
         first = int(np.argmax(bad))
         raise InvalidValueError(
-            f"{name} must not exceed {of}, got {part[first]:g} of {whole[first]:g} at index {first}; is {of}= missing?"
-        )
+            "{parameter} must not exceed {of}, got {value} of {limit:g} at index {index}; is {of}= missing?",
+            parameter=name, value=float(part[first]), of=of, limit=float(whole[first]), index=first,
+        )  # fmt: skip
 
 
 def check_spread(levels: FloatArray) -> None:
     """Refuse ascending levels that differ by rounding only."""
     if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
         raise InvalidValueError(
-            f"levels must differ by more than {NARROWEST:g} of themselves in all, got {levels[0]:.17g} to"
-            f" {levels[-1]:.17g}; rounding of one and the same level?"
-        )
+            "{parameter} must differ by more than {smallest:g} of themselves in all, got {low:.17g} to {high:.17g}",
+            parameter="levels", smallest=NARROWEST, low=float(levels[0]), high=float(levels[-1]),
+            hint="rounding of one and the same level?",
+        )  # fmt: skip
 
 
 def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cluster: IntArray) -> list[Counts]:

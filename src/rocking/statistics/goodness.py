@@ -69,7 +69,10 @@ def goodness_of(
 ) -> Goodness:
     """Return how well a curve agrees with the outcomes."""
     if groups < 2 or repetitions < 20:
-        raise InvalidValueError(f"groups must be >= 2 and repetitions >= 20, got {groups} and {repetitions}")
+        raise InvalidValueError(
+            "groups must be >= 2 and repetitions >= 20, got {groups} and {repetitions}", groups=groups,
+            repetitions=repetitions,
+        )  # fmt: skip
     position = scale.position(counts.levels)
     own = ndtr(curves.theta[:, :1] + curves.theta[:, 1:] * position)
     failures, trials = resample(counts, own[0], "parametric", repetitions, seed)
@@ -77,8 +80,9 @@ def goodness_of(
     fitted = np.flatnonzero(drawn.found)
     if fitted.size < 0.5 * repetitions:
         raise InvalidValueError(
-            f"half of {repetitions} repetitions must be refitted, got {fitted.size}; too few trials"
-        )
+            "half of {repetitions} repetitions must be refitted, got {fitted}", repetitions=repetitions,
+            fitted=fitted.size, hint="too few trials",
+        )  # fmt: skip
     theta, failures, trials = drawn.theta[fitted], failures[fitted], trials[fitted]
     member = group_of(counts.trials, groups)
     simulated = _statistics(failures, trials, ndtr(theta[:, :1] + theta[:, 1:] * position), member)

@@ -74,14 +74,18 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     count = int(np.size(x))
     if count < 3 or np.shape(x) != np.shape(y):
         raise InvalidValueError(
-            f"a line needs at least 3 points, got {count}; too few rocked, not barely, and stayed standing?"
-        )
+            "a line needs at least 3 points, got {count}", count=count,
+            hint="too few rocked, not barely, and stayed standing?",
+        )  # fmt: skip
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise InvalidValueError("points of a line must be finite, got NaN or infinity")
     dx, dy = x - x.mean(), y - y.mean()
     spread, total = float(dx @ dx), float(dy @ dy)
     if not spread > (1e-12 * max(1.0, float(np.abs(x).max()))) ** 2 * count:
-        raise InvalidValueError(f"a line needs points at different places, got {count} at {float(x.mean()):g}")
+        raise InvalidValueError(
+            "a line needs points at different places, got {count} at {position:g}", count=count,
+            position=float(x.mean()),
+        )  # fmt: skip
     slope = float(dx @ dy) / spread  # Eq. 218
     residuals = dy - slope * dx
     left = float(residuals @ residuals)

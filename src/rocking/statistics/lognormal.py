@@ -178,7 +178,7 @@ class LognormalFit:
     def _fitted(self) -> tuple[LogScale, FittedCurves]:
         """The curve in its scale, for what cannot do without."""
         if self.curves is None or self.scale is None:
-            raise InvalidValueError(f"a fragility curve is needed, got none: {self.verdict}")
+            raise InvalidValueError("a fragility curve is needed, got none: {verdict}", verdict=self.verdict)
         return self.scale, self.curves
 
     @property
@@ -228,8 +228,9 @@ class LognormalFit:
         if not 0.0 < level < np.inf:
             dispersion = float(np.exp(log_dispersion(curves.theta, scale)[0]))
             raise InvalidValueError(
-                f"fractile {probability:g} must be a float64, got {level}; the dispersion is {dispersion:.3g}"
-            )
+                "fractile {probability:g} must be a float64, got {level}; the dispersion is {dispersion:.3g}",
+                probability=probability, level=level, dispersion=dispersion,
+            )  # fmt: skip
         return level
 
     def interval(
@@ -477,9 +478,9 @@ def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
     separation = separation_of(counts)
     if chosen == "maximum-likelihood" and separation is not Separation.OVERLAP:
         raise InvalidValueError(
-            f'method must not be "maximum-likelihood" for these outcomes, whose likelihood has no maximum among'
-            f" lognormal curves; {separation.value}"
-        )
+            '{parameter} must not be "maximum-likelihood" for these outcomes, whose likelihood has no maximum among '
+            "lognormal curves", parameter="method", value=chosen, hint=separation.value,
+        )  # fmt: skip
     if separation is not Separation.OVERLAP and not separation.step:
         return LognormalFit(counts, separation, "none")
     scale = LogScale.of(counts)
@@ -533,8 +534,9 @@ def _parameter(parameter: str | float) -> float | None:
     if isinstance(parameter, str):
         if parameter not in {"median", "dispersion"}:
             raise InvalidValueError(
-                f"parameter must be 'median', 'dispersion' or the probability of a fractile, got {parameter!r}"
-            )
+                parameter="parameter", allowed="'median', 'dispersion' or the probability of a fractile",
+                value=parameter,
+            )  # fmt: skip
         return 0.0 if parameter == "median" else None
     return _variate(parameter)
 

@@ -77,9 +77,10 @@ def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -
     same = any(np.array_equal(one, other) for one, other in pairwise(reached))
     if same or any(fit.method != "maximum-likelihood" for fit in fits):
         raise InvalidValueError(
-            "method must not be 'common-dispersion' unless all states overlap with what is below them, and some trials"
-            f" end in each; {' '.join(f'state {k}: {fit.verdict}' for k, fit in enumerate(fits, 1))}"
-        )
+            "{parameter} must not be 'common-dispersion' unless all states overlap with what is below them, and some "
+            "trials end in each; {verdicts}", parameter="method", value="common-dispersion",
+            verdicts=" ".join(f"state {k}: {fit.verdict}" for k, fit in enumerate(fits, 1)),
+        )  # fmt: skip
     scale = LogScale.of(fits[0].counts)
     ended = -np.diff(np.vstack([trials, reached, np.zeros_like(trials)]), axis=0)
     best = maximise(OrderedProbit(scale.position(levels), ended), _start(fits, scale))
@@ -164,7 +165,7 @@ class OrderedFit:
         """Return the probabilities of no rocking, rocking and overturned at levels >= 0, along the last axis [-]."""
         # beyond a crossing overturning is held to the probability of rocking at least
         if self.rocked is None or self.overturned is None:
-            raise InvalidValueError(f"two fragility curves are needed, got fewer: {self.verdict}")
+            raise InvalidValueError("two fragility curves are needed, got fewer: {verdict}", verdict=self.verdict)
         level, _ = levels_of(im)
         rocked = lognormal_probability(level, *self.rocked)
         worst = np.minimum(lognormal_probability(level, *self.overturned), rocked)

@@ -6,6 +6,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 
 _ROUNDING = 9  # digits of a rank: 0.28 * 25 is 7.000000000000001
 
@@ -51,7 +52,10 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
     """
     share = np.asarray(probabilities, dtype=np.float64)
     if not ((share >= 0.0) & (share <= 1.0)).all():
-        raise InvalidValueError(f"probabilities must be within [0, 1], got {share.min():g} to {share.max():g}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {low:g} to {high:g}", parameter="probabilities",
+            allowed=Range(0.0, 1.0), low=float(share.min()), high=float(share.max()),
+        )  # fmt: skip
     ordered = np.moveaxis(np.sort(np.asarray(values, dtype=np.float64), axis=axis), axis, 0)  # NaN last
     last = (~np.isnan(ordered)).sum(axis=0) - 1
     if not len(ordered):

@@ -10,6 +10,7 @@ from scipy.special import expit, xlogy
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.statistics.counts import share_interval
 from rocking.statistics.quantiles import quantiles
 
@@ -83,18 +84,21 @@ class Forecasts:
         names = np.arange(given.size) if clusters is None else np.asarray(clusters)
         if given.ndim != 1 or not given.shape == happened.shape == names.shape:
             raise InvalidValueError(
-                "probability, outcome and clusters must be rows of one length, got shapes "
-                f"{given.shape}, {happened.shape}, {names.shape}"
-            )
+                "probability, outcome and clusters must be rows of one length, got shapes {probability}, {outcome}, "
+                "{clusters}", probability=given.shape, outcome=happened.shape, clusters=names.shape,
+            )  # fmt: skip
         known = ~(np.isnan(given) | np.isnan(happened))
         self.left_out = int((~known).sum())
         self.probability, self.outcome = given[known], happened[known]
         if not known.any():
-            raise InvalidValueError(f"no outcome is known of {given.size}: there is nothing to score")
+            raise InvalidValueError("no outcome is known of {count}: there is nothing to score", count=given.size)
         if (bad := (self.probability < 0.0) | (self.probability > 1.0)).any():
-            raise InvalidValueError(f"probability must be from 0 to 1, got {self.probability[bad][0]:g}; in per cent?")
+            raise InvalidValueError(
+                parameter="probability", allowed=Range(0.0, 1.0), value=float(self.probability[bad][0]),
+                hint="in per cent?",
+            )  # fmt: skip
         if (bad := (self.outcome != 0.0) & (self.outcome != 1.0)).any():
-            raise InvalidValueError(f"outcome must be 1, 0 or NaN, got {self.outcome[bad][0]:g}")
+            raise InvalidValueError(parameter="outcome", allowed="1, 0 or NaN", value=float(self.outcome[bad][0]))
         self.cluster: IntArray = np.unique(names[known], return_inverse=True)[1]
         count = int(self.cluster.max()) + 1
         draws = checks.within("repetitions", repetitions, 1, 10**6)
@@ -272,8 +276,9 @@ def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
     )
     if table.ndim != 2 or not table.shape[0] == happened.size == names.size:
         raise InvalidValueError(
-            f"features must be a row for each outcome, got shape {table.shape} for {happened.size} outcomes"
-        )
+            "{parameter} must be a row for each outcome, got shape {shape} for {outcomes} outcomes",
+            parameter="features", shape=table.shape, outcomes=happened.size,
+        )  # fmt: skip
     if not np.isfinite(table).all():
         raise InvalidValueError("features must be finite; is one the logarithm of zero?")
     probability = np.full(happened.size, np.nan)

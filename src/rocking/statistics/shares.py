@@ -37,7 +37,10 @@ class SaltelliDesign:
         count = checks.whole("count", self.count, 2, 1 << 24)
         if count & (count - 1):
             near = 1 << count.bit_length()
-            raise InvalidValueError(f"count must be a power of two, such as {near // 2} or {near}, got {count}")
+            raise InvalidValueError(
+                "{parameter} must be a power of two, such as {below} or {above}, got {value}", parameter="count",
+                value=count, below=near // 2, above=near,
+            )  # fmt: skip
         checks.whole("numbers that the inputs take", sum(self.inputs.values()), 0, MOST // 2)
 
     @property
@@ -66,7 +69,10 @@ class SaltelliDesign:
         found = found[:, None] if found.ndim == 1 else found
         rows = (2 + len(self.inputs)) * self.count
         if found.ndim != 2 or len(found) != rows:
-            raise InvalidValueError(f"answers must be one for each of {rows} points, got shape {found.shape}")
+            raise InvalidValueError(
+                "{parameter} must be one for each of {points} points, got shape {shape}", parameter="answers",
+                points=rows, shape=found.shape,
+            )  # fmt: skip
         stacked = found.reshape(2 + len(self.inputs), self.count, -1)
         stacked = stacked[:, ~np.isnan(stacked).any(axis=(0, 2))]
         random, kept = np.random.default_rng(self.seed), stacked.shape[1]

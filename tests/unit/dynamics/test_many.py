@@ -295,7 +295,7 @@ def test_starts_of_one_history_and_of_many_have_the_same_words() -> None:
     assert "start" not in rk.simulate_many(STATUE, MOTIONS[0], 0.9).sizes
     for how, says in (
         ({"start": rk.dynamics.Start(height=0.1)}, "without friction= a start has rotation and angular_velocity alone"),
-        ({"start": [start, 0.1]}, r"start must be a Start\(...\) or a list of these, got 0.1 at index 1"),
+        ({"start": [start, 0.1]}, r"start\[1\] must be a Start\(...\) or a list of these, got 0.1"),
         ({"start": []}, "start must be at least one"),
         ({"start": start, "rotation": 0.1}, "either start or rotation and angular_velocity"),
         ({"rotation": [0.1, 2.0]}, "rotation must be in"),

@@ -190,9 +190,9 @@ def rocking_start(start: Start) -> tuple[float, float]:
     """Return theta [rad] and theta' [rad/s] of a start; one that lifts or pushes the body along is refused."""
     if not start.rocks_alone:
         raise InvalidValueError(
-            "without friction= a start has rotation and angular_velocity alone, since the body neither slides nor "
-            f"flies, got {start!r}"
-        )
+            "without friction= a {parameter} has rotation and angular_velocity alone, since the body neither slides "
+            "nor flies, got {value}", parameter="start", value=start,
+        )  # fmt: skip
     return start.rotation, start.angular_velocity
 
 
@@ -208,8 +208,10 @@ def starts_of(start: Any, rotation: Any = 0.0, angular_velocity: Any = 0.0) -> l
         raise InvalidValueError("start must be at least one Start(...), got none")
     for k, each in enumerate(several):
         if not isinstance(each, Start):
-            where = "" if each is start else f" at index {k}"
-            raise InvalidValueError(f"start must be a Start(...) or a list of these, got {each!r:.60}{where}")
+            raise InvalidValueError(
+                parameter="start" if each is start else f"start[{k}]", allowed="a Start(...) or a list of these",
+                value=each,
+            )  # fmt: skip
     return several
 
 
@@ -222,8 +224,8 @@ def _starts_of_numbers(rotation: Any, angular_velocity: Any) -> list[Start]:
     if any(row.ndim != 1 or not row.size for row in rows) or len(set(sizes) - {(1,)}) > 1:
         raise InvalidValueError(
             "rotation and angular_velocity must be numbers, or rows of one length: one entry for each start, got "
-            f"shapes {sizes[0]} and {sizes[1]}"
-        )
+            "shapes {rotation} and {angular_velocity}", rotation=sizes[0], angular_velocity=sizes[1],
+        )  # fmt: skip
     return [Start(*values) for values in zip(*(row.tolist() for row in np.broadcast_arrays(*rows)), strict=True)]
 
 

@@ -106,8 +106,8 @@ class RowsWithContact:
         if not isinstance(law, ConstantRestitution):
             raise InvalidValueError(
                 "with friction a history has one coefficient of restitution, or one that is drawn once for it, got "
-                f"{type(law).__name__}"
-            )
+                "{law}", parameter="restitution", law=type(law).__name__,
+            )  # fmt: skip
         self.motions, self.settings = motions, settings
 
     @cached_property

@@ -363,9 +363,9 @@ def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple
         return None
     if isinstance(restitution, ImpactLaw):
         raise InvalidValueError(
-            f"restitution must be a model, a name or a number here, got {type(restitution).__name__}: "
-            "laws that change from impact to impact are for simulate()"
-        )
+            "{parameter} must be {allowed}, got {law}: laws that change from impact to impact are for simulate()",
+            parameter="restitution", allowed="a model, a name or a number here", law=type(restitution).__name__,
+        )  # fmt: skip
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
     return parameters.left.coefficient, parameters.right.coefficient
 
@@ -383,7 +383,10 @@ def _segments(motion: object, base: PlaneBase, gravity: float, duration: float |
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
         return ground_at_rest(length / max(1, math.ceil(length / (FINE * slow) - 1e-9)), length)
     if not isinstance(motion, (GroundMotion, Pulse)):
-        raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {checks.given('motion', motion)}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {shown}", parameter="motion", allowed="a GroundMotion, a pulse or None",
+            value=motion, shown=checks.given("motion", motion),
+        )  # fmt: skip
     length = length_of(motion, slow, duration)
     segments = motion.segments()
     return followed(segments, length, math.ceil(segments.step / (FINE * slow)), motion)

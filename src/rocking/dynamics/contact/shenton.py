@@ -92,7 +92,10 @@ def regime_at_start(
     ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(base.size / gravity)))
     found = choose(base, ContactState(), ground, mu)
     if not isinstance(found, NextMode):
-        raise InvalidValueError(f"friction and acceleration must leave one contact force, got {mu:g} and {push:g}")
+        raise InvalidValueError(
+            "friction and acceleration must leave one contact force, got {friction:g} and {acceleration:g}",
+            friction=mu, acceleration=push,
+        )  # fmt: skip
     return found.mode.regime
 
 

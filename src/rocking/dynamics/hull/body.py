@@ -41,9 +41,10 @@ class HullBody:
         object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
         if not self.hull.heights.min() > 0.0:
             raise GeometryError(
-                f"the centre of mass {self.centre.tolist()} m must lie inside the hull of the vertices: it is "
-                f"{-self.hull.heights.min():.3g} m outside; are both in the same axes and unit?"
-            )
+                "the centre of mass {centre} m must lie inside the hull of the vertices: it is {outside:.3g} m outside",
+                parameter="centre", centre=self.centre.tolist(), outside=float(-self.hull.heights.min()),
+                hint="are both in the same axes and unit?",
+            )  # fmt: skip
 
     @classmethod
     def of(cls, solid: Any) -> "HullBody":
@@ -55,9 +56,10 @@ class HullBody:
             solid = solid.matter()[0]
         if not isinstance(solid, Solid):
             raise InvalidValueError(
-                f"with friction a body touches with all its hull: it must be a Solid, or a box or cylinder made of "
-                f"one, got {type(solid).__name__}, of which the base is known alone"
-            )
+                "with friction a body touches with all its hull: it must be {allowed}, got {type}, of which the base "
+                "is known alone", parameter="body", allowed="a Solid, or a box or cylinder made of one",
+                type=type(solid).__name__,
+            )  # fmt: skip
         moments = solid.local_moments
         points = solid.equilibria().hull_vertices - solid.origin
         known = solid.known is not None  # then only these moments are known

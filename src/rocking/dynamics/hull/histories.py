@@ -58,7 +58,9 @@ def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGroun
     for motion in motions:
         rows = motion.coefficients.transpose(0, 2, 1)
         if rows.shape[1] > MOST_POWERS:
-            raise InvalidValueError(f"motions must be polynomials of degree below {MOST_POWERS}; sample them")
+            raise InvalidValueError(
+                "motions must be polynomials of degree below {powers}", powers=MOST_POWERS, hint="sample them"
+            )
         made.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), 3 * rows.shape[1])))
     return made
 
@@ -284,7 +286,7 @@ def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
 def _listed(name: str, values: Any) -> list[Any]:
     several = list(values) if isinstance(values, (list, tuple, np.ndarray)) else [values]
     if not several:
-        raise InvalidValueError(f"{name} must be at least one, got none")
+        raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
     return several
 
 

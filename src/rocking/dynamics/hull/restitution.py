@@ -127,9 +127,9 @@ def law_on_hull(restitution: Any) -> str | float | FixedPosition:
         return float(coefficient)
     if law.label not in ("housner-3d", "ked-3d"):
         raise InvalidValueError(
-            f"restitution of a body in space with friction must be 'housner-3d', 'ked-3d' or a coefficient from 0 to "
-            f"1, got {law.label!r:.60}"
-        )
+            "{parameter} of a body in space with friction must be {allowed}, got {value}", parameter="restitution",
+            allowed="'housner-3d', 'ked-3d' or a coefficient from 0 to 1", value=law.label,
+        )  # fmt: skip
     return law.label
 
 
@@ -168,8 +168,9 @@ class RestitutionOnHull(ConstantRestitution):
         law = None if isinstance(restitution, ImpactLaw) else law_on_hull(restitution)
         if law is None or isinstance(law, FixedPosition):
             raise InvalidValueError(
-                f"a body in space takes a model or one coefficient in a study, got {type(restitution).__name__}"
-            )
+                "a body in space takes a model or one coefficient in a study, got {law}", parameter="restitution",
+                law=type(restitution).__name__,
+            )  # fmt: skip
         made = SpatialBody.of(body)
         angle = math.atan2(made.reach, float(made.centre[2]))
         return cls(

@@ -46,11 +46,12 @@ class RowsInPlane:
     def _library(self) -> Any:
         order, linear = self.settings.order, self.settings.linear
         if order != 8 and (linear or any(motion.vertical is not None for motion in self.motions)):
-            which = "the linear equations" if linear else "motions with a vertical part"
+            subject = "the linear equations" if linear else "motions with a vertical part"
             raise InvalidValueError(
-                f"order must be 8 for {which}, got {order}: "
-                "orders 4 and 6 exist only for nonlinear equations and motions without a vertical part"
-            )
+                "{parameter} must be {allowed} for {subject}, got {value}: orders 4 and 6 exist only for nonlinear "
+                "equations and motions without a vertical part", parameter="order", allowed="8", value=order,
+                subject=subject,
+            )  # fmt: skip
         return fast_engine.library_of(self.motions)
 
     def _one(self, row: dict[str, float], motion: int, stream: int) -> dict[str, float]:

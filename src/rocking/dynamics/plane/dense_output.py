@@ -64,7 +64,9 @@ class DenseOutput:
             before, after = (np.concatenate([part, rows[:, 1:]])[order] for part in (before, after))
         whole = np.flatnonzero(np.diff(time) > 0.0)
         if not whole.size:
-            raise InvalidValueError(f"there is no response at any time above 0 s: {trajectory.status.value}")
+            raise InvalidValueError(
+                "there is no response at any time above 0 s: {status}", status=trajectory.status.value
+            )
         start, end = time[whole], time[whole + 1]
         states = np.stack([after[whole], before[whole + 1]], axis=1)
         rotation, velocity = states[..., 0], states[..., 1]

@@ -43,7 +43,10 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     if law is None or law.tabulated or asked == "reference":
         return _COMPILED.chosen(asked)
     if checks.one_of("engine", asked, ENGINES) == "fast":
-        raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
+        raise InvalidValueError(
+            "the fast engine knows tables, not {law}; {parameter} must be {allowed}", parameter="engine",
+            allowed="reference", value=asked, law=type(law).__name__,
+        )  # fmt: skip
     return "reference"
 
 
@@ -117,9 +120,9 @@ def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
     before = int(jumps[0]) + 1
     if jumps.size > 1 or any(np.any(lines[before:]) for lines in parts):
         raise InvalidValueError(
-            f"the fast engine takes records without jumps between their samples, got {jumps.size}, the first "
-            f'after {before * step:g} s; engine="reference" takes them'
-        )
+            "the fast engine takes records without jumps between their samples, got {jumps}, the first after {time:g} "
+            "s", jumps=jumps.size, time=before * step, hint='engine="reference" takes them',
+        )  # fmt: skip
     return before
 
 
@@ -159,9 +162,10 @@ def run(
     taken = chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(
-            f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "
-            "(simulate_many), for nonlinear equations and motions without a vertical part"
-        )
+            "{parameter} must be {allowed} for one history, got {value}: orders 4 and 6 exist only in batches "
+            "(simulate_many), for nonlinear equations and motions without a vertical part", parameter="order",
+            allowed=_ORDER, value=settings.order,
+        )  # fmt: skip
     if taken == "reference":
         from rocking.dynamics.plane.reference import Reference
 

@@ -13,7 +13,7 @@ ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
 
 def _checked_linear(_: str, value: object) -> bool:
     if not isinstance(value, bool):
-        raise InvalidValueError(f"linear must be True or False, got {value!r}")
+        raise InvalidValueError(parameter="linear", allowed="True or False", value=value)
     return value
 
 

@@ -151,9 +151,10 @@ class SpatialStart:
         """Refuse a start in the air or in motion along the ground: without friction a body neither slides nor flies."""
         if not self.rocks_alone:
             raise InvalidValueError(
-                f"height and velocity of the start must be 0 without friction, got {self.height!r:.30} m and "
-                f"{self.velocity!r:.60} m/s: without friction= a body neither slides nor flies"
-            )
+                "height and velocity of the start must be 0 without friction, got {height} m and {velocity} m/s: "
+                "without friction= a body neither slides nor flies", height=f"{self.height!r:.30}",
+                velocity=f"{self.velocity!r:.60}",
+            )  # fmt: skip
 
     @property
     def quaternion(self) -> FloatArray:

@@ -168,7 +168,7 @@ def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | 
 def _listed(name: str, values: Any) -> list[Any]:
     several = list(values) if isinstance(values, (list, np.ndarray)) else [values]
     if not several:
-        raise InvalidValueError(f"{name} must be at least one, got none")
+        raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
     return several
 
 
@@ -195,7 +195,9 @@ def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGr
     for motion in motions:
         components = tuple(_components(motion))
         if len(components) > 3:
-            raise InvalidValueError(f"a motion has at most three components, x, y and vertical, got {len(components)}")
+            raise InvalidValueError(
+                "a motion has at most three components, x, y and vertical, got {count}", count=len(components)
+            )
         grounds.append(ground_of(*components, until=until))
         names.append(", ".join("none" if part is None else part.name for part in components))
     return grounds, names

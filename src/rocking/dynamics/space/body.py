@@ -105,9 +105,10 @@ class SpatialBody:
         checks.length("height of the centre of mass", float(self.centre[2]))
         if not self.reach > 0.0:
             raise GeometryError(
-                f"the centre of mass must be above the inside of the base, got it {-self.reach:g} m outside, at "
-                f"({self.centre[0]:g}, {self.centre[1]:g}); it would fall over by itself"
-            )
+                "the centre of mass must be above the inside of the base, got it {outside:g} m outside, at ({x:g}, "
+                "{y:g})", outside=-self.reach, x=float(self.centre[0]), y=float(self.centre[1]),
+                hint="it would fall over by itself",
+            )  # fmt: skip
 
     @classmethod
     def box(cls, width: float, depth: float, height: float, density: float = 1000.0) -> "SpatialBody":
@@ -317,9 +318,10 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
         if getattr(body, name, None) is not None:
             return getattr(body, name)
     raise InvalidValueError(
-        f"body must be a Block, a Section, MassPoints or one in space; a body in space needs {' or '.join(names)}, got "
-        f"{type(body).__name__} without"
-    )
+        "{parameter} must be {allowed}; a body in space needs {attributes}, got {type} without", parameter="body",
+        allowed="a Block, a Section, MassPoints or one in space", attributes=" or ".join(names),
+        type=type(body).__name__,
+    )  # fmt: skip
 
 
 def checked_inertia(values: Any) -> FloatArray:
@@ -330,15 +332,19 @@ def checked_inertia(values: Any) -> FloatArray:
     symmetric = np.abs(tensor - tensor.T).max() <= _ROUNDING * scale
     if not (symmetric and moments[0] > 0.0 and moments[0] + moments[1] >= moments[2] * (1.0 - _ROUNDING)):
         raise InvalidValueError(
-            f"inertia must be symmetric with principal moments > 0, none above the sum of the others, got {moments}"
-        )
+            "{parameter} must be {allowed}, got {moments}", parameter="inertia",
+            allowed="symmetric with principal moments > 0, none above the sum of the others", moments=str(moments),
+        )  # fmt: skip
     return tensor
 
 
 def _polygon(values: Any) -> FloatArray:
     points = checks.real_array("base", values, "m")
     if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
-        raise GeometryError(f"base must be vertices (k, 2) with k >= 3, or a radius [m], got shape {points.shape}")
+        raise GeometryError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter="base",
+            allowed="vertices (k, 2) with k >= 3, or a radius [m]", shape=points.shape,
+        )  # fmt: skip
     points = checks.finite("base", points, "m", points.shape)
     along = np.roll(points, -1, axis=0) - points
     turns = along[:, 0] * np.roll(along[:, 1], -1) - along[:, 1] * np.roll(along[:, 0], -1)

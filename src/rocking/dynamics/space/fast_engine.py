@@ -180,9 +180,9 @@ def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, F
         count = len(body.vertices)
         if count > MOST_CORNERS:
             raise InvalidValueError(
-                f"a base must have at most {MOST_CORNERS} vertices in a batch, got {count}; a round base is a radius, "
-                'and engine="reference" takes any number'
-            )
+                "a base must have at most {limit} vertices in a batch, got {count}", limit=MOST_CORNERS, count=count,
+                hint='a round base is a radius, and engine="reference" takes any number',
+            )  # fmt: skip
         scalars = (body.mass, body.frequency(gravity), body.size, body.lift, body.radius)
         numbers[k] = np.concatenate([scalars, body.centre, body.inertia.ravel()])
         corners[k] = used, count
@@ -240,7 +240,9 @@ def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, Floa
     # stretches of all of them [s]. Accelerations by motion, stretch, power and axis [m/s2].
     most = max(ground.coefficients.shape[2] for ground in grounds) - 1
     if most > 7:
-        raise InvalidValueError(f"motions must be polynomials of degree at most 7, got {most}; sample them")
+        raise InvalidValueError(
+            "motions must be polynomials of degree at most 7, got {degree}", degree=most, hint="sample them"
+        )
     degree = 1 if most <= 1 else 7
     places = np.zeros((len(grounds), 3), np.int64)
     times, rows = [], []

@@ -84,8 +84,9 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
     segments = motion.upright_segments() if along_z else motion.segments()  # type: ignore[union-attr]
     if segments.vertical is not None:
         raise InvalidValueError(
-            f"the {name} component must not have a vertical part of its own; hand it over as vertical=GroundMotion(...)"
-        )
+            "the {component} component must not have a vertical part of its own", component=name,
+            hint="hand it over as vertical=GroundMotion(...)",
+        )  # fmt: skip
     return np.asarray(np.arange(segments.count + 1) * segments.step, dtype=np.float64), segments.horizontal
 
 

@@ -95,7 +95,7 @@ def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLa
     if isinstance(restitution, (str, SpatialModel)):
         model = spatial_model(restitution)
         if model.needs_solid and body is not None and body.matter is None:
-            raise InvalidValueError(f"restitution {model.name!r}: {NO_MATTER}")
+            raise InvalidValueError("{parameter} {value}: " + NO_MATTER, parameter="restitution", value=model.name)
         return ModelLaw(model)
     if isinstance(restitution, SpatialImpactLaw) and not isinstance(restitution, type):
         return restitution

@@ -23,7 +23,7 @@ from rocking.dynamics.space.reference import SpatialReference
 from rocking.dynamics.space.settings import SpaceSettings
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, States, pivots, states_of
 from rocking.errors import InvalidValueError
-from rocking.messages import Message
+from rocking.messages import Message, Range
 from rocking.motions.motion import GroundMotion
 from rocking.motions.summary import motion_answer
 from rocking.outcome import ContactMode, Outcome
@@ -436,12 +436,16 @@ def started(start: SpatialStart, pace: float) -> SpatialStart:
     spin = checks.real_array("angular_velocity", start.angular_velocity, "rad/s")
     if spin.shape != (3,) or not (np.abs(spin) <= most).all():
         raise InvalidValueError(
-            f"angular_velocity must be three numbers in [-{most:g}, {most:g}] rad/s, got {start.angular_velocity!r:.60}"
-        )
+            "{parameter} must be three numbers {allowed}, got {value}", parameter="angular_velocity",
+            allowed=Range(-most, most, "rad/s"), value=start.angular_velocity,
+        )  # fmt: skip
     height = checks.within("height", start.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
     velocity = checks.real_array("velocity", start.velocity, "m/s")
     if velocity.shape != (3,) or not (np.abs(velocity) <= 1e4).all():
-        raise InvalidValueError(f"velocity must be three numbers in [-1e4, 1e4] m/s, got {start.velocity!r:.60}")
+        raise InvalidValueError(
+            "{parameter} must be three numbers {allowed}, got {value}", parameter="velocity",
+            allowed=Range(-1e4, 1e4, "m/s"), value=start.velocity,
+        )  # fmt: skip
     return replace(start, tilt=tilt, azimuth=azimuth, yaw=yaw, angular_velocity=spin, height=height, velocity=velocity)
 
 
