@@ -37,7 +37,7 @@ class Known:
         try:
             x, y = centre
         except (TypeError, ValueError) as error:
-            raise GeometryError(f"centre must be a pair (x, y) in m, y upwards, got {centre!r:.60}") from error
+            raise GeometryError(parameter="centre", allowed="a pair (x, y) in m, y upwards", value=centre) from error
         x, y = checks.number("x of the centre", x, "m"), checks.number("y of the centre", y, "m")
         return cls((x - origin[0], y - origin[1]), moment_of_inertia)
 
@@ -143,7 +143,9 @@ def density_of(mass: float, volume: float, densities: tuple[float, ...]) -> floa
     mass = checks.positive("mass", mass, "kg")
     stated = next((each for each in densities if not isinstance(each, Assumed)), None)
     if stated is not None:
-        raise InvalidValueError(f"give mass = {mass:g} kg or density = {stated:g} kg/m3, not both: one follows")
+        raise InvalidValueError(
+            "give mass = {mass:g} kg or density = {density:g} kg/m3, not both: one follows", mass=mass, density=stated
+        )
     density = mass / volume
     if not math.isfinite(density):
         raise InvalidValueError(

@@ -169,7 +169,9 @@ class Block(Body):
         size = checks.positive("semi_diagonal", semi_diagonal, "m")
         for name in ("centre", "feet"):
             if options.get(name) is not None:
-                raise InvalidValueError(f"angle and semi-diagonal define centre of mass and feet: leave {name} out")
+                raise InvalidValueError(
+                    "angle and semi-diagonal define centre of mass and feet: leave {parameter} out", parameter=name
+                )
         return cls(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha), **options)
 
     @property

@@ -223,7 +223,7 @@ class Body(ABC):
         InvalidValueError
             If this kind of body has no density field, as mass points.
         """
-        raise InvalidValueError(f"a {type(self).__name__} body has no density field")
+        raise InvalidValueError("a {type} body has no density field", type=type(self).__name__)
 
     @property
     def densities(self) -> tuple[float, ...]:
@@ -305,14 +305,15 @@ class Body(ABC):
     def _either_side(self, name: str) -> Side:
         if not self.is_symmetric:
             raise AsymmetricBodyError(
-                f'{name} depends on the side of this body; ask body.side("left").{name} or "right"'
+                '{quantity} depends on the side of this body; ask body.side("left").{quantity} or "right"',
+                quantity=name,
             )
         return self.side("right")
 
     def _check_support(self) -> None:
         moments, (left, right) = self.local_moments, self.local_feet
         if not (moments.mass > 0.0 and math.isfinite(moments.polar)):
-            raise GeometryError(f"the body must have a finite mass > 0 kg, got {moments.mass:g}")
+            raise GeometryError("the body must have a finite mass > 0 kg, got {mass:g}", mass=moments.mass)
         slack = _SUPPORT_TOLERANCE * (right - left)
         if not left + slack < moments.x < right - slack:
             x = self.origin_x + moments.x

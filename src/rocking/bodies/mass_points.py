@@ -12,6 +12,7 @@ from rocking.bodies.body import Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.messages import Index
 
 HEAVIEST = 1e36  # no point is heavier than this [kg]: sums and moments stay far from overflow
 
@@ -56,9 +57,15 @@ class MassPoints(Body):
     ) -> None:
         self.masses = np.atleast_1d(checks.positive_array("masses", masses, "kg"))
         if self.masses.max(initial=0.0) > HEAVIEST:
-            raise GeometryError(f"masses must not exceed {HEAVIEST:g} kg, got {self.masses.max():g}; wrong unit?")
+            raise GeometryError(
+                "{parameter} must not exceed {limit:g} kg, got {value}", parameter="masses",
+                value=float(self.masses.max()), limit=HEAVIEST, hint="wrong unit?",
+            )  # fmt: skip
         if self.masses.ndim != 1:
-            raise GeometryError(f"masses must be a list of numbers, got an array of shape {self.masses.shape}")
+            raise GeometryError(
+                "{parameter} must be {allowed}, got an array of shape {shape}", parameter="masses",
+                allowed="a list of numbers", shape=self.masses.shape,
+            )  # fmt: skip
         self.points = _points(points, len(self.masses))
         self._feet = feet_of(feet)
         self._contact = None if contact is None else _stretches(contact)
@@ -115,7 +122,10 @@ def _stretches(contact: Any) -> list[Interval]:
         raise GeometryError("contact must be a list of pairs (x_left, x_right) in m") from error
     for a, b in pairs:
         if not (math.isfinite(a) and math.isfinite(b) and a <= b):
-            raise GeometryError(f"a stretch of contact must be finite with left <= right, got ({a:g}, {b:g}) m")
+            raise GeometryError(
+                "a stretch of {parameter} must be finite with left <= right, got ({left:g}, {right:g}) m",
+                parameter="contact", left=a, right=b,
+            )  # fmt: skip
     return pairs
 
 
@@ -125,11 +135,19 @@ def _points(points: Any, count: int) -> FloatArray:
     except InvalidValueError as error:
         raise GeometryError("points must be a list of (x, y) in m") from error
     if result.shape != (count, 2) or count == 0:
-        raise GeometryError(f"points must have shape ({count}, 2), one (x, y) per mass, got {result.shape}")
+        raise GeometryError(
+            "{parameter} must have shape ({count}, 2), one (x, y) per mass, got {shape}", parameter="points",
+            count=count, shape=result.shape,
+        )  # fmt: skip
     bad = ~(np.isfinite(result).all(axis=1) & (result[:, 1] >= 0.0))
     if np.abs(result).max() > checks.LARGEST:
-        raise GeometryError(f"points must be within {checks.LARGEST:g} m of the origin; wrong unit?")
+        raise GeometryError(
+            "{parameter} must be within {limit:g} m of the origin", parameter="points", limit=checks.LARGEST,
+            hint="wrong unit?",
+        )  # fmt: skip
     if bad.any():
         i = int(np.argmax(bad))
-        raise GeometryError(f"point {i} must be finite with y >= 0 m, got {tuple(result[i].tolist())}")
+        raise GeometryError(
+            "point {index} must be finite with y >= 0 m, got {point}", index=Index(i), point=tuple(result[i].tolist())
+        )
     return result

@@ -24,15 +24,22 @@ def checked_ring(name: str, points: Any) -> FloatArray:
     try:
         vertices = checks.real_array(name, points)
     except InvalidValueError as error:
-        raise GeometryError(f"{name} must be a list of (x, y) points in m, all numbers") from error
+        raise GeometryError("{ring} must be a list of (x, y) points in m, all numbers", ring=name) from error
     if vertices.ndim != 2 or vertices.shape[1:] != (2,):
-        raise GeometryError(f"{name} must be a list of (x, y) points, got an array of shape {vertices.shape}")
+        raise GeometryError(
+            "{ring} must be a list of (x, y) points, got an array of shape {shape}", ring=name, shape=vertices.shape
+        )
     finite = np.isfinite(vertices).all(axis=1)
     if not finite.all():
         bad = int(np.argmin(finite))
-        raise GeometryError(f"{name}: point {bad} must be finite, got {tuple(vertices[bad].tolist())}")
+        raise GeometryError(
+            "{ring}: point {index} must be finite, got {point}", ring=name, index=Index(bad),
+            point=tuple(vertices[bad].tolist()),
+        )  # fmt: skip
     if np.abs(vertices).max(initial=0.0) > LARGEST:
-        raise GeometryError(f"{name}: coordinates must be within {LARGEST:g} m of the origin; wrong unit?")
+        raise GeometryError(
+            "{ring}: coordinates must be within {limit:g} m of the origin", ring=name, limit=LARGEST, hint="wrong unit?"
+        )
     kept: FloatArray = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
     if len(kept) < 3:
         raise GeometryError("{name} must have at least 3 different points, got {count}", name=name, count=len(kept))
@@ -134,7 +141,9 @@ def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
     around: list[list[int]] = [[] for _ in kept]
     for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
         if i < j and shapes[i].normalize().equals_exact(shapes[j].normalize(), 1e-12 * float(np.sqrt(areas[i]))):
-            raise BodyFileError(f"{names[i]} and {names[j]} are the same curve drawn twice; delete one")
+            raise BodyFileError(
+                "{curve} and {copy} are the same curve drawn twice; delete one", curve=names[i], copy=names[j]
+            )
         # a point of a large ring may fall inside a small one in its middle: that is no nesting
         if areas[i] < areas[j] and shapes[j].covers(shapes[i]):
             around[i].append(j)
@@ -197,7 +206,7 @@ class Region:
         if not isinstance(given, (Sequence, np.ndarray)):
             raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
         outer = checked_ring("outline", outline)
-        inner = tuple(checked_ring(f"hole {i}", hole) for i, hole in enumerate(holes))
+        inner = tuple(checked_ring(Message("hole {hole}", {"hole": Index(i)}), hole) for i, hole in enumerate(holes))
         check_polygon("region", outer, inner)
         self._set(outer, checks.density("density", density), inner)
 

@@ -92,9 +92,9 @@ class Section(Body):
         if abs(float(low[1]) - self._ground) > GROUND_TOLERANCE * self._size:
             verb, lowest = "floats above" if low[1] > self._ground else "reaches below", float(low[1])
             raise GeometryError(
-                f"the body {verb} the ground: its lowest point is y = {{y}}, the ground {{ground}}",
-                hint=Message("pass {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
+                "the body {verb} the ground: its lowest point is y = {y}, the ground {ground}", verb=verb,
                 y=Amount(lowest, "m", ".9g"), ground=Amount(self._ground, "m", ".9g"),
+                hint=Message("pass {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
             )  # fmt: skip
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         check_disjoint([(region.outline, region.holes) for region in self.regions])
@@ -347,9 +347,9 @@ class Section(Body):
             if not base[0] - slack <= x <= base[1] + slack:
                 a, b = base[0] + origin, base[1] + origin
                 raise GeometryError(
-                    f"the {name} foot must lie on the base, x {{allowed}}, got {{x}}",
-                    parameter="feet", value=x + origin,
-                    allowed=Range(a, b, "m"), x=Amount(x + origin, "", ".9g"), y=Amount(self._ground, "m", ".9g"),
+                    "the {foot} foot must lie on the base, x {allowed}, got {x}", parameter="feet", value=x + origin,
+                    allowed=Range(a, b, "m"), foot=name, x=Amount(x + origin, "", ".9g"),
+                    y=Amount(self._ground, "m", ".9g"),
                 )  # fmt: skip
         return max(left, base[0]), min(right, base[1])
 

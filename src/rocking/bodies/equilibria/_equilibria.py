@@ -134,7 +134,10 @@ class Equilibria:
         """
         unit = _directions(down)
         if unit.shape != (3,):
-            raise InvalidValueError(f"down must be one direction of three numbers, got the shape {unit.shape}")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got the shape {shape}", parameter="down",
+                allowed="one direction of three numbers", shape=unit.shape,
+            )  # fmt: skip
         basin = self._basin(unit)
         if basin >= len(self.stable):
             raise InvalidValueError("the body comes to rest on a ring of poses there, in none of the isolated ones")
@@ -249,7 +252,7 @@ class Equilibria:
             joined[joined == joined[other]] = joined[one]
             if joined[pose.number] == joined[end] and end != pose.number:
                 return self._pass(pose, end, saddle)
-        raise InvalidValueError(f"there is no pass from pose {pose.number} to itself")
+        raise InvalidValueError("there is no pass from pose {pose} to itself", pose=pose.number)
 
     def _straight(self, pose: StablePose, azimuth: float) -> tuple[float, int]:
         """Return the rise of the centre on the straight way into another pose, and which."""
@@ -336,15 +339,18 @@ def equilibria(
     least = checks.within("least_barrier", least_barrier, 0.0, checks.LARGEST, unit="m")
     surface, middle = checks.real_array("points", points, "m"), checks.real_array("centre", centre, "m")
     if surface.ndim != 2 or surface.shape[1:] != (3,) or not np.isfinite(surface).all():
-        raise InvalidValueError(f"points must be finite and have the shape (n, 3), got {surface.shape}")
+        raise InvalidValueError(
+            "{parameter} must be finite and have the shape (n, 3), got {shape}", parameter="points", shape=surface.shape
+        )
     if middle.shape != (3,) or not np.isfinite(middle).all():
-        raise InvalidValueError(f"centre must be three finite numbers (x, y, z) [m], got {centre!r:.60}")
+        raise InvalidValueError(parameter="centre", allowed="three finite numbers (x, y, z) [m]", value=centre)
     hull = polytope(surface, middle, faces)
     if hull.heights.min() <= 0.0:
         raise InvalidValueError(
-            f"the centre of mass {middle.tolist()} m must lie inside the convex hull of the points: it is "
-            f"{-hull.heights.min():.3g} m outside; are both in the same frame and unit?"
-        )
+            "the centre of mass {centre} m must lie inside the convex hull of the points: it is {outside:.3g} m "
+            "outside", parameter="centre", centre=middle.tolist(), outside=float(-hull.heights.min()),
+            hint="are both in the same frame and unit?",
+        )  # fmt: skip
     down = None if standing is None else _directions(standing)
     return _found(hull, middle, kilograms, least, surface - middle, down)
 
@@ -398,7 +404,7 @@ def _directions(values: ArrayLike) -> FloatArray:
     """Return directions of unit length, after a check."""
     towards = checks.real_array("down", values)
     if towards.shape[-1:] != (3,) or not np.isfinite(towards).all() or not towards.any(axis=-1).all():
-        raise InvalidValueError(f"down must be three finite numbers (x, y, z), not all zero, got {values!r:.60}")
+        raise InvalidValueError(parameter="down", allowed="three finite numbers (x, y, z), not all zero", value=values)
     unit: FloatArray = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
     return unit
 

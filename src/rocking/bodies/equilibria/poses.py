@@ -181,7 +181,7 @@ def azimuths(values: ArrayLike) -> FloatArray:
     """Return azimuths, after a check [rad]."""
     angles = checks.real_array("azimuth", values, "rad")
     if not np.isfinite(angles).all():
-        raise InvalidValueError(f"azimuth must be finite numbers [rad], got {values!r:.60}")
+        raise InvalidValueError(parameter="azimuth", allowed="finite numbers [rad]", value=values)
     return angles
 
 

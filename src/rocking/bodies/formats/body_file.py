@@ -22,6 +22,7 @@ from rocking.bodies.section import Section
 from rocking.checks import length_unit
 from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError, InvalidValueError, located
+from rocking.messages import Index
 
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
@@ -87,15 +88,17 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
 def parsed_toml(text: Any) -> dict[str, Any]:
     """Return the tables of a TOML text."""
     if not isinstance(text, str):
-        raise BodyFileError(f"a body file must be text, got {type(text).__name__}")
+        raise BodyFileError("a body file must be text, got {type}", type=type(text).__name__)
     if len(text) > LARGEST_TOML:
-        raise BodyFileError(f"is longer than {LARGEST_TOML / 2**20:g} MiB; put large outlines in WKT, GeoJSON or DXF")
+        raise BodyFileError(
+            "is longer than {limit:g} MiB", limit=LARGEST_TOML / 2**20, hint="put large outlines in WKT, GeoJSON or DXF"
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its words name line and column
-        raise BodyFileError(f"is not TOML: {error}") from error
+        raise BodyFileError("is not TOML: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
-        raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+        raise BodyFileError("is not TOML that can be read: {reason}", reason=str(error).partition(";")[0]) from error
 
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:
@@ -143,7 +146,10 @@ def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
     with located("mass_points"):
         for i, (a, b) in enumerate(table.contact or ()):
             if not a < b:
-                raise BodyFileError(f"contact[{i}] must run from left to right, got [{a:g}, {b:g}]")
+                raise BodyFileError(
+                    "{parameter}[{index}] must run from left to right, got [{left:g}, {right:g}]", parameter="contact",
+                    index=Index(i), left=a, right=b,
+                )  # fmt: skip
         points = [(x * scale, y * scale) for x, y in table.points]
         return MassPoints(points, table.masses, (table.feet[0] * scale, table.feet[1] * scale), contact)
 
@@ -181,14 +187,14 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
 def beside(folder: Path | None, name: str) -> Path:
     """Return the path of a file that a body file names: below its own folder, wherever the text came from."""
     if folder is None:
-        raise BodyFileError(f"names the file {name!r}, but text without a folder cannot name files")
+        raise BodyFileError("names the file {file!r}, but text without a folder cannot name files", file=name)
     try:
         root = folder.resolve()
         path = (root / name).resolve()
     except (OSError, ValueError, RuntimeError) as error:
-        raise BodyFileError(f"the file name {name!r} cannot be used") from error
+        raise BodyFileError("the file name {file!r} cannot be used", file=name) from error
     if not path.is_relative_to(root):
-        raise BodyFileError(f"the file {name!r} must lie in the folder of the body file or below it")
+        raise BodyFileError("the file {file!r} must lie in the folder of the body file or below it", file=name)
     return path
 
 
@@ -234,7 +240,7 @@ def body_to_toml(body: Body) -> str:
     density = 2400.0
     <BLANKLINE>
     """
-    raise InvalidValueError(f"a {type(body).__name__} body cannot be written as a body file")
+    raise InvalidValueError("a {type} body cannot be written as a body file", type=type(body).__name__)
 
 
 @body_to_toml.register

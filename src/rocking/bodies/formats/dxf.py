@@ -116,7 +116,7 @@ def _regions(
     layer: str | None, curves: list[_Curve], density: float, layers: Mapping[str, float] | None
 ) -> list[Region]:
     if not curves:
-        raise BodyFileError(f"layer {layer!r} holds no closed polyline, circle or ellipse")
+        raise BodyFileError("layer {layer!r} holds no closed polyline, circle or ellipse", layer=layer)
     value = density if layers is None or layer is None else checks.density(f"density of layer {layer!r}", layers[layer])
     return [Region(ring, value, holes) for ring, holes in nested([c[2] for c in curves], [c[0] for c in curves])]
 
@@ -133,7 +133,7 @@ def _opened(path: Path) -> "Drawing":
     except OSError as error:
         raise BodyFileError("is not a DXF file") from error
     except Exception as error:  # ezdxf lets whatever a damaged file provokes pass
-        raise BodyFileError(f"is a damaged DXF file ({type(error).__name__})") from error
+        raise BodyFileError("is a damaged DXF file ({type})", type=type(error).__name__) from error
 
 
 def _unit(drawing: "Drawing", asked: str | None) -> str:
@@ -145,10 +145,15 @@ def _unit(drawing: "Drawing", asked: str | None) -> str:
             raise BodyFileError("states no unit ($INSUNITS is 0)", hint=unit_to_state())
         return asked
     if code not in INSUNITS:
-        raise BodyFileError(f"states a unit ($INSUNITS is {code}) other than {', '.join(LENGTH_UNITS)}")
+        raise BodyFileError(
+            "states a unit ($INSUNITS is {code}) other than {units}", code=code, units=", ".join(LENGTH_UNITS)
+        )
     stated = INSUNITS[code]
     if asked is not None and asked != stated:
-        raise BodyFileError(f'states that it is drawn in {stated} ($INSUNITS is {code}), but units = "{asked}"')
+        raise BodyFileError(
+            'states that it is drawn in {stated} ($INSUNITS is {code}), but units = "{units}"', stated=stated,
+            code=code, units=asked,
+        )  # fmt: skip
     return stated
 
 
@@ -158,19 +163,21 @@ def _curves(drawing: "Drawing", layers: Mapping[str, float] | None, tolerance: f
     known |= {entity.dxf.layer for entity in entities}
     for layer in layers or ():
         if layer not in known:
-            raise BodyFileError(f"has no layer {layer!r}", hint=suggestion(layer, sorted(known)))
+            raise BodyFileError("has no layer {layer!r}", layer=layer, hint=suggestion(layer, sorted(known)))
     for entity in entities:
         layer, kind = entity.dxf.layer, entity.dxftype()
         if kind in _PASSED_OVER or (layers is not None and layer not in layers):
             continue
         name = f"{kind} {entity.dxf.handle} on layer {layer!r}"
         if kind not in _READERS:
-            raise BodyFileError(f"{name} is not a closed outline; join it into a closed polyline, or choose layers")
+            raise BodyFileError(
+                "{entity} is not a closed outline", entity=name, hint="join it into a closed polyline, or choose layers"
+            )
         with located(name, "file"):
             try:
                 yield name, layer, _READERS[kind](entity, tolerance)
             except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
-                raise BodyFileError(f"is damaged ({type(error).__name__})") from error
+                raise BodyFileError("is damaged ({type})", type=type(error).__name__) from error
 
 
 def _circle(entity: Any, tolerance: float | None) -> FloatArray:
@@ -248,7 +255,10 @@ def sides(angle: float, radius: float, tolerance: float) -> int:
     71
     """
     if not (math.isfinite(radius) and tolerance >= FINEST * radius):
-        raise BodyFileError(f"a chord tolerance of {tolerance:g} is too fine for a radius of {radius:g}")
+        raise BodyFileError(
+            "a chord tolerance of {tolerance:g} is too fine for a radius of {radius:g}", tolerance=tolerance,
+            radius=radius,
+        )  # fmt: skip
     step = 2.0 * math.acos(max(1.0 - tolerance / radius, -0.5))
     return max(1, math.ceil(abs(angle) / step))
 
@@ -270,7 +280,10 @@ def closed_polyline(points: Sequence[complex], bulges: Sequence[float], toleranc
         end = points[(i + 1) % len(points)]
         found.append(start)
         if not abs(bulge) <= _LARGEST_BULGE:
-            raise BodyFileError(f"the bulge at vertex {i} must be within {_LARGEST_BULGE:g}, got {bulge:g}")
+            raise BodyFileError(
+                "the bulge at vertex {vertex} must be within {limit:g}, got {bulge:g}", vertex=i, limit=_LARGEST_BULGE,
+                bulge=bulge,
+            )  # fmt: skip
         if 0.5 * abs(bulge) * abs(end - start) > tolerance:  # the arc's rise over its chord
             found += _arc(start, end, bulge, tolerance)
         check_count(len(found))

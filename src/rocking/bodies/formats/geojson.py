@@ -98,19 +98,19 @@ def _parsed(text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
-        raise BodyFileError(f"is not JSON: {error}") from error
+        raise BodyFileError("is not JSON: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
-        raise BodyFileError(f"is not JSON that can be read: {str(error).partition(';')[0]}") from error
+        raise BodyFileError("is not JSON that can be read: {reason}", reason=str(error).partition(";")[0]) from error
 
 
 def _refuse_constant(word: str) -> NoReturn:
-    raise BodyFileError(f"holds {word}; every number must be finite")
+    raise BodyFileError("holds {constant}", constant=word, hint="every number must be finite")
 
 
 def _polygons(thing: Any, where: str, density: Any, depth: int) -> Iterator[_Found]:
     """Walk down to the polygons, with the place for errors and the density that applies."""
     if depth > DEEPEST:
-        raise BodyFileError(f"is nested more than {DEEPEST} collections deep")
+        raise BodyFileError("is nested more than {limit} collections deep", limit=DEEPEST)
     kind = _member(thing, "type", where)
     if kind == "FeatureCollection":
         yield from _each(thing, "features", where, density, depth)
@@ -125,13 +125,15 @@ def _polygons(thing: Any, where: str, density: Any, depth: int) -> Iterator[_Fou
         for i, rings in enumerate(_list(thing, "coordinates", where)):
             place = _join(where, f"coordinates[{i}]")
             if not isinstance(rings, (list, tuple)) or not rings:
-                raise BodyFileError(f"{place} must be a list of rings, got {_short(rings)}")
+                raise BodyFileError(
+                    "{member} must be a list of rings, got {content}", member=place, content=_short(rings)
+                )
             yield place, list(rings), density
     else:
         raise BodyFileError(
-            f"{_join(where, 'type')} must be Polygon, MultiPolygon, Feature, FeatureCollection or "
-            f"GeometryCollection, got {_short(kind)}"
-        )
+            "{member} must be Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, got {content}",
+            member=_join(where, "type"), content=_short(kind),
+        )  # fmt: skip
 
 
 def _each(thing: Any, key: str, where: str, density: Any, depth: int) -> Iterator[_Found]:
@@ -143,38 +145,53 @@ def _own_density(properties: Any, where: str, default: Any) -> Any:
     if properties is None:
         return default
     if not isinstance(properties, Mapping):
-        raise BodyFileError(f"{_join(where, 'properties')} must be an object, got {_short(properties)}")
+        raise BodyFileError(
+            "{member} must be an object, got {content}", member=_join(where, "properties"), content=_short(properties)
+        )
     own = properties.get("density")
     return default if own is None else checks.density(_join(where, "properties.density"), own)
 
 
 def _ring(positions: Any, name: str) -> FloatArray:
     if not isinstance(positions, (list, tuple)) or len(positions) < 4:
-        raise BodyFileError(f"{name} must be a ring of at least 4 positions, the last one equal to the first")
+        raise BodyFileError(
+            "{member} must be a ring of at least 4 positions, the last one equal to the first", member=name
+        )
     points = [_position(p, f"{name}[{i}]") for i, p in enumerate(positions)]
     if points[0] != points[-1]:
-        raise BodyFileError(f"{name} must end at its first position (RFC 7946, 3.1.6), got {points[-1]}")
+        raise BodyFileError(
+            "{member} must end at its first position (RFC 7946, 3.1.6), got {position}", member=name,
+            position=points[-1],
+        )  # fmt: skip
     return np.array(points, dtype=np.float64)
 
 
 def _position(position: Any, name: str) -> tuple[float, float]:
     if not isinstance(position, (list, tuple)) or len(position) != 2:
-        raise BodyFileError(f"{name} must be a position [x, y] in the plane, got {_short(position)}")
+        raise BodyFileError(
+            "{member} must be a position [x, y] in the plane, got {content}", member=name, content=_short(position)
+        )
     return checks.number(f"{name}[0]", position[0]), checks.number(f"{name}[1]", position[1])
 
 
 def _member(thing: Any, key: str, where: str) -> Any:
     if not isinstance(thing, Mapping):
-        raise BodyFileError(f"{where or 'the document'} must be a GeoJSON object, got {_short(thing)}")
+        raise BodyFileError(
+            "{member} must be a GeoJSON object, got {content}", member=where or "the document", content=_short(thing)
+        )
     if key not in thing:
-        raise BodyFileError(f"{where or 'the document'} has no member {key!r}; is it GeoJSON?")
+        raise BodyFileError(
+            "{member} has no member {key!r}", member=where or "the document", key=key, hint="is it GeoJSON?"
+        )
     return thing[key]
 
 
 def _list(thing: Any, key: str, where: str) -> list[Any]:
     value = _member(thing, key, where)
     if not isinstance(value, (list, tuple)) or not value:
-        raise BodyFileError(f"{_join(where, key)} must be a list that is not empty, got {_short(value)}")
+        raise BodyFileError(
+            "{member} must be a list that is not empty, got {content}", member=_join(where, key), content=_short(value)
+        )
     return list(value)
 
 

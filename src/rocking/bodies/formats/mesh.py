@@ -55,11 +55,11 @@ def mesh_from_file(
     with located(path.name, "file"):
         kind = path.suffix[1:].lower()
         if kind not in MESH_FORMATS:
-            raise BodyFileError(f"is no mesh that is read here: {', '.join(MESH_FORMATS)}")
+            raise BodyFileError("is no mesh that is read here: {formats}", formats=", ".join(MESH_FORMATS))
         try:
             content = checked_file(path).read_bytes()
         except OSError as error:
-            raise BodyFileError(f"cannot be opened ({error.strerror})") from error
+            raise BodyFileError("cannot be opened ({reason})", reason=error.strerror) from error
         vertices, faces = _loaded(content, kind)
         surface = checks.one_of("surface", surface, get_args(Surface))
         surface = "wrap" if surface == "faces" and not len(faces) else surface
@@ -112,9 +112,10 @@ def solid_from_mesh(
             outside = float((mesh.shape.hull.equations @ np.append(place, 1.0)).max())
             if outside >= 0.0:
                 raise GeometryError(
-                    f"the centre of mass {centre} m lies {outside:.3g} m outside of the hull of the mesh, as the file "
-                    "has it; was it measured from another origin, or in another unit?"
-                )
+                    "the centre of mass {value} m lies {outside:.3g} m outside of the hull of the mesh, as the file "
+                    "has it", parameter="centre", value=centre, outside=outside,
+                    hint="was it measured from another origin, or in another unit?",
+                )  # fmt: skip
         if base is None and not stands(points, place, checks.positive("base_tolerance", tolerance, "m")):
             turn = settled(mesh.shape.hull.points[mesh.shape.hull.vertices], place)
             part = Part(mesh.shape, density, rotation=turn, translation=mesh.middle)
@@ -156,11 +157,15 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
         numbers = [np.asarray(getattr(piece, "faces", ())).reshape(-1, 3) for piece in pieces]
         faces = np.concatenate([np.zeros((0, 3), dtype=np.int64), *map(np.add, numbers, starts[:-1])]).astype(np.int64)
     except Exception as error:  # trimesh lets whatever a damaged file provokes pass
-        raise BodyFileError(f"is no readable {kind.upper()} mesh ({type(error).__name__})") from error
+        raise BodyFileError(
+            "is no readable {format} mesh ({type})", format=kind.upper(), type=type(error).__name__
+        ) from error
     if not len(faces) and len(vertices) < FEWEST_POINTS:
-        raise BodyFileError(f"holds no triangles, and {len(vertices)} points are too few for a cloud")
+        raise BodyFileError("holds no triangles, and {count} points are too few for a cloud", count=len(vertices))
     if len(vertices) > 10 * MOST_VERTICES:
-        raise BodyFileError(f"has {len(vertices)} vertices; a mesh may have up to {10 * MOST_VERTICES}")
+        raise BodyFileError(
+            "has {count} vertices; a mesh may have up to {limit}", count=len(vertices), limit=10 * MOST_VERTICES
+        )
     if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
         raise BodyFileError("has faces that name vertices it does not hold")
     return vertices, faces
@@ -171,13 +176,17 @@ def _check_stated(content: bytes, kind: str) -> None:
     if kind == "stl":
         _check_stl(content)
     if kind == "glb" and (len(content) < 12 or int.from_bytes(content[8:12], "little") != len(content)):
-        raise BodyFileError(f"has {len(content)} bytes, not the number that its header states; was it cut short?")
+        raise BodyFileError(
+            "has {size} bytes, not the number that its header states", size=len(content), hint="was it cut short?"
+        )
     if kind == "ply":
         header = content[: content.find(b"end_header") + 1]
         lines = content.count(b"\n", len(header)) if b"format ascii" in header else None
         stated = sum(int(number) for number in re.findall(rb"element \w+ (\d+)", header))
         if lines is not None and lines < stated:
-            raise BodyFileError(f"has fewer lines than the {stated} elements its header states; was it cut short?")
+            raise BodyFileError(
+                "has fewer lines than the {stated} elements its header states", stated=stated, hint="was it cut short?"
+            )
 
 
 def _check_stl(content: bytes) -> None:
@@ -186,12 +195,15 @@ def _check_stl(content: bytes) -> None:
         return
     if content.lstrip()[:5].lower() != b"solid":
         raise BodyFileError(
-            f"has {len(content)} bytes, but a binary STL of the {max(stated, 0)} faces its header states has "
-            f"{84 + 50 * max(stated, 0)}; was it cut short?"
-        )
+            "has {size} bytes, but a binary STL of the {faces} faces its header states has {expected}",
+            size=len(content), faces=max(stated, 0), expected=84 + 50 * max(stated, 0), hint="was it cut short?",
+        )  # fmt: skip
     opened, closed = (len(re.findall(word, content)) for word in (rb"(?m)^\s*facet\b", rb"(?m)^\s*endfacet\b"))
     if b"endsolid" not in content or opened != closed:
-        raise BodyFileError(f"opens {opened} facets and closes {closed}, or has no endsolid; was it cut short?")
+        raise BodyFileError(
+            "opens {opened} facets and closes {closed}, or has no endsolid", opened=opened, closed=closed,
+            hint="was it cut short?",
+        )  # fmt: skip
 
 
 def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
@@ -202,7 +214,10 @@ def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
     hint = " or ".join(f'units="{unit}"' for unit in likely)
     likelier = f"{hint or 'another'} is likelier"
     if not _LOWEST <= size <= _HIGHEST:
-        raise BodyFileError(f"describes a body of {words} m, read in {units}; is that the file's unit? {likelier}")
+        raise BodyFileError(
+            "describes a body of {size} m, read in {units}; is that the file's unit? {likelier}", size=words,
+            units=units, likelier=likelier,
+        )  # fmt: skip
     if not 0.02 <= size <= 30.0:
         return [f"the body measures {words} m, read in {units}: please check the unit; {likelier}"]
     return []
@@ -217,7 +232,8 @@ def _precision_doubts(vertices: FloatArray, kind: str) -> list[str]:
     share = step / size
     if share > 1e-3:
         raise BodyFileError(
-            f"holds single-precision coordinates {far / size:.3g} times the body's size from the origin, which keeps "
-            f"only {share:.1g} of its size; export it in coordinates near the body"
-        )
+            "holds single-precision coordinates {distance:.3g} times the body's size from the origin, which keeps "
+            "only {share:.1g} of its size", distance=far / size, share=share,
+            hint="export it in coordinates near the body",
+        )  # fmt: skip
     return [f"single-precision coordinates far from the origin keep {share:.1g} of the body's size only"]

@@ -168,10 +168,10 @@ def _read(path: Any, units: str | None, density: float | None, options: Options,
     try:
         path = Path(path)
     except TypeError as error:
-        raise BodyFileError(f"a body file is given by its path, got {path!r:.60}") from error
+        raise BodyFileError("a body file is given by its path, got {value}", parameter="path", value=path) from error
     reader = formats.get(path.suffix.lower())
     if reader is None:
-        raise BodyFileError(f"{path.name}: the name must end in {', '.join(formats)}")
+        raise BodyFileError("the name must end in {extensions}", extensions=", ".join(formats)).at(path.name)
     if unknown := options.keys() - Options.__annotations__.keys():
         raise TypeError(f"read_body() has no {', '.join(sorted(unknown))}")
     with readable(path):
@@ -218,11 +218,13 @@ def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     with located(path.name, "file"):
         text = read_text(path, LARGEST_TOML)
         if given := request.given(("density", *Options.__annotations__)):
-            raise BodyFileError(f"a TOML body file states {given} itself; change it there")
+            raise BodyFileError("a TOML body file states {options} itself", options=given, hint="change it there")
     body = read(text, path.name, path.parent)
     stated = tomllib.loads(text)["units"]
     if request.units not in (None, stated):
-        raise BodyFileError(f'{path.name}: states units = "{stated}", but units = "{request.units}" was asked for')
+        raise BodyFileError(
+            'states units = "{stated}", but units = "{units}" was asked for', stated=stated, units=request.units
+        ).at(path.name)
     return body
 
 
@@ -239,7 +241,7 @@ def _standing(regions: list[Region], request: Request) -> Section:
     lowest = min(float(region.outline[:, 1].min()) for region in regions)
     with located(request.path.name, "file"):
         if given := request.given((*MeshOptions.__annotations__, "inertia")):
-            raise BodyFileError(f"is a drawing and takes no {given}: these are for meshes")
+            raise BodyFileError("is a drawing and takes no {options}: these are for meshes", options=given)
         placement: Any = {"ground": lowest, **request.options}
         taken = {*Placement.__annotations__, *KNOWN} - {"inertia"}
         return Section(regions, **{key: value for key, value in placement.items() if key in taken})
@@ -250,7 +252,9 @@ def _mesh(request: Request) -> Solid:
     options: dict[str, Any] = {key: value for key, value in request.options.items() if value is not None}
     units, by_specification = request.units, kind == "glb"
     if given := request.given((*Placement.__annotations__, "moment_of_inertia")):
-        raise BodyFileError(f"{path.name}: is a mesh, which stands on its lowest point and takes no {given}")
+        raise BodyFileError("is a mesh, which stands on its lowest point and takes no {options}", options=given).at(
+            path.name
+        )
     said = (("in m", units is None), ("with y up", "up" not in options)) if by_specification else ()
     taken = [words for words, silent in said if silent]
     density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)

@@ -136,11 +136,11 @@ class RegionTable(StrictTable):
     def _one_source(self) -> "RegionTable":
         sources = [key for key in ("outline", "wkt", "geojson", "dxf") if getattr(self, key) is not None]
         if len(sources) != 1:
-            got = " and ".join(sources) or "none"
-            raise InvalidValueError(f"a region has one of outline, wkt, geojson or dxf, got {got}")
+            keys = " and ".join(sources) or "none"
+            raise InvalidValueError("a region has one of outline, wkt, geojson or dxf, got {keys}", keys=keys)
         for key, owners in (("holes", "outline"), ("units", "wkt geojson dxf"), ("layers", "dxf")):
             if getattr(self, key) is not None and sources[0] not in owners.split():
-                raise InvalidValueError(f"{key} cannot stand beside {sources[0]}")
+                raise InvalidValueError("{key} cannot stand beside {source}", key=key, source=sources[0])
         return self
 
 
@@ -210,7 +210,10 @@ def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str
     present = [shown.format(key) for key in keys if getattr(table, key) is not None]
     if len(present) != 1:
         choice = ", ".join(map(shown.format, keys))
-        raise InvalidValueError(f"{owner} has exactly one of {choice}, got {' and '.join(present) or 'none'}")
+        raise InvalidValueError(
+            "{owner} has exactly one of {choice}, got {keys}", owner=owner, choice=choice,
+            keys=" and ".join(present) or "none",
+        )  # fmt: skip
 
 
 Cut = Annotated[float, Field(ge=0.0)]

@@ -110,9 +110,10 @@ def _moved(part: Part, place: list[float]) -> Part:
     size = float(np.ptp(part.box(), axis=0).max())
     if max(map(abs, place)) > _FARTHEST * size:
         raise BodyFileError(
-            f"at must be within {_FARTHEST:g} times the size of its part, {size:.4g} m, got "
-            f"{max(place, key=abs):.4g} m: so far away the shape is lost in rounding"
-        )
+            "{parameter} must be within {limit:g} times the size of its part, {size:.4g} m, got {largest:.4g} m: so "
+            "far away the shape is lost in rounding", parameter="at", value=place, limit=_FARTHEST, size=size,
+            largest=max(place, key=abs),
+        )  # fmt: skip
     return part.moved(*place)
 
 

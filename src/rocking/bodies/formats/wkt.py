@@ -93,12 +93,12 @@ def _geometry(text: Any) -> "BaseGeometry":
     if "\0" in text:
         raise BodyFileError("is not WKT: it holds a NUL character")
     if _depth(text) > DEEPEST:
-        raise BodyFileError(f"is nested more than {DEEPEST} brackets deep")
+        raise BodyFileError("is nested more than {limit} brackets deep", limit=DEEPEST)
     try:
         with np.errstate(all="ignore"):  # the coordinates are checked afterwards, by name
             geometry: BaseGeometry = shapely.from_wkt(text.strip())
     except (shapely.errors.ShapelyError, NotImplementedError, UnicodeError) as error:
-        raise BodyFileError(f"is not WKT: {_one_line(error)}") from error
+        raise BodyFileError("is not WKT: {reason}", reason=_one_line(error)) from error
     if geometry.has_z or getattr(geometry, "has_m", False):
         raise BodyFileError("has z or m coordinates; a section is plane, give x and y only")
     check_count(int(shapely.get_num_coordinates(geometry)))
@@ -109,10 +109,12 @@ def _polygons(geometry: "BaseGeometry") -> "list[Polygon]":
     if geometry.geom_type in {"MultiPolygon", "GeometryCollection"}:
         found = [polygon for part in geometry.geoms for polygon in _polygons(part)]  # type: ignore[attr-defined]
         if not found:
-            raise BodyFileError(f"the {geometry.geom_type.upper()} is empty")
+            raise BodyFileError("the {geometry} is empty", geometry=geometry.geom_type.upper())
         return found
     if geometry.geom_type != "Polygon":
-        raise BodyFileError(f"a {geometry.geom_type.upper()} encloses no area; a body is made of POLYGONs")
+        raise BodyFileError(
+            "a {geometry} encloses no area", geometry=geometry.geom_type.upper(), hint="a body is made of POLYGONs"
+        )
     if geometry.is_empty:
         raise BodyFileError("the POLYGON is empty")
     return [geometry]  # type: ignore[list-item]
@@ -122,7 +124,9 @@ def _densities(density: Any, count: int) -> list[Any]:
     if isinstance(density, str) or not isinstance(density, (Sequence, np.ndarray)):
         return [density] * count  # whatever it is, Region judges it
     if len(density) != count:
-        raise BodyFileError(f"has {count} polygon(s), but {len(density)} densities were given")
+        raise BodyFileError(
+            "has {count} polygon(s), but {densities} densities were given", count=count, densities=len(density)
+        )
     return list(density)
 
 

@@ -163,11 +163,13 @@ def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
     except FileNotFoundError as error:
         raise BodyFileError("there is no such file") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise BodyFileError(f"cannot be opened ({_why(error)})") from error
+        raise BodyFileError("cannot be opened ({reason})", reason=_why(error)) from error
     if not found:
         raise BodyFileError("is not a file")
     if size > limit:
-        raise BodyFileError(f"has {size / 2**20:.1f} MiB; body files may have up to {limit / 2**20:g} MiB")
+        raise BodyFileError(
+            "has {size:.1f} MiB; body files may have up to {limit:g} MiB", size=size / 2**20, limit=limit / 2**20
+        )
     return path
 
 
@@ -176,15 +178,18 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     try:
         return checked_file(path, limit).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BodyFileError(f"is not UTF-8 text (byte {error.start})") from error
+        raise BodyFileError("is not UTF-8 text (byte {byte})", byte=error.start) from error
     except OSError as error:
-        raise BodyFileError(f"cannot be opened ({_why(error)})") from error
+        raise BodyFileError("cannot be opened ({reason})", reason=_why(error)) from error
 
 
 def check_count(vertices: int) -> None:
     """Refuse a body of more vertices than the limit."""
     if vertices > MOST_VERTICES:
-        raise BodyFileError(f"has {vertices} vertices; a body may have up to {MOST_VERTICES}; simplify the outline")
+        raise BodyFileError(
+            "has {count} vertices; a body may have up to {limit}", count=vertices, limit=MOST_VERTICES,
+            hint="simplify the outline",
+        )  # fmt: skip
 
 
 def _why(error: Exception) -> str:

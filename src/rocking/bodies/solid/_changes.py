@@ -84,10 +84,10 @@ class Changes:
         share, shift = sum(pair[0] for pair in bounds), sum(pair[1] for pair in bounds)
         if self.allowed != "all" and (share > MOST_VOLUME or shift > MOST_SHIFT * size):
             raise GeometryError(
-                f"its repairs may change {percent(share)} of the volume and move the centre by "
-                f"{1000.0 * shift:.2g} mm, more than the {percent(MOST_VOLUME)} and {percent(MOST_SHIFT)} of the size "
-                f"({1000.0 * MOST_SHIFT * size:.2g} mm) that are safe: "
-                f"{'; '.join(words for words, pair in zip(listed, bounds, strict=True) if pair[0])}",
-                hint=HELP,
-            )
+                "its repairs may change {volume} of the volume and move the centre by {shift:.2g} mm, more than the "
+                "{most_volume} and {most_shift} of the size ({longest:.2g} mm) that are safe: {repairs}",
+                volume=percent(share), shift=1000.0 * shift, most_volume=percent(MOST_VOLUME),
+                most_shift=percent(MOST_SHIFT), longest=1000.0 * MOST_SHIFT * size,
+                repairs="; ".join(words for words, pair in zip(listed, bounds, strict=True) if pair[0]), hint=HELP,
+            )  # fmt: skip
         return tuple(listed)

@@ -62,9 +62,10 @@ def _second(inertia: Any) -> FloatArray:
     spread = np.linalg.eigvalsh(second)
     if spread[2] <= 0.0 or spread[0] < -_SLACK * spread[2]:
         raise GeometryError(
-            f"inertia breaks the triangle inequality: of the principal moments {np.linalg.eigvalsh(tensor)} kg m2 none "
-            "may exceed the sum of the other two; are products of inertia of the other sign?"
-        )
+            "{parameter} breaks the triangle inequality: of the principal moments {moments} kg m2 none may exceed the "
+            "sum of the other two", parameter="inertia", moments=str(np.linalg.eigvalsh(tensor)),
+            hint="are products of inertia of the other sign?",
+        )  # fmt: skip
     return second
 
 
@@ -88,10 +89,11 @@ def _reached(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, siz
         spread, most = float(direction @ found.second @ direction), found.mass * (at - low) * (high - at)
         if given and spread > most * (1.0 + _SLACK):
             raise GeometryError(
-                f"inertia is more than any mass within the body can have: along {_at(direction)} the second "
-                f"moment must be at most {most:.6g} kg m2, got {spread:.6g}; it is about the centre of mass: was it "
-                "taken about another point, or in other units?"
-            )
+                "{parameter} is more than any mass within the body can have: along {axis} the second moment must be "
+                "at most {limit:.6g} kg m2, got {moment:.6g}", parameter="inertia", axis=_at(direction), limit=most,
+                moment=spread,
+                hint="it is about the centre of mass: was it taken about another point, or in other units?",
+            )  # fmt: skip
         share = min(share, most / spread if spread > 0.0 else 1.0)
     return share
 
@@ -159,9 +161,10 @@ def _check_pair(parts: Sequence[Part], pair: tuple[int, int], low: FloatArray, h
     if count:
         volume = count / GRID**3 * float((high - low).prod())
         raise GeometryError(
-            f"parts {pair[0]} and {pair[1]} overlap over about {volume:.3g} m3; a solid is the sum of parts that do "
-            "not share any volume: cut one where the other lies"
-        )
+            "parts {first} and {second} overlap over about {volume:.3g} m3", first=pair[0], second=pair[1],
+            volume=volume,
+            hint="a solid is the sum of parts that do not share any volume: cut one where the other lies",
+        )  # fmt: skip
 
 
 _PART_SLACK = 1e-6
@@ -178,7 +181,7 @@ def check_possible(parts: Sequence[Part]) -> None:
     for number, part in enumerate(parts):
         words = _impossible(part.moments(), part.box()) or _out_of_hull(part)
         if words:
-            raise GeometryError(f"part {number} {words}; {_CAUSE}")
+            raise GeometryError("part {number} {fault}", number=number, fault=words, hint=_CAUSE)
 
 
 def _impossible(found: SolidMoments, box: FloatArray) -> str:

@@ -95,14 +95,13 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     most = MOST_VOLUME if changes.allowed == "safe" else _MOST_SWEPT
     if found.pairs or swept.sum() > most * abs(polyhedron_moments(before[faces]).mass):
         raise GeometryError(
-            f"the surface passes through itself, most plainly near {changes.place(first.place)}; {first.pairs} pair(s) "
-            "of faces cross, more than smoothing parts: what it encloses is not defined",
+            "the surface passes through itself, most plainly near {point}; {pairs} pair(s) of faces cross, more than "
+            "smoothing parts: what it encloses is not defined", point=changes.place(first.place), pairs=first.pairs,
             hint=Message(
                 "{wrap} or {hull} takes a skin over its points instead; best is to repair it in the program that made "
-                "it, for instance by a boolean union",
-                SKINS,
+                "it, for instance by a boolean union", SKINS,
             ),
-        )
+        )  # fmt: skip
     if first.pairs:
         changes.say(
             f"smoothed {near.sum()} vertices where {first.pairs} pair(s) of faces crossed, by up to "

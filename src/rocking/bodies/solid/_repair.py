@@ -70,10 +70,9 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         raise GeometryError(_listed(loops, points, changes), hint=hint)
     if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
         raise GeometryError(
-            f"{_listed(loops, points, changes)}; {percent(share)} of its edges are open: its faces hardly hang "
-            "together",
-            hint=HELP,
-        )
+            "{loops}; {share} of its edges are open: its faces hardly hang together",
+            loops=_listed(loops, points, changes), share=percent(share), hint=HELP,
+        )  # fmt: skip
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for ring in loops:
         if _is_bottom(points, faces, ring):
@@ -250,10 +249,10 @@ def _closed_surface(
     faces = turned_consistently(faces, changes) if len(faces) > count else faces
     if count := len(open_edges(faces)):
         raise GeometryError(
-            f"no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; "
-            "do more than two faces meet along them, or is the surface one-sided?",
+            "no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; do "
+            "more than two faces meet along them, or is the surface one-sided?", count=count,
             hint=Message("{wrap} stretches a skin over its points instead", SKINS),
-        )
+        )  # fmt: skip
     return points, faces
 
 
@@ -334,5 +333,6 @@ def _check_hull(shape: Polyhedron) -> None:
     volume = shape.moments().mass
     if volume > whole * (1.0 + 1e-9):
         raise GeometryError(
-            f"the surface encloses {volume:.6g} m3, more than its hull ({whole:.6g} m3): it passes through itself"
-        )
+            "the surface encloses {volume:.6g} m3, more than its hull ({hull:.6g} m3): it passes through itself",
+            volume=volume, hull=whole,
+        )  # fmt: skip

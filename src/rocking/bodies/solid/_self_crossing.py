@@ -217,9 +217,9 @@ def check_crossings(
     found = pierced(centred) if found is None else found
     if found.pairs:
         raise GeometryError(
-            f"the surface passes through itself, most plainly near {place_words(middle + found.place)}; "
-            f"{found.pairs} pair(s) of faces cross; {_REPAIR}"
-        )
+            "the surface passes through itself, most plainly near {point}; {pairs} pair(s) of faces cross",
+            point=place_words(middle + found.place), pairs=found.pairs, hint=_REPAIR,
+        )  # fmt: skip
     points = _beside(centred)
     times = winding(points, centred)
     suspects = np.flatnonzero((times != 0.0) & (times != 1.0))
@@ -230,9 +230,10 @@ def check_crossings(
     if len(suspects):
         worst = suspects[0]
         raise GeometryError(
-            f"the surface passes through itself or is inside out in part: it winds {int(times[worst])} times round the "
-            f"point near {place_words(middle + points[worst])}, where a body has 1 and its surroundings 0; {_REPAIR}"
-        )
+            "the surface passes through itself or is inside out in part: it winds {turns} times round the point near "
+            "{point}, where a body has 1 and its surroundings 0", turns=int(times[worst]),
+            point=place_words(middle + points[worst]), hint=_REPAIR,
+        )  # fmt: skip
     return found.complete
 
 

@@ -31,7 +31,9 @@ def manifold(points: FloatArray, faces: IntArray) -> "Manifold":
 
     found = Manifold(Mesh64(np.ascontiguousarray(points), np.ascontiguousarray(faces, dtype=np.uint64)))
     if found.status() != Error.NoError:
-        raise GeometryError(f"the surface does not bound a volume (manifold3d: {found.status().name})", hint=HELP)
+        raise GeometryError(
+            "the surface does not bound a volume (manifold3d: {status})", status=found.status().name, hint=HELP
+        )
     return found
 
 
@@ -106,7 +108,9 @@ def hollowed(points: FloatArray, faces: IntArray, wall: float, changes: Changes)
     cavity = coarse.minkowski_difference(ball.scale([(wall - sunk) / mean] * 3))
     inner, inward = surface(cavity)
     if not len(inward):
-        raise GeometryError(f"a wall of {wall:.4g} m leaves nothing hollow; is that its thickness in m?")
+        raise GeometryError(
+            "a wall of {wall:.4g} m leaves nothing hollow", wall=wall, hint="is that its thickness in m?"
+        )
     void = percent(float(cavity.volume()) / float(whole.volume()))
     changes.note(f"hollow, {void} of it, within walls of {1000.0 * wall:.3g} mm, its bottom too, right to about 3 %")
     return np.concatenate([points, inner]), np.concatenate([faces, inward[:, ::-1] + len(points)])
@@ -142,8 +146,9 @@ def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tu
     count = int(labels.max()) + 1
     if count > MOST_SHELLS:
         raise GeometryError(
-            f"the surface is in {count} pieces; up to {MOST_SHELLS} are read: remove the dust of the scan"
-        )
+            "the surface is in {count} pieces; up to {limit} are read: remove the dust of the scan", count=count,
+            limit=MOST_SHELLS,
+        )  # fmt: skip
     order = np.argsort(labels, kind="stable")
     shells = np.split(faces[order], np.cumsum(np.bincount(labels))[:-1])
     if count > 1:
@@ -222,9 +227,9 @@ def _inner_parts(
     share = (solid - hollow) / solid
     if share > MOST_VOLUME:
         raise GeometryError(
-            f"{words} can be matter or cavities: {differ}, which is {percent(share)} of the volume",
-            hint=Message("state {solid} or {cavity}", _READINGS),
-        )
+            "{shells} can be matter or cavities: {volumes}, which is {share} of the volume", shells=words,
+            volumes=differ, share=percent(share), hint=Message("state {solid} or {cavity}", _READINGS),
+        )  # fmt: skip
     where = np.average(middles, axis=0, weights=sizes)
     changes.say(f'took {words}, as solid; inner_parts="cavity" states the other reading', solid - hollow, where)
     return "solid"
@@ -258,7 +263,10 @@ def _united(
     involved = np.unique(crossing)
     if (within[involved].sum(axis=1) % 2).any():
         i, j = crossing[0]
-        raise GeometryError(f"shells {i} and {j} of the surface pass through each other within another one", hint=HELP)
+        raise GeometryError(
+            "shells {first} and {second} of the surface pass through each other within another one", first=int(i),
+            second=int(j), hint=HELP,
+        )  # fmt: skip
     bodies = [_outward(points, shells[i]) for i in involved]
     whole = Manifold.batch_boolean([manifold(points, shell) for shell in bodies], OpType.Add)
     volumes = [polyhedron_moments(points[shell]).mass for shell in bodies]

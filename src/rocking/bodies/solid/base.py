@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.messages import Range
 from rocking.portable import applied, dot, norm, times
 
 
@@ -116,7 +117,10 @@ class SupportPolygon(Base):
     def edge(self, which: float) -> Edge:
         number = checks.number("edge", which)
         if number != int(number) or not 0 <= number < len(self.vertices):
-            raise GeometryError(f"edge must be a whole number from 0 to {len(self.vertices) - 1}, got {which!r}")
+            raise GeometryError(
+                "{parameter} must be a whole number {allowed}, got {value}", parameter="edge",
+                allowed=Range(0, len(self.vertices) - 1), value=which,
+            )  # fmt: skip
         start, end = self.vertices[int(number)], self.vertices[(int(number) + 1) % len(self.vertices)]
         along = (end - start) / norm(end - start)
         return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
@@ -127,7 +131,9 @@ class SupportPolygon(Base):
         for edge in self.edges:
             if dot(edge.direction, along) < -1.0 + 1e-12:
                 return edge
-        raise GeometryError(f"no edge of the base is parallel to edge {which}: the body lands on a corner there")
+        raise GeometryError(
+            "no edge of the base is parallel to edge {edge}: the body lands on a corner there", edge=which
+        )
 
     def margin(self, point: FloatArray) -> float:
         along = np.roll(self.vertices, -1, axis=0) - self.vertices
@@ -158,9 +164,9 @@ def hull(points: ArrayLike) -> SupportPolygon:
     chain = _chain(ordered, slack)[:-1] + _chain(ordered[::-1], slack)[:-1]
     if len(ordered) < 3 or len(chain) < 3:
         raise GeometryError(
-            f"the body stands on {len(ordered)} point(s) of one line; it needs a base with an area: "
-            "pass base= with the points it stands on, or raise base_tolerance"
-        )
+            "the body stands on {count} point(s) of one line; it needs a base with an area: pass base= with the "
+            "points it stands on, or raise base_tolerance", count=len(ordered),
+        )  # fmt: skip
     return SupportPolygon(np.array(chain))
 
 

@@ -109,7 +109,10 @@ class Part:
     ) -> None:
         given: object = shape
         if not isinstance(given, Shape):
-            raise GeometryError(f"a Part needs a shape (box, cylinder, extrusion, mesh ...), got {shape!r:.60}")
+            raise GeometryError(
+                "a Part needs a {parameter} (box, cylinder, extrusion, mesh ...), got {value}", parameter="shape",
+                value=shape,
+            )  # fmt: skip
         object.__setattr__(self, "shape", shape)
         object.__setattr__(self, "density", checks.density("density", density))
         object.__setattr__(self, "rotation", rotation_matrix(rotation))

@@ -34,9 +34,9 @@ class Polyhedron(Shape):
         self.vertices, self.faces = checked_triangles(vertices, faces)
         if count := len(open_edges(self.faces)):
             raise GeometryError(
-                f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
-                "are there holes, flipped faces, or vertices that were not merged?"
-            )
+                "the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way",
+                count=count, hint="are there holes, flipped faces, or vertices that were not merged?",
+            )  # fmt: skip
         self.mended: FloatArray = np.concatenate([np.empty((0, 3, 3)), *mended])
         if not simple:
             check_crossings(self.corners)
@@ -117,9 +117,9 @@ class Polyhedron(Shape):
         checks.length("largest dimension of the polyhedron", float(box.max()))
         if abs(volume) <= 1e-9 * float(box.max()) * float(np.sort(box)[-2:].prod()):
             raise GeometryError(
-                f"the surface encloses no volume (box {box[0]:g} x {box[1]:g} x {box[2]:g} m); "
-                "is it a sheet, or does half of it look the other way?"
-            )
+                "the surface encloses no volume (box {width:g} x {depth:g} x {height:g} m)", width=float(box[0]),
+                depth=float(box[1]), height=float(box[2]), hint="is it a sheet, or does half of it look the other way?",
+            )  # fmt: skip
         if volume < 0.0:
             raise GeometryError("the surface is inside out (negative volume); turn the faces round")
 
@@ -172,9 +172,14 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
     finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         bad = int(np.argmin(finite))
-        raise GeometryError(f"vertex {bad} must be finite, got {tuple(points[bad].tolist())}; is the file damaged?")
+        raise GeometryError(
+            "vertex {vertex} must be finite, got {point}", vertex=bad, point=tuple(points[bad].tolist()),
+            hint="is the file damaged?",
+        )  # fmt: skip
     if np.abs(points).max() > checks.LARGEST:
-        raise GeometryError(f"coordinates must be within {checks.LARGEST:g} m of the origin; wrong unit?")
+        raise GeometryError(
+            "coordinates must be within {limit:g} m of the origin", limit=checks.LARGEST, hint="wrong unit?"
+        )
     if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or len(numbers) < fewest:
         raise GeometryError(
             ("faces must be at least {fewest} triangles, each of three vertex numbers, got {type} of shape {shape}"),
@@ -184,7 +189,7 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
         )
     if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
         raise GeometryError(
-            f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
-            "do the numbers start at 1, or belong to another list of vertices?"
-        )
+            "faces must name vertices 0 to {last}, got {low} to {high}", last=len(points) - 1, low=int(numbers.min()),
+            high=int(numbers.max()), hint="do the numbers start at 1, or belong to another list of vertices?",
+        )  # fmt: skip
     return points.copy(), numbers.astype(np.int64)

@@ -115,9 +115,9 @@ class Solid:
         if abs(low[2] - self._ground) > max(tolerance, 8.0 * np.spacing(abs(self._ground))):
             verb, lowest = "floats above" if low[2] > self._ground else "reaches below", float(low[2])
             raise GeometryError(
-                f"the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {self._ground:.9g} m; "
-                f"pass ground={lowest:.9g} or move the parts"
-            )
+                "the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {ground:.9g} m; pass "
+                "ground={lowest:.9g} or move the parts", verb=verb, lowest=lowest, ground=self._ground,
+            )  # fmt: skip
         middle = 0.5 * (low + high)
         self.origin: FloatArray = np.array([middle[0], middle[1], self._ground])
         self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
@@ -432,9 +432,9 @@ class Solid:
         if self.local_base.margin(centre[:2]) <= 1e-12 * self._size:
             x, y = (self.origin + centre)[:2].tolist()
             raise GeometryError(
-                f"the centre of mass (x = {x:.6g}, y = {y:.6g} m) must lie above the base; "
-                "a body like this falls over by itself"
-            )
+                "the centre of mass (x = {x:.6g}, y = {y:.6g} m) must lie above the base", x=x, y=y,
+                hint="a body like this falls over by itself",
+            )  # fmt: skip
         plausibility.warn(self.doubts)
 
 

@@ -182,7 +182,7 @@ def _points(part: Part) -> FloatArray:
     if isinstance(shape, Polyhedron):
         return placed_points(shape.vertices, part.rotation, part.translation)
     if not isinstance(shape, Turned):
-        raise GeometryError(f"a {type(shape).__name__} has no outline from the side")
+        raise GeometryError("a {type} has no outline from the side", type=type(shape).__name__)
     radius, height = shape.profile()
     u, v = shape.half_axes[0] * part.rotation[:, 0], shape.half_axes[1] * part.rotation[:, 1]
     extremes = [math.atan2(v[k], u[k]) + turn for k in (0, 2) for turn in (0.0, math.pi)]

@@ -253,7 +253,7 @@ def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
     """Return `value` as three finite numbers."""
     array = checks.real_array(name, value, unit)
     if array.shape != (3,) or not np.isfinite(array).all():
-        raise GeometryError(f"{name} must be three finite numbers (x, y, z) [{unit}], got {value!r:.60}")
+        raise GeometryError(parameter=name, allowed=f"three finite numbers (x, y, z) [{unit}]", value=value)
     return array.copy()
 
 

@@ -179,10 +179,16 @@ def revolution(profile: ArrayLike) -> Turned:
     if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 2 or not np.isfinite(points).all():
         raise GeometryError("profile must be at least two points (radius, height) in m, all finite")
     if (points[:, 0] < 0.0).any():
-        raise GeometryError(f"radii of the profile must be >= 0 m, got {points[:, 0].min():g}")
+        raise GeometryError(
+            "radii of the {parameter} must be >= 0 m, got {radius:g}", parameter="profile",
+            radius=float(points[:, 0].min()),
+        )  # fmt: skip
     first, last = points[0, 1], points[-1, 1]
     if last <= first:
-        raise GeometryError(f"the profile must end above its start, got heights {first:g} and {last:g} m")
+        raise GeometryError(
+            "the {parameter} must end above its start, got heights {start:g} and {end:g} m", parameter="profile",
+            start=float(first), end=float(last),
+        )  # fmt: skip
     closed = region.checked_ring("profile", np.concatenate([[(0.0, first)], points, [(0.0, last)]]))
     region.check_polygon("profile", closed, ())
     checks.length("largest dimension of the profile", float(np.ptp(closed, axis=0).max()))
@@ -289,7 +295,10 @@ def ellipsoid(width: float, depth: float, height: float, *, cut_below: float = 0
     below = checks.within("cut_below", cut_below, 0.0, 2.0 * half, unit="m")
     above = checks.within("cut_above", cut_above, 0.0, 2.0 * half, unit="m")
     if below + above >= 2.0 * half * (1.0 - 1e-9):
-        raise GeometryError(f"cuts of {below:g} and {above:g} m leave nothing of an ellipsoid {2.0 * half:g} m high")
+        raise GeometryError(
+            "cuts of {below:g} and {above:g} m leave nothing of an ellipsoid {height:g} m high", below=below,
+            above=above, height=2.0 * half,
+        )  # fmt: skip
     low, high = math.acos(max(below / half - 1.0, -1.0)), math.acos(min(1.0 - above / half, 1.0))
     top = 2.0 * half - below - above
     pieces = [Meridian(np.array([[low, high], [half - below, half]]), arc=True)]

@@ -117,7 +117,10 @@ def _voxels_of(part: Part, step: float) -> _Pieces:
     low, high = part.box()
     counts = np.maximum(np.ceil((high - low) / step - 1e-9).astype(int), 1)
     if counts.prod() * _SUBGRID**3 > MOST_UNITS * 10:
-        raise InvalidValueError(f"divisions give {counts.prod()} voxels, which are too many; take fewer")
+        raise InvalidValueError(
+            "{parameter} give {voxels} voxels, which are too many", parameter="divisions", voxels=int(counts.prod()),
+            hint="take fewer",
+        )  # fmt: skip
     fine = counts * _SUBGRID
     axes = [start + (np.arange(n) + 0.5) * step / _SUBGRID for start, n in zip(low, fine, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
