@@ -99,16 +99,24 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
     if isinstance(motion, Mapping):
         unknown = [name for name in motion if name not in ("x", "y", "z")]
         if unknown:
-            raise InvalidValueError(f"a component of the motion is x, y or z, got {unknown[0]!r:.60}")
+            raise InvalidValueError(
+                "a component of the {parameter} is x, y or z, got {value}", parameter="motion", value=unknown[0]
+            )
         motion = tuple(motion.get(name) for name in "xyz")
     parts = motion if isinstance(motion, (tuple, list)) else (motion,)
     if len(parts) > 3:
-        raise InvalidValueError(f"a motion has at most three components, x, y and z, got {len(parts)}")
+        raise InvalidValueError("a motion has at most three components, x, y and z, got {count}", count=len(parts))
     for part in parts:
         if not isinstance(part, (GroundMotion, Pulse)) and part is not None:
-            raise InvalidValueError(f"motion must be {_HOW}, got {checks.given('motion', part)}")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got {shown}", parameter="motion", allowed=_HOW, value=part,
+                shown=checks.given("motion", part),
+            )  # fmt: skip
     if all(part is None for part in parts):
-        raise InvalidValueError(f"motion must be {_HOW}, got none; free_rocking lets a body go on ground at rest")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got none", parameter="motion", allowed=_HOW,
+            hint="free_rocking lets a body go on ground at rest",
+        )  # fmt: skip
     x, y, z = (*parts, None, None)[:3]
     if isinstance(x, GroundMotion) and x.vertical is not None:
         if z is not None:
@@ -179,9 +187,9 @@ def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMot
     _check("vertical", vertical)
     if not math.isclose(horizontal.time_step, vertical.time_step, rel_tol=1e-9):
         raise InvalidValueError(
-            f"vertical must have the step of horizontal, {horizontal.time_step:g} s, "
-            f"got {vertical.time_step:g} s; resample one first"
-        )
+            "{parameter} must have the step of horizontal, {expected:g} s, got {step:g} s", parameter="vertical",
+            expected=horizontal.time_step, step=vertical.time_step, hint="resample one first",
+        )  # fmt: skip
     sources = vertical.provenance or (f"samples of {vertical.name!r}",)
     provenance = [*horizontal.provenance, *(f"vertical part: {line}" for line in sources)]
     samples = min(len(horizontal), len(vertical))
@@ -264,7 +272,10 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
 
 def _check(which: str, motion: object) -> None:
     if checked_motion(motion, which).vertical is not None:
-        raise InvalidValueError(f"{which} must have no vertical part yet, got {motion!r:.200}; which one is meant?")
+        raise InvalidValueError(
+            "{parameter} must have no vertical part yet, got {value}", parameter=which, value=motion,
+            hint="which one is meant?",
+        )  # fmt: skip
 
 
 def _told(horizontal: GroundMotion, vertical: GroundMotion) -> dict[str, str]:
@@ -282,6 +293,7 @@ def matching(first: GroundMotion, second: GroundMotion) -> None:
     checked_motion(second, "second")
     if len(first) != len(second) or not math.isclose(first.time_step, second.time_step, rel_tol=1e-9):
         raise InvalidValueError(
-            "second must have the step and the length of first, "
-            f"{first.time_step:g} s and {len(first)} samples, got {second.time_step:g} s and {len(second)}"
-        )
+            "{parameter} must have the step and the length of first, {first_step:g} s and {first_count} samples, got "
+            "{step:g} s and {count}", parameter="second", first_step=first.time_step, first_count=len(first),
+            step=second.time_step, count=len(second),
+        )  # fmt: skip

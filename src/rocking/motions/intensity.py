@@ -301,7 +301,9 @@ class IntensityMeasure:
             The value [unit of the measure].
         """
         if self.needs_body and body is None:
-            raise InvalidValueError(f"{self.name} is known of a motion and a body, got the motion alone")
+            raise InvalidValueError(
+                "{measure} is known of a motion and a body, got the motion alone", measure=self.name
+            )
         return self.of_motion(motion, body or RockingScale())
 
     @property
@@ -366,9 +368,9 @@ class IntensityMeasure:
         """Refuse a measure that no factor on the motion changes: one of power zero."""
         if self.power == 0:
             raise InvalidValueError(
-                f"measure must be one that grows with the motion, got {self.name!r}, which no factor changes; "
-                'analysis="cloud" takes it'
-            )
+                "{parameter} must be one that grows with the motion, got {value}, which no factor changes",
+                parameter="measure", value=self.name, hint='analysis="cloud" takes it',
+            )  # fmt: skip
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
         """Return the factors that bring every motion to every target; a measure must grow with the motion for that.

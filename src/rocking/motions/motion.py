@@ -10,6 +10,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.motions.segments import Segments
 
 LARGEST_ACCELERATION = 1e6  # no ground moves harder than this [m/s2]: a larger number is a wrong unit or a damaged file
@@ -66,8 +67,9 @@ class GroundMotion:
             vertical = _samples("vertical", self.vertical)
             if vertical.size != self.acceleration.size:
                 raise InvalidValueError(
-                    f"vertical must have as many samples as acceleration, {self.acceleration.size}, got {vertical.size}"
-                )
+                    "{parameter} must have as many samples as acceleration, {expected}, got {count}",
+                    parameter="vertical", expected=self.acceleration.size, count=vertical.size,
+                )  # fmt: skip
             object.__setattr__(self, "vertical", vertical)
         checks.of_kind("name", self.name, str, "a string")
         object.__setattr__(self, "metadata", _metadata(self.metadata))
@@ -196,7 +198,7 @@ def checked_motion(given: Any, name: str = "motion") -> GroundMotion:
     """
     if not isinstance(given, GroundMotion):
         raise InvalidValueError(
-            f"{name} must be a GroundMotion, got {given!r:.60}; a pulse becomes one by .sampled(time_step)"
+            parameter=name, allowed="a GroundMotion", value=given, hint="a pulse becomes one by .sampled(time_step)"
         )
     return given
 
@@ -216,23 +218,28 @@ def checked_level(given: Any) -> Any:
     """
     metadata = given.metadata if isinstance(given, GroundMotion) else {}
     if (what := _UPRIGHT.get(metadata.get(ORIENTATION, ""))) is not None:
-        which = f"component {metadata.get('component', '')} of {metadata.get('file', given.name)!r:.100}"
         raise InvalidValueError(
-            f"{which} {what} and cannot be a horizontal motion; give it along z, and a horizontal component along x"
-        )
+            "component {component} of {file!r:.100} {orientation} and cannot be a horizontal motion",
+            component=metadata.get("component", ""), file=metadata.get("file", given.name), orientation=what,
+            hint="give it along z, and a horizontal component along x",
+        )  # fmt: skip
     return given
 
 
 def _samples(name: str, values: Any) -> FloatArray:
     given = np.array(checks.real_array(name, values, "m/s2"), dtype=np.float64)
     if given.ndim != 1 or given.size < 2:
-        raise InvalidValueError(f"{name} must be a row of at least 2 samples [m/s2], got shape {given.shape}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter=name,
+            allowed="a row of at least 2 samples [m/s2]", shape=given.shape,
+        )  # fmt: skip
     bad = np.flatnonzero(~(np.abs(given) <= LARGEST_ACCELERATION))
     if bad.size:
         raise InvalidValueError(
-            f"{name} must be finite and within {LARGEST_ACCELERATION:g} m/s2, "
-            f"got {given[bad[0]]:g} at index {bad[0]}; wrong unit or damaged?"
-        )
+            "{parameter} must be finite and within {limit:g} m/s2, got {value} at index {index}", parameter=name,
+            allowed=Range(-LARGEST_ACCELERATION, LARGEST_ACCELERATION, "m/s2"), value=float(given[bad[0]]),
+            limit=LARGEST_ACCELERATION, index=int(bad[0]), hint="wrong unit or damaged?",
+        )  # fmt: skip
     given.setflags(write=False)
     return given
 
@@ -244,5 +251,5 @@ def _metadata(given: Any) -> Mapping[str, str]:
 
 def _provenance(given: Any) -> tuple[str, ...]:
     if isinstance(given, str) or not isinstance(given, Sequence) or not all(isinstance(line, str) for line in given):
-        raise InvalidValueError(f"provenance must be a sequence of strings, one sentence each, got {given!r:.60}")
+        raise InvalidValueError(parameter="provenance", allowed="a sequence of strings, one sentence each", value=given)
     return tuple(given)

@@ -56,7 +56,7 @@ def _rotated(motion: GroundMotion, angle: float) -> GroundMotion:
     angle : float
         From x towards y [degree].
     """
-    raise InvalidValueError(f"rotate is for two horizontal components; {motion.name!r:.60} is one")
+    raise InvalidValueError("rotate is for two horizontal components; {motion!r:.60} is one", motion=motion.name)
 
 
 STEPS: dict[str, Callable[..., GroundMotion]] = {
@@ -163,10 +163,10 @@ def _step(name: str, tail: str) -> tuple[str, dict[str, Any]]:
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in keys or not (key in known or (open_ended and key in MEASURES)):
-            raise InvalidValueError(f"it takes {', '.join(known) or 'no keys'}, got {item!r:.60}")
+            raise InvalidValueError("it takes {keys}, got {item!r:.60}", keys=", ".join(known) or "no keys", item=item)
         keys[key] = _value(key, value, known.get(key))
     if missing := [key for key, one in known.items() if one.default is one.empty and key not in keys]:
-        raise InvalidValueError(f"it needs {', '.join(missing)}")
+        raise InvalidValueError("it needs {keys}", keys=", ".join(missing))
     for key in keys.keys() - known.keys():
         measure(key).check_grows()
     for key, value in keys.items() if name == "pad" else ():

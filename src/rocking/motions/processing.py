@@ -69,7 +69,10 @@ def detrended(
     motion = checked_motion(motion)
     order, kind = checks.whole("order", order, 1, 3), checks.one_of("fit", fit, ("velocity", "acceleration"))
     if len(motion) < order + 2:
-        raise InvalidValueError(f"a trend of order {order} needs at least {order + 2} samples, got {len(motion)}")
+        raise InvalidValueError(
+            "a trend of order {order} needs at least {fewest} samples, got {count}", order=order, fewest=order + 2,
+            count=len(motion),
+        )  # fmt: skip
     what = f"polynomial of order {order} fitted to the {kind} removed"
     return _each(motion, lambda a: a - _trend(a, motion.time_step, order, kind), what)
 
@@ -188,8 +191,9 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
         count = _whole(motion.duration / new) + 1
         if count > MOST_SAMPLES:
             raise InvalidValueError(
-                f"time_step must leave at most {MOST_SAMPLES:g} samples, got {count:g}; wrong unit?"
-            )
+                "{parameter} must leave at most {limit:g} samples, got {count:g}", parameter="time_step",
+                limit=MOST_SAMPLES, count=count, hint="wrong unit?",
+            )  # fmt: skip
         place = np.arange(count) * ratio
         # rounding must not push the last new sample beyond the last old one
         last = len(motion) - 1
@@ -200,10 +204,14 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     factor = round(ratio)
     if abs(ratio - factor) > ROUNDING * factor:
         raise InvalidValueError(
-            f"time_step must be a whole multiple of {motion.time_step:g} s if above, got {new:g} s, {ratio:g} times"
-        )
+            "{parameter} must be a whole multiple of {step:g} s if above, got {value} s, {ratio:g} times",
+            parameter="time_step", value=new, step=motion.time_step, ratio=ratio,
+        )  # fmt: skip
     if factor > len(motion) - 1:
-        raise InvalidValueError(f"time_step must leave 2 samples, at most {motion.duration:g} s, got {new:g} s")
+        raise InvalidValueError(
+            "{parameter} must leave 2 samples, at most {longest:g} s, got {value} s", parameter="time_step", value=new,
+            longest=motion.duration,
+        )  # fmt: skip
     what = f"low-passed (linear phase) and coarsened from {motion.time_step:g} s to {new:g} s"
     return _each(motion, lambda a: _coarse(a, factor), what, new)
 
@@ -299,7 +307,10 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     times = [checks.within("before", before, 0.0, math.inf, unit="s")]
     times.append(times[0] if after is None else checks.within("after", after, 0.0, math.inf, unit="s"))
     if sum(times) / motion.time_step > MOST_SAMPLES:
-        raise InvalidValueError(f"padding must add at most {MOST_SAMPLES:g} samples, got {sum(times):g} s; wrong unit?")
+        raise InvalidValueError(
+            "padding must add at most {limit:g} samples, got {time:g} s", limit=MOST_SAMPLES, time=sum(times),
+            hint="wrong unit?",
+        )  # fmt: skip
     counts = (_whole(times[0] / motion.time_step), _whole(times[1] / motion.time_step))
     what = f"padded with zeros, {counts[0]} samples before and {counts[1]} after"
     return _moved(_each(motion, lambda a: np.pad(a, counts), what), -counts[0] * motion.time_step)
@@ -340,7 +351,10 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     now, name = one.of(motion, body), one.symbol or one.name
     target = checks.positive("target", target, one.unit)
     if not now > 0.0:
-        raise InvalidValueError(f"motion must have {name} > 0 {one.unit} to be scaled, got {now:g}; zero throughout?")
+        raise InvalidValueError(
+            "{parameter} must have {measure} > 0 {unit} to be scaled, got {peak:g}", parameter="motion", measure=name,
+            unit=one.unit, peak=now, hint="zero throughout?",
+        )  # fmt: skip
     factor = checks.number("factor", (target / now) ** (1.0 / one.power))
     vertical = None if motion.vertical is None else motion.vertical * factor
     what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"

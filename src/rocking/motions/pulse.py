@@ -193,13 +193,16 @@ class Pulse(ABC):
         """
         step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
         if step > self.duration:
-            raise InvalidValueError(f"time_step must be at most the pulse's duration {self.duration:g} s, got {step:g}")
+            raise InvalidValueError(
+                "{parameter} must be at most the pulse's duration {duration:g} s, got {value}", parameter="time_step",
+                value=step, duration=self.duration,
+            )  # fmt: skip
         count = int(np.ceil(self.duration / step - 1e-9)) + 2
         if count > MOST_SAMPLES:
             raise InvalidValueError(
-                f"time_step must leave at most {MOST_SAMPLES:g} samples, got {step:g} s, "
-                f"which leaves {count:g}; wrong unit?"
-            )
+                "{parameter} must leave at most {limit:g} samples, got {value} s, which leaves {count:g}",
+                parameter="time_step", value=step, limit=MOST_SAMPLES, count=count, hint="wrong unit?",
+            )  # fmt: skip
         times = np.arange(count) * step
         return GroundMotion(
             self.acceleration(times),

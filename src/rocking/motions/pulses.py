@@ -326,25 +326,33 @@ def pulse(words: str) -> Pulse:
     """
     given_words: object = words
     if not isinstance(given_words, str):
-        raise InvalidValueError(f"a pulse is written as sine:amplitude=3,period=0.8, got {words!r:.60}")
+        raise InvalidValueError(
+            "a pulse is written as sine:amplitude=3,period=0.8, got {value}", parameter="words", value=words
+        )
     name, _, tail = words.partition(":")
     known = catalogue()
     name = checks.spelling(name, known)
     if name not in known:
-        there, near = ", ".join(sorted(known)), checks.nearest(name, known)
-        raise UnknownModelError(f"no pulse named {name!r}; there are {there}", hint=near)
+        raise UnknownModelError(
+            "no pulse named {name!r}; there are {names}", name=name, names=", ".join(sorted(known)),
+            hint=checks.nearest(name, known),
+        )  # fmt: skip
     given: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in given:
-            why = checks.number_hint(words)
-            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}", hint=why)
+            raise UnknownModelError(
+                "write a pulse as sine:amplitude=3,period=0.8, got {pulse!r}", pulse=words,
+                hint=checks.number_hint(words),
+            )  # fmt: skip
         given[key] = whole_or_number(key, value)
     try:
         return known[name](**given)
     except TypeError as error:
         names = ", ".join(key for key in known[name].__annotations__ if key != "return")
-        raise UnknownModelError(f"pulse {name!r} takes {names}; got {', '.join(given) or 'none'}") from error
+        raise UnknownModelError(
+            "pulse {name!r} takes {names}; got {stated}", name=name, names=names, stated=", ".join(given) or "none"
+        ) from error
 
 
 UNITS_OF = {"amplitude": "m/s2", "period": "s", "duration": "s", "velocity": "m/s", "phase": "rad"}

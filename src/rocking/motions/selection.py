@@ -110,7 +110,10 @@ def selected(
     wanted = target_spectrum(target)
     low, high = (checks.positive("periods", each, "s") for each in periods)
     if not low < high:
-        raise InvalidValueError(f"periods must be the first and the last, got {low:g} and {high:g} s")
+        raise InvalidValueError(
+            "{parameter} must be the first and the last, got {low:g} and {high:g} s", parameter="periods", low=low,
+            high=high,
+        )  # fmt: skip
     most = checks.within("most", most, 1.0, np.inf)
     grid = np.geomspace(low, high, POINTS)
     level, given = wanted(grid), [one for one in records if one.x is not None or one.y is not None]
@@ -124,9 +127,10 @@ def selected(
     number = allowed.size if count is None else checks.whole("count", count, 1)
     if allowed.size < max(number, 1):
         raise InvalidValueError(
-            f"{number or 1} of {len(given)} records are wanted, and {allowed.size} come to {wanted.name} with factors "
-            f"of {1.0 / most:g} to {most:g}; allow larger ones, or give more records"
-        )
+            "{wanted} of {count} records are wanted, and {available} come to {target} with factors of {low:g} to "
+            "{high:g}", wanted=number or 1, count=len(given), available=allowed.size, target=wanted.name,
+            low=1.0 / most, high=most, hint="allow larger ones, or give more records",
+        )  # fmt: skip
     best = allowed[np.argsort(misfits[allowed], kind="stable")][:number]
     scaled = tuple(_scaled(given[k], float(factors[k]), wanted.name) for k in best)
     kept = RecordSet(scaled, getattr(records, "left_out", ()))

@@ -114,7 +114,10 @@ def oscillators(motion: GroundMotion, periods: ArrayLike, damping: float) -> tup
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     given = np.atleast_1d(checks.positive_array("periods", periods, "s"))
     if given.ndim != 1 or not given.size:
-        raise InvalidValueError(f"periods must be a row of at least 1 number [s], got shape {given.shape}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got shape {shape}", parameter="periods",
+            allowed="a row of at least 1 number [s]", shape=given.shape,
+        )  # fmt: skip
     shortest = SHORTEST_PERIOD * motion.time_step
     if given.min() < shortest:
         raise InvalidValueError(

@@ -96,7 +96,10 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
     sds, sd1 = checks.positive("sds", sds, "m/s2"), checks.positive("sd1", sd1, "m/s2")
     ts, tl = sd1 / sds, checks.positive("tl", tl, "s")
     if not ts < tl:
-        raise InvalidValueError(f"tl must be above sd1 / sds = {ts:.4g} s, got {tl:g} s; wrong unit?")
+        raise InvalidValueError(
+            "{parameter} must be above sd1 / sds = {corner:.4g} s, got {value} s", parameter="tl", value=tl, corner=ts,
+            hint="wrong unit?",
+        )  # fmt: skip
 
     def spectrum(t: FloatArray) -> FloatArray:
         rising, long = 0.4 + 0.6 * t / (0.2 * ts), np.maximum(t, ts)
@@ -110,19 +113,23 @@ def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise InvalidValueError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+        raise InvalidValueError("cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)).at(
+            str(path)
+        ) from error
     mark = next((mark for mark in ";\t," if mark in "".join(lines[:1])), ",")
     head, *rows = [row for row in csv.reader(lines, delimiter=mark) if any(row)] or [[]]
     unit = _UNIT.search(head[1].strip()) if len(head) > 1 else None
     if unit is None:
-        raise InvalidValueError(f"{path.name}: its first line must name the columns with units, as in T [s], Sa [g]")
+        raise InvalidValueError("its first line must name the columns with units, as in T [s], Sa [g]").at(path.name)
     factor = ACCELERATION_UNITS[re.sub(r"m/s(\^2|/s)", "m/s2", unit[1].lower())]
     try:
         t, a = np.array([[float(cell.replace(",", ".")) for cell in row[:2]] for row in rows], dtype=np.float64).T
     except ValueError as error:
-        raise InvalidValueError(f"{path.name}: every line must be a period and an acceleration ({error})") from error
+        raise InvalidValueError("every line must be a period and an acceleration ({reason})", reason=str(error)).at(
+            path.name
+        ) from error
     if t.size < 2 or not (np.diff(t) > 0.0).all() or t[0] < 0.0 or not (a > 0.0).all() or not np.isfinite(a).all():
-        raise InvalidValueError(f"{path.name}: periods must rise from 0, and accelerations be finite and above zero")
+        raise InvalidValueError("periods must rise from 0, and accelerations be finite and above zero").at(path.name)
 
     def spectrum(wanted: FloatArray) -> FloatArray:
         return np.asarray(np.exp(np.interp(wanted, t, np.log(factor * a))), dtype=np.float64)
@@ -163,7 +170,9 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
     if name not in CODES or not colon:
         if (folder or Path()).joinpath(words).is_file():
             return in_file((folder or Path()) / words)
-        raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_HOW, value=words
+        )
     given: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
         key, _, value = (part.strip() for part in item.partition("="))
@@ -171,7 +180,9 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
     try:
         return CODES[name](**given)
     except TypeError as error:
-        raise InvalidValueError(f"target must be {_HOW}; got {words!r:.80}") from error
+        raise InvalidValueError(
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_HOW, value=words
+        ) from error
 
 
 CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce7": asce7}
@@ -183,5 +194,7 @@ def _acceleration(key: str, text: str) -> float:
     is_acceleration = key in {"ag", "sds", "sd1"}
     if found is None or found[2] not in (ACCELERATION_UNITS if is_acceleration else {"", "s"}):
         like = "an acceleration with its unit such as 0.25g or 2.5m/s2" if is_acceleration else "a number such as 8"
-        raise InvalidValueError(f"{key} of a target must be {like}, got {text!r:.40}")
+        raise InvalidValueError(
+            "{parameter} of a target must be {allowed}, got {value}", parameter=key, allowed=like, value=text
+        )
     return float(found[1]) * (ACCELERATION_UNITS[found[2]] if is_acceleration else 1.0)

@@ -65,7 +65,7 @@ class Bhrc(RecordFormat):
         rows = headers.in_unit(record, self.name, "g/10", 3)
         names = [part.name for part in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:
-            raise RecordError(f"BHRC holds components L, V and T, got {', '.join(names)[:60]}")
+            raise RecordError("BHRC holds components L, V and T, got {components}", components=", ".join(names)[:60])
         lines: list[str] = []
         for part, values in zip(record.components, rows, strict=True):
             lines += _written(record, part, values)
@@ -105,7 +105,7 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
 def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
     count = values.size
     if count > 99_999 or np.abs(values).max() >= 1e9:
-        raise RecordError(f"BHRC holds up to 99999 samples below 1e9 g/10, got {count}")
+        raise RecordError("BHRC holds up to 99999 samples below 1e9 g/10, got {count}", count=count)
     file, instrument, station = (record.text(key, 40) for key in ("file", "instrument", "station"))
     azimuth = one_line(part.metadata.get("azimuth", "0"), 3)
     duration = count * part.time_step

@@ -69,7 +69,9 @@ class Cwa(RecordFormat):
         rows = dict(zip((part.name for part in record.components), samples, strict=True))
         steps = {part.time_step for part in record.components}
         if set(rows) != set(_COMPONENTS) or len({row.size for row in rows.values()}) != 1 or len(steps) != 1:
-            raise RecordError(f"CWA holds U, N and E of equal length and step, got {', '.join(rows)[:60]}")
+            raise RecordError(
+                "CWA holds U, N and E of equal length and step, got {components}", components=", ".join(rows)[:60]
+            )
         step = steps.pop()
         table = np.round(np.column_stack([rows[name] for name in _COMPONENTS]), _DECIMALS) + 0.0
         if np.abs(table).max() >= 1e5 or len(table) * step >= 1e5:

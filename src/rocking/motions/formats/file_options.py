@@ -37,7 +37,9 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
             raise InvalidValueError("files: {file} is no file of this set", file=f"{str(name)!r:.80}", hint=near)
         if len(matches) > 1 or matches[0] in options:
             both = ", ".join(map(str, matches)) if len(matches) > 1 else f"{matches[0]} has two entries"
-            raise InvalidValueError(f"files: {str(name)!r:.80} must name one file of this set, got {both:.300}")
+            raise InvalidValueError(
+                "files: {file!r:.80} must name one file of this set, got {matches:.300}", file=str(name), matches=both
+            )
         with located("files"), located(name, "file"):
             options[matches[0]] = _checked(stated)
     return options
@@ -46,7 +48,9 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
 def together(path: Path, listed: Mapping[str, Any], stated: Mapping[str, Any], source: str) -> Options:
     """Return the options of a file in a list: those of its row and those stated for the file, which may not clash."""
     if twice := sorted(set(listed) & set(stated)):
-        raise InvalidValueError(f"{source}: {path.name} has {twice[0]} in its row and in files: remove one")
+        raise InvalidValueError(
+            "{file} has {key} in its row and in files: remove one", file=path.name, key=twice[0]
+        ).at(source)
     return tuple(sorted({**listed, **stated}.items()))
 
 

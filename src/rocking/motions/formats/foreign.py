@@ -92,7 +92,9 @@ class ForeignReader:
                 creationflags=quiet,
             )  # fmt: skip
         except OSError as error:
-            raise RecordError(f"no process for {self.needs} can be started: {error}") from error
+            raise RecordError(
+                "no process for {format} can be started: {reason}", format=self.needs, reason=str(error)
+            ) from error
         return made, True
 
     def _give_back(self, worker: subprocess.Popen[bytes]) -> None:

@@ -66,7 +66,9 @@ class GeonetV2A(RecordFormat):
         rows = headers.in_unit(record, self.name, "mm/s2", 3)
         names = [one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
         if len(rows) != 3 or len(set(names)) != 3:
-            raise RecordError(f"GeoNet holds three components of different names, got {', '.join(names)}")
+            raise RecordError(
+                "GeoNet holds three components of different names, got {components}", components=", ".join(names)
+            )
         lines: list[str] = []
         for part, name, values in zip(record.components, names, rows, strict=True):
             lines += self._written(record, name, values, part.time_step)
@@ -129,7 +131,10 @@ class GeonetV2A(RecordFormat):
             rounded = np.round(values, decimals)
             words = [f"{value:{_WIDTH}.{decimals}f}" for value in rounded.tolist()]
             if max(map(len, words)) > _WIDTH:
-                raise RecordError(f"{what.lower()} of {np.abs(values).max():g} {of} does not fit into {_WIDTH} columns")
+                raise RecordError(
+                    "{quantity} of {largest:g} {unit} does not fit into {width} columns", quantity=what.lower(),
+                    largest=float(np.abs(values).max()), unit=of, width=_WIDTH,
+                )  # fmt: skip
             at = int(np.abs(rounded).argmax())
             lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
             blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]

@@ -102,5 +102,7 @@ def columns_of(record: Record, name: str, unit: str | None, most: int) -> tuple[
     """Return the samples of a record as columns, and their step [s], for writers."""
     samples = headers.in_unit(record, name, unit, most)
     if len({row.size for row in samples}) > 1 or len({part.time_step for part in record.components}) > 1:
-        raise RecordError(f"{name} holds components of the same length and step; write each to a file of its own")
+        raise RecordError(
+            "{format} holds components of the same length and step", format=name, hint="write each to a file of its own"
+        )
     return np.column_stack(samples), record.components[0].time_step

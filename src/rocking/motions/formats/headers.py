@@ -79,13 +79,18 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
 def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
     """Return the samples of a record in the one unit that a format holds, for writers."""
     if not 1 <= len(record.components) <= most:
-        raise RecordError(f"{title} holds 1 to {most} components a file, got {len(record.components)}")
+        raise RecordError(
+            "{format} holds 1 to {most} components a file, got {count}", format=title, most=most,
+            count=len(record.components),
+        )  # fmt: skip
     rows = []
     unit = unit or record.components[0].unit
     for part in record.components:
         values = np.asarray(part.acceleration, dtype=np.float64)
         if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
-            raise RecordError(f"component {part.name!r:.60} must be a row of at least 2 finite samples")
+            raise RecordError(
+                "component {component!r:.60} must be a row of at least 2 finite samples", component=part.name
+            )
         if part.unit not in ACCELERATION_UNITS:
             raise RecordError(
                 "unit must be one of {units}, got {unit}",

@@ -24,7 +24,9 @@ def without_response(motion: GroundMotion, stations: Places, low: float, high: f
     """
     motion = checked_motion(motion)
     if "sensitivity" not in motion.metadata:
-        raise InvalidValueError(f"response is for counts of a recorder, as miniSEED files hold, got {motion!r:.100}")
+        raise InvalidValueError(
+            "response is for counts of a recorder, as miniSEED files hold, got {motion}", motion=f"{motion!r:.100}"
+        )
     nyquist = 0.5 / motion.time_step
     low = checks.within("low", low, 0.0, nyquist, unit="Hz", open_low=True, open_high=True)
     high = checks.within("high", high, low, nyquist / ABOVE, unit="Hz", open_low=True, hint="1.25 of it below Nyquist")

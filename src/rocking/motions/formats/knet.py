@@ -86,16 +86,21 @@ class Knet(RecordFormat):
         rate = round(1.0 / part.time_step)
         if rate < 1 or abs(rate * part.time_step - 1.0) > 1e-9 or given.size % rate:
             raise RecordError(
-                f"K-NET holds whole seconds at a whole number of samples a second, got {given.size} samples "
-                f"at {part.time_step:g} s"
-            )
+                "K-NET holds whole seconds at a whole number of samples a second, got {count} samples at {step:g} s",
+                count=given.size, step=part.time_step,
+            )  # fmt: skip
         largest = float(np.abs(given).max())
         if largest > 1e8:
-            raise RecordError(f"K-NET holds accelerations up to 1e8 gal, got {largest:g}; wrong unit?")
+            raise RecordError(
+                "K-NET holds accelerations up to 1e8 gal, got {largest:g}", largest=largest, hint="wrong unit?"
+            )
         gal = max(1, math.ceil(2.0 * largest))
         counts = np.rint(given * (_FULL_SCALE / gal))
         if abs(counts.mean()) > 0.5:
-            raise RecordError(f"K-NET records lose their mean when read, got a mean of {given.mean():g} gal; remove it")
+            raise RecordError(
+                "K-NET records lose their mean when read, got a mean of {mean:g} gal", mean=float(given.mean()),
+                hint="remove it",
+            )  # fmt: skip
         peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
         known = {key: record.text(key.strip(". "), 60) for key in _KEYS}
         known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}

@@ -95,7 +95,9 @@ class MiniSeed(RecordFormat):
         rows = headers.in_unit(record, self.name, "m/s2", 100)
         codes = [part.name[:3] for part in record.components]
         if len(set(codes)) != len(codes):
-            raise RecordError(f"components need different channel codes of 3 letters, got {', '.join(codes)[:60]}")
+            raise RecordError(
+                "components need different channel codes of 3 letters, got {codes}", codes=", ".join(codes)[:60]
+            )
         obspy = need_obspy("miniSEED")
         pairs = zip(rows, record.components, strict=True)
         stream = obspy.Stream([trace_of(values, part, record) for values, part in pairs])

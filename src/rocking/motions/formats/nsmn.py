@@ -54,7 +54,9 @@ class Nsmn(RecordFormat):
         table, step = columns_of(record, self.name, "gal", 3)
         names = [part.name for part in record.components]
         if len(names) != 3 or not re.fullmatch(r"N\S*-S\S* E\S*-W\S* U\S*-D\S*", " ".join(names)):
-            raise RecordError(f"NSMN holds components such as N-S, E-W, U-D, got {', '.join(names)[:60]}")
+            raise RecordError(
+                "NSMN holds components such as N-S, E-W, U-D, got {components}", components=", ".join(names)[:60]
+            )
         table = table.round(6)
         largest = " ".join(f"({name}) {np.abs(row).max():.6f}" for name, row in zip(names, table.T, strict=True))
         lines = ["STRONG GROUND MOTION RECORDS OF TURKIYE"]

@@ -192,7 +192,10 @@ def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, de
     full = [per_line] * (len(lines) - 1) + [len(values) - per_line * (len(lines) - 1)]
     for text, count in zip(lines, full, strict=True):
         if len(text) != count * width:
-            raise RecordError(f"a number does not fit into {width} characters with {decimals} decimals; wrong unit?")
+            raise RecordError(
+                "a number does not fit into {width} characters with {decimals} decimals", width=width,
+                decimals=decimals, hint="wrong unit?",
+            )  # fmt: skip
     return lines
 
 

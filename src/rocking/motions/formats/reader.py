@@ -242,7 +242,7 @@ def write_record(record: Record, path: str | PathLike[str], format: str) -> None
     try:
         Path(path).write_bytes(content)
     except (OSError, ValueError) as error:
-        raise RecordError(f"{path}: {getattr(error, 'strerror', None) or error}") from error
+        raise RecordError(getattr(error, "strerror", None) or str(error)).at(str(path)) from error
 
 
 def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, units: str = "m/s2") -> None:
@@ -336,7 +336,10 @@ def _direction(source: Source, record: Record, part: Component) -> directions.Di
 def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:
     name = upright.metadata["component"]
     if same_file and name == motion.metadata["component"]:
-        raise InvalidValueError(f"{beside.name} holds the horizontal component {name} and cannot be the vertical one")
+        raise InvalidValueError(
+            "{file} holds the horizontal component {component} and cannot be the vertical one", file=beside.name,
+            component=name,
+        )  # fmt: skip
     if late := delay(motion, upright):
         raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
     return with_vertical(motion, upright)

@@ -40,14 +40,16 @@ class Source:
     def of_path(cls, path: Path, skip: int = 0) -> "Source":
         """Read a file, within limits; skip: lines at its top to pass over."""
         if not path.is_file():
-            raise RecordError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
+            raise RecordError("not a plain file" if path.exists() else "no such file").at(str(path))
         try:
             size = path.stat().st_size
             if size > LARGEST_FILE:
-                raise RecordError(f"{path}: {size} bytes, more than the {LARGEST_FILE} that are read")
+                raise RecordError(
+                    "{size} bytes, more than the {limit} that are read", size=size, limit=LARGEST_FILE
+                ).at(str(path))
             content = path.read_bytes()
         except OSError as error:
-            raise RecordError(f"{path}: {error.strerror or error}") from error
+            raise RecordError(error.strerror or str(error)).at(str(path)) from error
         if not content.strip():
             raise RecordError("{file}: the file is empty", file=path)
         return cls(path.name, content, skip=checks.whole("skip", skip, 0, 100_000))

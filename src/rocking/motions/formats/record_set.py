@@ -212,7 +212,7 @@ def read_records(  # noqa: PLR0913 - every one of them is a property of some set
     if not records:
         named = ", ".join(map(str, places[:MOST_TOLD])) or "no file is named"
         if not left_out:
-            raise RecordError(f"{named}: none of 0 files could be read; it holds no file")
+            raise RecordError("{folders}: none of 0 files could be read", folders=named, hint="it holds no file")
         file, reason = left_out[0]
         cause, hint = (reason, "") if isinstance(reason, str) else (reason.cause, reason.hint)
         raise RecordError(
@@ -252,7 +252,7 @@ def paths_of(where: str | PathLike[str]) -> list[Path]:
     root = Path(path.anchor)
     found = sorted(one for one in root.glob(str(path.relative_to(root))) if one.is_file())
     if not found:
-        raise RecordError(f"{where}: the pattern finds no file")
+        raise RecordError("{pattern}: the pattern finds no file", pattern=str(where))
     return found
 
 
@@ -281,7 +281,9 @@ def mapped(
                 done(1)
     except BrokenProcessPool as error:
         why = 'a script that starts processes needs if __name__ == "__main__": around its calls, or workers=1'
-        raise InvalidValueError(f"{workers} workers could not be started, or one died; {why}") from error
+        raise InvalidValueError(
+            "{workers} workers could not be started, or one died", workers=workers, hint=why
+        ) from error
 
 
 Read = tuple[list[GroundMotion] | RockingError, list[str]]  # the components or why there are none, and doubts
@@ -548,15 +550,17 @@ def _row(row: Mapping[str, str], mark: str, source: str) -> ListedRecord:
     factor = (row.get("scale") or "1").replace(*(",", ".") if mark == ";" else ("", ""))
     if not _is_number(factor) or bool(axes) == bool(alone):
         raise InvalidValueError(
-            f"{source}: a row has a motion, or x with y and z, and its scale is a number; got {dict(row)!r:.120}"
-        )
+            "a row has a motion, or x with y and z, and its scale is a number; got {row}", row=f"{dict(row)!r:.120}"
+        ).at(source)
     known = {"x", "y", "z", "motion", "file", "scale", "name", "", *_MEANT}
     how: dict[str, Any] = {_MEANT[title]: cell for title, cell in row.items() if title in _MEANT and cell}
     for key, kind in (("time_step", float), ("skip", int)):
         if key in how:
             text = how[key].replace(",", ".") if mark == ";" else how[key]
             if not _is_number(text):
-                raise InvalidValueError(f"{source}: {key} of a row must be a number, got {how[key]!r:.40}")
+                raise InvalidValueError("{key} of a row must be a number, got {text!r:.40}", key=key, text=how[key]).at(
+                    source
+                )
             how[key] = kind(float(text))
     told = {title: cell for title, cell in row.items() if title not in known and cell}
     files = {"": alone} if alone else axes

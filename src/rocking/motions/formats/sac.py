@@ -8,7 +8,6 @@ import struct
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import MissingExtraError, RecordError, how_to_install
+from rocking.errors import RecordError, extra
 from rocking.motions.formats import directions, headers
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
@@ -84,7 +83,10 @@ class Sac(RecordFormat):
         """Return a SAC file, in the unit of the component, which stands in the header's first text of the user."""
         (values,) = headers.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
-            raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
+            raise RecordError(
+                "SAC holds accelerations below 1e37, got {largest:g}", largest=float(np.abs(values).max()),
+                hint="wrong unit?",
+            )  # fmt: skip
         part = record.components[0]
         trace = trace_of(values.astype(np.float32), part, record)
         trace.stats.sac = {"kuser0": part.unit}
@@ -166,12 +168,9 @@ def check_stations(found: dict[str, Any], stations: Sequence[Source]) -> None:
 
 def need_obspy(form: str) -> Any:
     """Return ObsPy."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return import_module("obspy")
-    except ImportError as error:
-        raise MissingExtraError(how_to_install(f"reading {form}", "obspy", error)) from error
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return extra("obspy", f"reading {form}")
 
 
 def trace_of(values: Any, part: Component, record: Record) -> Any:

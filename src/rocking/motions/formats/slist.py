@@ -53,7 +53,7 @@ class Slist(RecordFormat):
         station = re.sub(r"\W|_", "", record.text("station", 5)) or "XXXXX"
         codes = [re.sub(r"\W|_", "", one_line(part.name, 20)) or "X" for part in record.components]
         if len(set(codes)) != len(codes):
-            raise RecordError(f"components need different channel codes, got {', '.join(codes)[:60]}")
+            raise RecordError("components need different channel codes, got {codes}", codes=", ".join(codes)[:60])
         for part, code, values in zip(
             record.components, codes, headers.in_unit(record, self.name, "m/s2", 99), strict=True
         ):

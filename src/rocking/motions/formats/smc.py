@@ -167,7 +167,9 @@ class SmcUsgs(RecordFormat):
             value = 0.0
         mantissa, exponent = f"{value:.{self._decimals}E}".split("E")
         if not -9 <= int(exponent) <= 9:
-            raise RecordError(f"SMC holds accelerations below 1e10 cm/s2, got {value:g}; wrong unit?")
+            raise RecordError(
+                "SMC holds accelerations below 1e10 cm/s2, got {acceleration:g}", acceleration=value, hint="wrong unit?"
+            )
         return f"{mantissa}E{int(exponent):+d}".rjust(self._width)
 
 

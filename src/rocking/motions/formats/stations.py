@@ -48,7 +48,7 @@ def station_files(places: Places) -> list[Path]:
     for place in map(Path, [places] if isinstance(places, PathLike) else places):
         inside = [path for path in sorted(place.rglob("*.xml")) if is_station_file(path)] if place.is_dir() else [place]
         if not inside:
-            raise RecordError(f"{place}: the folder holds no StationXML file")
+            raise RecordError("the folder holds no StationXML file").at(str(place))
         found += inside
     return list(dict.fromkeys(found))
 
@@ -78,7 +78,10 @@ def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
         source.doubt(None, f"{name}: the StationXML states a sensitivity to {after or 'no unit'}, taken as counts")
     value = float(total[0]) / _FACTORS[spelt[1]]
     if not 1e-12 < abs(value) < 1e15:
-        raise InvalidValueError(f"{name}: sensitivity must be within 1e-12 to 1e15 counts/(m/s2), got {value:g}")
+        raise InvalidValueError(
+            "{station}: sensitivity must be within 1e-12 to 1e15 counts/(m/s2), got {sensitivity:g}", station=name,
+            sensitivity=value,
+        )  # fmt: skip
     return value
 
 

@@ -22,7 +22,7 @@ class Distribution(ABC):
         object.__setattr__(self, "low", checks.number("low", self.low))
         object.__setattr__(self, "high", checks.number("high", self.high))
         if not self.low < self.high:
-            raise InvalidValueError(f"low must be below high, got {self.low:g} and {self.high:g}")
+            raise InvalidValueError("low must be below high, got {low:g} and {high:g}", low=self.low, high=self.high)
 
     def cdf(self, value: FloatArray) -> FloatArray:
         """Return the cumulative distribution function: 0 at the low end, 1 at the high end [-]."""

@@ -67,7 +67,10 @@ class Family:
             Value by parameter.
         """
         if np.shape(shares) != (len(self.distributions),):
-            raise InvalidValueError(f"shares must be {len(self.distributions)} numbers, got shape {np.shape(shares)}")
+            raise InvalidValueError(
+                "{parameter} must be {count} numbers, got shape {shape}", parameter="shares",
+                count=len(self.distributions), shape=np.shape(shares),
+            )  # fmt: skip
         pairs = zip(self.distributions.items(), shares, strict=True)
         # twelve digits: the last ones hang on the C library
         return {name: float(f"{spread.quantile(float(share)):.12g}") for (name, spread), share in pairs}

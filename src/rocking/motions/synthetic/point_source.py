@@ -90,7 +90,10 @@ class PointSource:
         checks.within("path_duration", self.path_duration, 0.0, 1.0, unit="s/m", hint="given in s/km?")
         starts, exponents = _pairs("spreading", self.spreading).T
         if starts[0] != REFERENCE_DISTANCE or not np.all(np.diff(starts) > 0.0):
-            raise InvalidValueError(f"spreading must begin at 1000 m and go outwards, got distances {starts} m")
+            raise InvalidValueError(
+                "{parameter} must begin at 1000 m and go outwards, got distances {distances} m", parameter="spreading",
+                distances=str(starts),
+            )  # fmt: skip
         for exponent in exponents:
             checks.within("spreading exponent", exponent, -5.0, 5.0)
 
@@ -196,7 +199,10 @@ def point_source_motion(
     time = times(time_step, duration)
     step = float(time[1])
     if source.corner_frequency * step >= 0.5:
-        raise InvalidValueError(f"time_step must be below {0.5 * lead:g} s for this source, got {step:g}")
+        raise InvalidValueError(
+            "{parameter} must be below {limit:g} s for this source, got {value}", parameter="time_step", value=step,
+            limit=0.5 * lead,
+        )  # fmt: skip
     noise = normals(seed, time.size) * window((time - lead) / length)
     # zeros behind, up to a length that is quick to transform
     size = next_fast_len(time.size, real=True)
@@ -229,5 +235,7 @@ def _power(base: FloatArray, exponent: float) -> FloatArray:
 def _pairs(name: str, values: Any) -> FloatArray:
     pairs = checks.real_array(name, values)
     if pairs.ndim != 2 or pairs.shape[1] != 2:
-        raise InvalidValueError(f"{name} must be made of pairs of numbers, got shape {pairs.shape}")
+        raise InvalidValueError(
+            "{parameter} must be made of pairs of numbers, got shape {shape}", parameter=name, shape=pairs.shape
+        )
     return pairs

@@ -258,9 +258,9 @@ def nonstationary_motion(
     omega = shaper.omega(time)
     if omega.max() * step >= math.pi:
         raise InvalidValueError(
-            f"filter frequency must be below {0.5 / step:g} Hz for steps of {step:g} s, "
-            f"got {omega.max() / (2.0 * math.pi):g} Hz; sign of the slope?"
-        )
+            "filter frequency must be below {limit:g} Hz for steps of {step:g} s, got {frequency:g} Hz",
+            limit=0.5 / step, step=step, frequency=float(omega.max()) / (2.0 * math.pi), hint="sign of the slope?",
+        )  # fmt: skip
     noise = normals(seed, time.size)
     acceleration = modulation(time) * _unit_process(noise, omega, shaper.damping, step)
     if corner is not None:
