@@ -156,7 +156,7 @@ def test_every_template_has_its_facts():
             names = {keyword.arg for keyword in call.keywords}
             if not call.args or not isinstance(call.args[0], ast.Constant) or None in names or not names - {"hint"}:
                 continue
-            fields = set(re.findall(r"\{(\w+)\}", str(call.args[0].value)))
+            fields = set(re.findall(r"\{(\w+)[!:}]", str(call.args[0].value)))
             assert fields <= names | {"parameter", "value", "allowed"}, (path.name, call.lineno)
 
 

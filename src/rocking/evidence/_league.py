@@ -216,7 +216,9 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
     """
     data = all_measurements() if measurements is None else measurements
     if (count := len(set(zip(data.group, data.labels, data.slenderness.tolist(), strict=True)))) < FEWEST:
-        raise InvalidValueError(f"a league needs measurements of at least {FEWEST} blocks, got {count}")
+        raise InvalidValueError(
+            "a league needs measurements of at least {fewest} blocks, got {count}", fewest=FEWEST, count=count
+        )
     rows = [*_standing(data), *(_row(as_it_is(model), data) for model in extra)]
     return tuple(sorted(rows, key=lambda row: row.rmse))
 

@@ -15,6 +15,7 @@ from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.hierarchy import calibrate_hierarchy
+from rocking.messages import Range
 from rocking.portable import trapezoid
 from rocking.restitution import ImpactGeometry
 from rocking.restitution._implied import energy_bound
@@ -102,7 +103,7 @@ class RestitutionDistribution:
         """
         p = checks.real_array("probability", probability)
         if not ((p >= 0.0) & (p <= 1.0)).all():
-            raise InvalidValueError(f"probability must be in [0, 1], got {probability!r:.60}")
+            raise InvalidValueError(parameter="probability", allowed=Range(0.0, 1.0), value=probability)
         table = self.tables[self.onto if onto is None else checks.foot("onto", onto)]
         return np.interp(p, np.linspace(0.0, 1.0, table.size), table)
 

@@ -21,6 +21,7 @@ from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import NORMAL_95
 from rocking.errors import InvalidValueError, MeasurementError, located
 from rocking.evidence.measurements import DataSet, interface_of, joined
+from rocking.messages import Range
 
 _LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
 _RATIOS, _USUAL_RATIOS = (0.5, 200.0), (1.0, 30.0)
@@ -115,19 +116,26 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
             raise InvalidValueError("say how far r is open: give uncertainty, or low and high, or a series alone")
         low, r, high = self.interval
         if not low <= r <= high or low == high:
-            raise InvalidValueError(f"r must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}")
+            raise InvalidValueError(
+                "{parameter} must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}", parameter="r",
+                value=r, low=low, r=r, high=high,
+            )  # fmt: skip
         if r > 1.0:
-            raise InvalidValueError(f"r must be <= 1: a rectangle that gains energy was not measured, got {r:g}")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}: a rectangle that gains energy was not measured, got {value}",
+                parameter="r", allowed=Range(-math.inf, 1.0), value=r,
+            )  # fmt: skip
         if not _RATIOS[0] <= self.ratio <= _RATIOS[1]:
             raise InvalidValueError(
-                f"h/b must be in {_RATIOS[0]:g} to {_RATIOS[1]:g}, got {self.ratio:g}; is it b/h, or is one length in "
-                "another unit?"
-            )
+                "h/b must be in {low:g} to {high:g}, got {ratio:g}", low=_RATIOS[0], high=_RATIOS[1], ratio=self.ratio,
+                hint="is it b/h, or is one length in another unit?",
+            )  # fmt: skip
         if not _DEVIATIONS[0] <= self.deviation <= _DEVIATIONS[1]:
             raise InvalidValueError(
-                f"r must be known to a standard deviation of {_DEVIATIONS[0]:g} to {_DEVIATIONS[1]:g}, got "
-                f"{self.deviation:.3g}; is it in percent, or that of something else?"
-            )
+                "{parameter} must be known to a standard deviation of {low:g} to {high:g}, got {deviation:.3g}",
+                parameter="r", low=_DEVIATIONS[0], high=_DEVIATIONS[1], deviation=self.deviation,
+                hint="is it in percent, or that of something else?",
+            )  # fmt: skip
         return self
 
     @property
@@ -196,22 +204,28 @@ def rows_in(path: Path) -> list[Measurement]:
     try:
         data = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise MeasurementError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from error
+        raise MeasurementError("cannot be read ({reason})", reason=getattr(error, "strerror", None) or str(error)).at(
+            str(path)
+        ) from error
     if len(data) > _LARGEST:
-        raise MeasurementError(f"{path}: has {len(data) / 2**20:.1f} MiB; files of measurements may have up to 16 MiB")
+        raise MeasurementError(
+            "has {size:.1f} MiB; files of measurements may have up to 16 MiB", size=len(data) / 2**20
+        ).at(str(path))
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MeasurementError(f"{path}: is not UTF-8 text (byte {error.start})") from error
+        raise MeasurementError("is not UTF-8 text (byte {byte})", byte=error.start).at(str(path)) from error
     kinds = {".toml": _tables, ".csv": _lines}
     if path.suffix.lower() not in kinds:
-        raise MeasurementError(f"{path}: measurements stand in .toml or .csv, got {path.suffix or 'no ending'!r}")
+        raise MeasurementError(
+            "measurements stand in .toml or .csv, got {extension!r}", extension=path.suffix or "no ending"
+        ).at(str(path))
     found: list[Measurement] = []
     doubts: list[str] = []
     places: dict[str, str] = {}
     for place, keys in kinds[path.suffix.lower()](path, text):
         if len(found) == _MOST:
-            raise MeasurementError(f"{path}: has more than {_MOST} measurements")
+            raise MeasurementError("has more than {limit} measurements", limit=_MOST).at(str(path))
         try:
             found.append(Measurement.model_validate(keys))
         except ValidationError as error:
@@ -223,7 +237,7 @@ def rows_in(path: Path) -> list[Measurement]:
             doubts.append(f"{path.name}, {place}: it is the same as {places[row]}, and counts twice")
         places.setdefault(row, place)
     if not found:
-        raise MeasurementError(f"{path}: has no measurement")
+        raise MeasurementError("has no measurement").at(str(path))
     plausibility.warn(doubts[:3] + ([f"{path.name}: {len(doubts) - 3} more doubts like these"] if doubts[3:] else []))
     return found
 
@@ -232,10 +246,12 @@ def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise MeasurementError(f"{path}: is not TOML that can be read: {str(error)[:200]}") from error
+        raise MeasurementError("is not TOML that can be read: {reason}", reason=str(error)[:200]).at(
+            str(path)
+        ) from error
     rows = tables.pop("measurement", None)
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise MeasurementError(f"{path}: has no tables [[measurement]]")
+        raise MeasurementError("has no tables [[measurement]]").at(str(path))
     for number, row in enumerate(rows, start=1):
         whole = {**tables, **row}
         numbers = {key: float(value) for key, value in whole.items() if type(value) is int}
@@ -247,14 +263,16 @@ def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     try:
         names = reader.fieldnames or ()
         if twice := [name for name in names if names.count(name) > 1]:
-            raise MeasurementError(f"{path}, line 1: names a column twice, {twice[0]!r:.60}")
+            raise MeasurementError("names a column twice, {column!r:.60}", column=twice[0]).at(str(path), 1)
         for row in reader:
             place = f"line {reader.line_num}"
             if "" in row or None in row.values():
-                raise MeasurementError(f"{path}, {place}: has not as many fields as the first line has names")
+                raise MeasurementError("has not as many fields as the first line has names").at(
+                    str(path), reader.line_num
+                )
             yield place, {key: _value(key, field.strip()) for key, field in row.items() if field.strip()}
     except csv.Error as error:
-        raise MeasurementError(f"{path}, line {reader.line_num}: is no CSV ({error})") from error
+        raise MeasurementError("is no CSV ({reason})", reason=str(error)).at(str(path), reader.line_num) from error
 
 
 def _value(key: str, field: str) -> Any:
@@ -306,10 +324,13 @@ def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
         If it was refused, the body is no block, or a key is missing or unknown.
     """
     if found.refused:
-        raise InvalidValueError(f"what was refused is no measurement: {found.refused[0]}")
+        raise InvalidValueError("what was refused is no measurement: {reason}", reason=found.refused[0])
     given: object = body
     if not isinstance(given, Block) or not given.stands_on_corners:
-        raise InvalidValueError(f"body must be a Block on its corners: evidence is of rectangles, got {body!r}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}: evidence is of rectangles, got {value}", parameter="body",
+            allowed="a Block on its corners", value=body,
+        )  # fmt: skip
     spread = (found.mean.high - found.mean.low) / (2.0 * NORMAL_95)
     keys = {
         "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,
@@ -343,7 +364,10 @@ def write_measurements(rows: Sequence[Measurement], path: str | Path) -> Path:
     """
     path = Path(path)
     if not rows or path.suffix.lower() != ".csv":
-        raise InvalidValueError(f"write at least one measurement to a file .csv, got {len(rows)} to {path.name!r:.60}")
+        raise InvalidValueError(
+            "write at least one measurement to a file .csv, got {count} to {file!r:.60}", count=len(rows),
+            file=path.name,
+        )  # fmt: skip
     names = [name for name in Measurement.model_fields if any(getattr(row, name) is not None for row in rows)]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

@@ -94,7 +94,7 @@ def recommend(
     data = all_measurements() if measurements is None else measurements
     known: object = data
     if not isinstance(known, DataSet) or not len(known):
-        raise InvalidValueError(f"measurements must be a DataSet of at least one row, got {measurements!r:.60}")
+        raise InvalidValueError(parameter="measurements", allowed="a DataSet of at least one row", value=measurements)
     candidates = [
         each for each in (default_models() if models is None else _chosen(models)) if not isinstance(each, Calibrated)
     ]
@@ -124,13 +124,15 @@ def recommend(
 def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
     found = {each.label: each for each in map(model, _several(models))}
     if not isinstance(found.get(CALIBRATED, Calibrated()), Calibrated):
-        raise InvalidValueError(f"{CALIBRATED!r} is the default, which is judged anyhow; give your model another name")
+        raise InvalidValueError(
+            "{name!r} is the default, which is judged anyhow", name=CALIBRATED, hint="give your model another name"
+        )
     for each in found.values():
         if isinstance(each.model if isinstance(each, Interface) else each, Fixed):
             raise InvalidValueError(
-                f"{each.label} is a value given by hand: nothing that was measured on other bodies can judge it; if it "
-                "was measured on this body it is better than every model"
-            )
+                "{label} is a value given by hand: nothing that was measured on other bodies can judge it",
+                label=each.label, hint="if it was measured on this body it is better than every model",
+            )  # fmt: skip
     return list(found.values())
 
 

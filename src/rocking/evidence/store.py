@@ -42,7 +42,8 @@ def own_sets() -> list[tuple[Path, DataSet]]:
         try:
             found.append((path, read_measurements(path)))
         except MeasurementError as error:
-            raise MeasurementError(f"{error}. It is part of your own evidence; delete the file to go on") from error
+            error.add_hint("it is part of your own evidence: delete the file to go on")
+            raise
     _once([(str(path), data) for path, data in found])
     return found
 
@@ -56,9 +57,9 @@ def _once(sets: Sequence[tuple[str, DataSet]]) -> None:
         if both := rows & seen.keys():
             row = min(both)
             raise InvalidValueError(
-                f"the measurement {', '.join(map(str, row))} (group, block, h/b, r) is in {seen[row]} and in {name}: "
-                "it would count twice; leave out or delete one of them"
-            )
+                "the measurement {row} (group, block, h/b, r) is in {first} and in {second}: it would count twice",
+                row=", ".join(map(str, row)), first=seen[row], second=name, hint="leave out or delete one of them",
+            )  # fmt: skip
         seen |= dict.fromkeys(rows, name)
 
 
@@ -89,16 +90,16 @@ def selected(words: Sequence[str] = ()) -> DataSet:
             sets.append(all_measurements())
         elif word == OWN:
             if not (kept := [each for _, each in own_sets()]):
-                raise InvalidValueError(f"{store()} has no evidence yet: rocking evidence add FILE")
+                raise InvalidValueError("{folder} has no evidence yet: rocking evidence add FILE", folder=str(store()))
             sets.append(kept[0] if len(kept) == 1 else joined(kept, OWN, "measurements of files"))
         elif word in known:
             sets.append(known[word])
         elif Path(word).suffix:
             sets.append(read_measurements(word))
         else:
-            allowed = ", ".join((PUBLISHED, OWN, *known))
             raise InvalidValueError(
-                f"no measurements named {word!r:.60}; there are {allowed}, and files .toml and .csv"
-            )
+                "no measurements named {name!r:.60}; there are {names}, and files .toml and .csv", name=word,
+                names=", ".join((PUBLISHED, OWN, *known)),
+            )  # fmt: skip
     _once([(each.name, each) for each in sets])
     return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "a selection")

@@ -101,7 +101,7 @@ def identify(  # noqa: PLR0913 - what is known beside the measurement
         return _of_times(measurement, known)
     if isinstance(measurement, RotationSeries):
         return _of_series(measurement, known)
-    raise InvalidValueError(f"measurement must be ImpactTimes or a RotationSeries, got {measurement!r:.60}")
+    raise InvalidValueError(parameter="measurement", allowed="ImpactTimes or a RotationSeries", value=measurement)
 
 
 def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:

@@ -61,8 +61,9 @@ def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any)
     if not isinstance(measurement, RotationSeries):
         what = "times of impacts" if isinstance(measurement, ImpactTimes) else type(measurement).__name__
         raise InvalidValueError(
-            f"under a motion the measurement must be a rotation or an angular velocity (RotationSeries), got {what}"
-        )
+            "under a motion the {parameter} must be {allowed}, got {type}", parameter="measurement",
+            allowed="a rotation or an angular velocity (RotationSeries)", type=what,
+        )  # fmt: skip
     if measurement.from_acceleration:
         raise InvalidValueError(
             "under a motion the measurement must be a rotation, an angular velocity or a displacement relative to the "

@@ -55,9 +55,9 @@ def problem_of(series: RotationSeries, known: Knowledge, motion: GroundMotion, c
     strong = np.flatnonzero(np.abs(motion.acceleration) > _STILL * lifts)
     if not strong.size:
         raise InvalidValueError(
-            f"motion must lift the body, which takes {lifts:.3g} m/s2, got a peak of {motion.peak:.3g} m/s2; perhaps "
-            "its unit is another one"
-        )
+            "{parameter} must lift the body, which takes {uplift:.3g} m/s2, got a peak of {peak:.3g} m/s2",
+            parameter="motion", uplift=lifts, peak=motion.peak, hint="perhaps its unit is another one",
+        )  # fmt: skip
     rest = np.flatnonzero(series.time < motion.time[strong[0]] + clock[0] - 3.0 * clock[1])
     mean[MEAN], deviation[MEAN], deviation[HALF] = -0.1, 0.2, 0.5 * known.asymmetry
     deviation[[WIDTH, HEIGHT]], deviation[TILT] = known.size_error, known.tilt_error

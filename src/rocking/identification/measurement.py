@@ -53,7 +53,9 @@ class ImpactTimes:
         """Check the times."""
         times = _row("times", self.times, "s")
         if not _FEWEST <= times.size <= _MOST:
-            raise InvalidValueError(f"times of impacts must be {_FEWEST} to {_MOST}, got {times.size}")
+            raise InvalidValueError(
+                "times of impacts must be {fewest} to {most}, got {count}", fewest=_FEWEST, most=_MOST, count=times.size
+            )
         _increasing("times", times)
         object.__setattr__(self, "times", times)
         if self.sigma is not None:
@@ -110,7 +112,9 @@ class RotationSeries:
         """Check the rows."""
         time = _row("time", self.time, "s")
         if time.size < _FEWEST:
-            raise InvalidValueError(f"a series must have {_FEWEST} samples or more, got {time.size}")
+            raise InvalidValueError(
+                "a series must have {fewest} samples or more, got {count}", fewest=_FEWEST, count=time.size
+            )
         _increasing("time", time)
         object.__setattr__(self, "time", time)
         if self.rotation is None and self.angular_velocity is None:
@@ -129,8 +133,9 @@ def _row(name: str, values: object, unit: str, size: int | None = None) -> Float
     row = np.array(checks.real_array(name, values, unit))
     if row.ndim != 1 or (size is not None and row.size != size):
         raise InvalidValueError(
-            f"{name} must be a row of {'numbers' if size is None else size} [{unit}], got {row.shape}"
-        )
+            "{parameter} must be {allowed}, got {shape}", parameter=name,
+            allowed=f"a row of {'numbers' if size is None else size} [{unit}]", shape=row.shape,
+        )  # fmt: skip
     if not np.isfinite(row).all():
         bad = int(np.flatnonzero(~np.isfinite(row))[0])
         raise InvalidValueError(
@@ -147,4 +152,7 @@ def _row(name: str, values: object, unit: str, size: int | None = None) -> Float
 def _increasing(name: str, times: FloatArray) -> None:
     if np.any(np.diff(times) <= 0.0):
         bad = int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
-        raise InvalidValueError(f"{name} must increase [s], got {times[bad]:g} after {times[bad - 1]:g} at index {bad}")
+        raise InvalidValueError(
+            "{parameter} must increase [s], got {value} after {before:g} at index {index}", parameter=name,
+            value=float(times[bad]), before=float(times[bad - 1]), index=bad,
+        )  # fmt: skip

@@ -252,7 +252,7 @@ class Knowledge:
         """Return what was said, checked."""
         if body is not None and not isinstance(body, Body):
             raise InvalidValueError(
-                f"body must be a Block, Section or MassPoints, got {body!r:.60}; in_plane() of a solid"
+                parameter="body", allowed="a Block, Section or MassPoints", value=body, hint="in_plane() of a solid"
             )
         angle, error = (0.0, tilt) if np.ndim(tilt) == 0 else tilt
         return cls(

@@ -290,7 +290,9 @@ class Identification(Exported):
             If the measurement was refused.
         """
         if self.refused:
-            raise InvalidValueError(f"there is no law of a measurement that was refused: {self.refused[0]}")
+            raise InvalidValueError(
+                "there is no law of a measurement that was refused: {reason}", reason=self.refused[0]
+            )
         return RandomRestitution(self._next, seed)
 
     def answer(self) -> Answer:

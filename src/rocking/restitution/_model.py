@@ -243,7 +243,9 @@ class RestitutionModel(ABC):
         """Write the coefficients of a piece, the least slenderness of which is known; a quick model writes in place."""
         raw = self.raw_of_slenderness(slenderness)
         if not math.isfinite(float(raw.sum())):
-            raise InvalidValueError(f"coefficient of model {self.name} must be finite for every slenderness")
+            raise InvalidValueError(
+                "coefficient of model {model} must be finite for every slenderness", model=self.name
+            )
         out[...] = raw
 
     @property

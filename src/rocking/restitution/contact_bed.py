@@ -110,7 +110,7 @@ class ContactBedModel(InertiaModel):
     def __post_init__(self) -> None:
         number = checks.within("points", self.points, 2, 1000)
         if number != int(number):
-            raise InvalidValueError(f"points must be a whole number, got {self.points}")
+            raise InvalidValueError(parameter="points", allowed="a whole number", value=self.points)
         object.__setattr__(self, "points", int(number))
         checks.within("damping", self.damping, 1e-3, 100.0)
         checks.within("hardness", self.hardness, 5.0, 1e4, hint="a softer bed has no impact, a harder one is the limit")

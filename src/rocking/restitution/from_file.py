@@ -23,6 +23,7 @@ _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::
 _VARIABLE = "ROCKING_MODELS"  # of the surroundings: a file, all models of which are known by name
 _OWN = "own model, "
 _ROUNDING = 1e-9
+_IMPACT = "for h/b = {ratio:g}, feet at {left:g} and {right:g} m, onto the {onto} one"
 # colour and strokes of models that say none, which no model of the package has
 _LOOKS = (
     ("#a8642a", (0, (9, 2))),
@@ -52,9 +53,9 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
     try:
         source = file.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
-        raise UnknownModelError(f"no file {file}") from error
+        raise UnknownModelError("no file {file}", file=str(file)) from error
     except (OSError, ValueError) as error:
-        raise UnknownModelError(f"{file} cannot be read: {error}") from error
+        raise UnknownModelError("{file} cannot be read: {reason}", file=str(file), reason=str(error)) from error
     eta, _, name, parameters = found.groups("") if found else ("", "", "", "")
     kind = _kind(source, str(file), name)
     given = parameters_in(parameters, word, {})
@@ -90,7 +91,9 @@ def _own_source(path: str) -> str:
     try:
         return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
-        raise UnknownModelError(f"{_VARIABLE}={path} cannot be read: {error}") from error
+        raise UnknownModelError(
+            "{variable}={path} cannot be read: {reason}", variable=_VARIABLE, path=path, reason=str(error)
+        ) from error
 
 
 def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...]) -> tuple[type[RestitutionModel], ...]:
@@ -98,7 +101,7 @@ def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...])
     with blamed(path):
         kinds = [each for each in _kinds(source, path).values() if not inspect.isabstract(each)]
         if not kinds:
-            raise UnknownModelError(f"{_VARIABLE}={path} has no restitution model")
+            raise UnknownModelError("{variable}={path} has no restitution model", variable=_VARIABLE, path=path)
         for position, kind in enumerate(kinds):
             name = getattr(kind, "name", kind.__name__)
             try:
@@ -108,7 +111,9 @@ def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...])
             except Exception as error:
                 for each in kinds[:position]:
                     withdraw(each)
-                raise InvalidValueError(f"{path}: model {name!r}: {in_own_model(error) or error}") from error
+                raise InvalidValueError(
+                    "model {model!r}: {reason}", model=name, reason=in_own_model(error) or str(error)
+                ).at(path) from error
             kind.title = kind.title or name
             if not kind.colour:
                 kind.colour, kind.linestyle = _LOOKS[position % len(_LOOKS)]
@@ -133,16 +138,20 @@ def _keeps_its_word(tried: RestitutionModel) -> None:
     ratios = [0.05, 0.3, 1.0, 2.0, 4.0, 10.0, 100.0]
     for ratio, r in zip(ratios, tried.of_slenderness(ratios).tolist(), strict=True):
         if not 0.0 <= r <= 1.0 + _ROUNDING:
-            raise InvalidValueError(f"r must lie in [0, 1], is {r:.6g} for a rectangle of h/b = {ratio:g}")
+            raise InvalidValueError(
+                "r must lie in [0, 1], is {r:.6g} for a rectangle of h/b = {ratio:g}", r=r, ratio=ratio
+            )
     for ratio in ratios[1:-1]:
         block = Block(width=1.0, height=ratio)
         for body in (block, block.with_feet(0.35, 0.95), block.with_feet(0.02, 0.7)):
             for onto in FEET:
                 r, new, old = tried.coefficient(body, onto), body.side(onto), body.side(opposite(onto))
                 gain = r * r * new.moment_of_inertia / old.moment_of_inertia
-                where = f"for h/b = {ratio:g}, feet at {body.feet[0]:g} and {body.feet[1]:g} m, onto the {onto} one"
+                impact: dict[str, Any] = {"ratio": ratio, "left": body.feet[0], "right": body.feet[1], "onto": onto}
                 if tried.keeps_energy and gain > 1.0 + _ROUNDING:
-                    raise InvalidValueError(f"an impact creates energy, {gain:.6g} of what there was, {where}")
+                    raise InvalidValueError(
+                        "an impact creates energy, {gain:.6g} of what there was, " + _IMPACT, gain=gain, **impact
+                    )
                 for seen, other, foot in (
                     ("size", body.scaled(size=7.3), onto),
                     ("density", body.scaled(density=0.013), onto),
@@ -150,7 +159,10 @@ def _keeps_its_word(tried: RestitutionModel) -> None:
                 ):
                     there = tried.coefficient(other, foot)
                     if abs(there - r) > 1e-8:
-                        raise InvalidValueError(f"r must not depend on {seen}, is {r:.6g} and {there:.6g} {where}")
+                        raise InvalidValueError(
+                            "r must not depend on {property}, is {r:.6g} and {changed:.6g} " + _IMPACT, property=seen,
+                            r=r, changed=there, **impact,
+                        )  # fmt: skip
 
 
 @contextmanager
@@ -161,7 +173,11 @@ def blamed(where: str) -> Iterator[None]:
     except RockingError:
         raise
     except Exception as error:
-        raise UnknownModelError(in_own_model(error) or f"{where} failed: {type(error).__name__}: {error}") from error
+        if fault := in_own_model(error):
+            raise UnknownModelError(fault) from error
+        raise UnknownModelError(
+            "{file} failed: {type}: {reason}", file=where, type=type(error).__name__, reason=str(error)
+        ) from error
 
 
 def in_own_model(error: BaseException) -> str:
@@ -176,8 +192,9 @@ def _kind(source: str, where: str, name: str) -> type[RestitutionModel]:
         (name,) = kinds
     if name not in kinds:
         raise UnknownModelError(
-            f"{where} has no restitution model {name or '(name one)'}; it has {', '.join(kinds) or 'none'}"
-        )
+            "{file} has no restitution model {model}; it has {models}", file=where, model=name or "(name one)",
+            models=", ".join(kinds) or "none",
+        )  # fmt: skip
     return kinds[name]
 
 

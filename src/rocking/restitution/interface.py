@@ -48,7 +48,9 @@ class Interface(RestitutionModel):
         """Refuse a factor that would create energy, and wrap once only."""
         wrapped: object = self.model
         if not isinstance(wrapped, RestitutionModel):
-            raise UnknownModelError(f"an interface factor wraps a model object, got {wrapped!r:.60}")
+            raise UnknownModelError(
+                "an interface factor wraps a model object, got {value}", parameter="model", value=wrapped
+            )
         checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
         for name in ("assumptions", "domain", "known_defects", "inertia_only", "keeps_energy"):
             object.__setattr__(self, name, getattr(self.model, name))

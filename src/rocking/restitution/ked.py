@@ -185,7 +185,7 @@ def projected_moment(body: Body, onto: Foot) -> float:
     InvalidValueError
         If this kind of body is not known.
     """
-    raise InvalidValueError(f"model ked does not know how mass is distributed in a {type(body).__name__}")
+    raise InvalidValueError("model ked does not know how mass is distributed in a {type}", type=type(body).__name__)
 
 
 @projected_moment.register

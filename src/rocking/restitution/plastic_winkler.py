@@ -159,7 +159,7 @@ class _Bed:
                     return passing, sign if passing[1] >= _STOPPED else 0  # a body that stops there goes nowhere
             if omega < _STOPPED or self.end * omega - v <= _AT_REST:
                 return state, 0
-        raise RockingError(f"a landing on a bed of plastic springs did not end within {_STEPS} steps")
+        raise RockingError("a landing on a bed of plastic springs did not end within {steps} steps", steps=_STEPS)
 
     def _series(self, state: _State, part: int) -> list[list[float]]:
         """Return the Taylor coefficients of v, omega and their integrals, while the pressure ends in a part."""

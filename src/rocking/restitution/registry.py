@@ -77,13 +77,17 @@ def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = (
     """Register a model class, in the place of one of those that it may be put over."""
     candidate: object = kind
     if not (inspect.isclass(candidate) and issubclass(candidate, RestitutionModel)):
-        raise InvalidValueError(f"a restitution model is a subclass of RestitutionModel, got {kind!r}")
+        raise InvalidValueError(
+            "a restitution model is a subclass of RestitutionModel, got {value}", parameter="kind", value=kind
+        )
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
-        raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
+        raise InvalidValueError("{type} needs a class attribute name = '...'", type=kind.__name__)
     check_complete(kind)
     if name in _MODELS and _MODELS[name] not in {kind, *over}:
-        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_MODELS[name].__name__}")
+        raise InvalidValueError(
+            "a restitution model named {name!r} exists already: {type}", name=name, type=_MODELS[name].__name__
+        )
     _MODELS[name] = kind
     return kind
 
@@ -93,9 +97,9 @@ def check_complete(kind: type[RestitutionModel]) -> None:
     lacking = sorted(kind.__abstractmethods__)
     if lacking:
         raise InvalidValueError(
-            f"the model {kind.__name__} has no method {', '.join(lacking)}; a model has {_METHOD}, which returns the "
-            "coefficient of a body that lands on a foot"
-        )
+            "the model {type} has no method {methods}; a model has {method}, which returns the coefficient of a body "
+            "that lands on a foot", type=kind.__name__, methods=", ".join(lacking), method=_METHOD,
+        )  # fmt: skip
 
 
 _METHOD = "raw_coefficient(self, body, onto)"
@@ -142,10 +146,14 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
         eta *= factor
     elif isinstance(which, RestitutionModel):
         if parameters:
-            raise UnknownModelError(f"a model object takes no further parameters, got {', '.join(parameters)}")
+            raise UnknownModelError(
+                "a model object takes no further parameters, got {names}", names=", ".join(parameters)
+            )
         found = which
     else:
-        raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {of_no_kind(which)}")
+        raise UnknownModelError(
+            "a restitution model is a name or a RestitutionModel object, got {type}", type=of_no_kind(which)
+        )
     if eta == 1.0:
         return found
     from rocking.restitution.interface import Interface
@@ -164,8 +172,10 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     given = parameters_in(tail, words, parameters)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
-        there, near = ", ".join(list(_MODELS)), checks.nearest(name, _MODELS)
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {there}", hint=near)
+        raise UnknownModelError(
+            "no restitution model named {name!r}; there are {names}", name=name, names=", ".join(list(_MODELS)),
+            hint=checks.nearest(name, _MODELS),
+        )  # fmt: skip
     return built(_MODELS[name], name, given), eta
 
 
@@ -176,11 +186,11 @@ def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, An
         key, equals, value = item.partition("=")
         if not equals:
             raise UnknownModelError(
-                f"write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got {words!r}",
-                hint=checks.number_hint(words),
-            )
+                "write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got {model!r}",
+                model=words, hint=checks.number_hint(words),
+            )  # fmt: skip
         if key.strip() in given:
-            raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
+            raise UnknownModelError("{key} is given twice for model {model!r}", key=key.strip(), model=words)
         given[key.strip()] = number(key.strip(), value)
     return given
 
@@ -192,8 +202,11 @@ def built(kind: type[RestitutionModel], name: str, given: dict[str, Any]) -> Res
         return kind(**given)
     except TypeError as error:
         names = ", ".join(getattr(kind, "__dataclass_fields__", {}))
-        takes = f"takes the parameter {names}" if names else "takes no parameters"
-        raise UnknownModelError(f"model {name!r} {takes}, got {', '.join(given) or 'none'}") from error
+        raise UnknownModelError(
+            "model {model!r} takes the parameter {names}, got {stated}" if names
+            else "model {model!r} takes no parameters, got {stated}",
+            model=name, names=names, stated=", ".join(given) or "none",
+        ) from error  # fmt: skip
 
 
 def number(name: str, words: str) -> float:
@@ -230,7 +243,10 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], st
         return {foot: found.coefficient(body, foot) for foot in FEET}, found.label
     if isinstance(restitution, Mapping):
         if set(restitution) != set(FEET):
-            raise InvalidValueError(f'restitution by side is {{"left": r, "right": r}}, got {restitution!r:.60}')
+            raise InvalidValueError(
+                "{parameter} by side is {allowed}, got {value}", parameter="restitution",
+                allowed='{"left": r, "right": r}', value=restitution,
+            )  # fmt: skip
         pair: dict[Foot, float] = {foot: _coefficient(f"restitution[{foot!r}]", restitution[foot]) for foot in FEET}
         return pair, f"left {pair['left']:.6g}, right {pair['right']:.6g}"
     r = _coefficient("restitution", restitution)
@@ -242,7 +258,10 @@ def _coefficient(name: str, value: Any) -> float:
         allowed = (
             'a model, its name, a coefficient, or {"left": r, "right": r}' if name == "restitution" else "a number"
         )
-        raise InvalidValueError(f"{name} must be {allowed}, got {of_no_kind(value)}")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {shown}", parameter=name, allowed=allowed, value=value,
+            shown=of_no_kind(value),
+        )  # fmt: skip
     r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
     plausibility.warn(plausibility.of_coefficient(r))
     return r
@@ -318,7 +337,7 @@ def coefficient_of_restitution(
     if isinstance(restitution, (str, RestitutionModel)):
         return model(restitution, eta=eta, **parameters).coefficient(body, onto)
     if parameters:
-        raise UnknownModelError(f"a coefficient takes no parameters, got {', '.join(parameters)}")
+        raise UnknownModelError("a coefficient takes no parameters, got {names}", names=", ".join(parameters))
     onto = checks.foot("onto", onto)
     checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
     coefficients, _ = coefficients_of(restitution, body)

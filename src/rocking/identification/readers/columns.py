@@ -30,7 +30,10 @@ def rotation_of_displacement(displacement: FloatArray, height: float) -> FloatAr
     """
     most = float(np.abs(displacement).max())
     if most > _STEEPEST * height:
-        raise MeasurementError(f"a displacement of {most:g} m at a height of {height:g} m is no rocking; wrong unit?")
+        raise MeasurementError(
+            "a displacement of {displacement:g} m at a height of {height:g} m is no rocking", displacement=most,
+            height=height, hint="wrong unit?",
+        )  # fmt: skip
     return np.asarray(np.arcsin(displacement / height))
 
 
@@ -264,7 +267,7 @@ def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:
         for place, cell in enumerate(row):
             if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
                 raise MeasurementError(
-                    f"{source.name}, row {line + 1}: number expected, found {cell!r:.40}{gap_words(str(cell))}"
-                )
+                    "number expected, found {cell}{gap}", cell=f"{cell!r:.40}", gap=gap_words(str(cell))
+                ).at(f"{source.name}, row {line + 1}")
             values[line - 1, place] = cell
     return tuple(str(cell).strip() for cell in rows[0]), values

@@ -115,29 +115,35 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], M
         raise refuse_sound(path.name, suffix)
     sound = suffix == ".wav" or suffix in COMPRESSED
     if sound != (kind == "sound") and kind is not None:
-        what = "is a sound" if sound else "is no sound"
-        raise MeasurementError(f"{path.name}: {what} by its ending, kind={kind!r} was asked for")
+        raise MeasurementError(
+            "is a sound by its ending, kind={kind!r} was asked for"
+            if sound
+            else "is no sound by its ending, kind={kind!r} was asked for",
+            kind=kind,
+        ).at(path.name)
     if sound:
         return _heard
     if suffix not in _TABLES:
-        raise MeasurementError(f"{path.name}: the name must end in .wav, {', '.join((*COMPRESSED, *VIDEOS, *_TABLES))}")
+        raise MeasurementError(
+            "the name must end in .wav, {extensions}", extensions=", ".join((*COMPRESSED, *VIDEOS, *_TABLES))
+        ).at(path.name)
     if kind == "video":
-        raise MeasurementError(f"{path.name}: is no video by its ending, kind='video' was asked for")
+        raise MeasurementError("is no video by its ending, kind='video' was asked for").at(path.name)
     return impact_list if kind == "times" else motion_series
 
 
 def _filmed(path: Path, options: ReaderOptions) -> RotationSeries:
     if options.kind not in (None, "video"):
         raise MeasurementError(
-            f"{path.name}: is a video by its ending, kind={options.kind!r} was asked for; save its sound as WAV"
-        )
+            "is a video by its ending, kind={kind!r} was asked for", kind=options.kind, hint="save its sound as WAV"
+        ).at(path.name)
     if given := options.names("region", "frame_rate"):
-        raise MeasurementError(f"{path.name}: a video takes no {given}: these are for tables")
+        raise MeasurementError("a video takes no {options}: these are for tables", options=given).at(path.name)
     return rotation_seen(path, options.region, options.frame_rate)
 
 
 def _heard(source: Source, options: ReaderOptions) -> ImpactTimes:
     if given := options.names():
-        raise MeasurementError(f"{source.name}: a sound takes no {given}: these are for tables")
+        raise MeasurementError("a sound takes no {options}: these are for tables", options=given).at(source.name)
     wav = source.name.lower().endswith(".wav")
     return impacts_heard((read_wav if wav else read_compressed)(source.content, source.name))

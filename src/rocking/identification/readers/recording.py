@@ -40,12 +40,20 @@ class Recording:
             )
         count = self.samples.shape[0]
         if count > MOST_SAMPLES:
-            raise self.error(f"it has {count} samples, more than the {MOST_SAMPLES} that are read; cut out the trial")
+            raise self.error(
+                "it has {count} samples, more than the {limit} that are read", count=count, limit=MOST_SAMPLES,
+                hint="cut out the trial",
+            )  # fmt: skip
         if count < _SHORTEST * self.rate:
-            raise self.error(f"it lasts {count / self.rate:.3g} s; a trial takes at least {_SHORTEST} s")
+            raise self.error(
+                "it lasts {duration:.3g} s; a trial takes at least {shortest} s", duration=count / self.rate,
+                shortest=_SHORTEST,
+            )  # fmt: skip
         if not np.isfinite(self.samples).all():
             bad = int(np.flatnonzero(~np.isfinite(self.samples).all(axis=1))[0])
-            raise self.error(f"sample {bad} is not finite ({bad / self.rate:.4f} s); a damaged file?")
+            raise self.error(
+                "sample {index} is not finite ({time:.4g} s)", index=bad, time=bad / self.rate, hint="a damaged file?"
+            )
 
     def error(self, cause: str, **facts: Any) -> MeasurementError:
         """Return the error for a cause, to be raised; facts: as of `RockingError`."""
@@ -84,13 +92,17 @@ def read_compressed(content: bytes, name: str) -> Recording:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             if file.frames > MOST_SAMPLES:
                 raise MeasurementError(
-                    f"{name}: it has {file.frames} samples, more than the {MOST_SAMPLES} that are read"
-                )
+                    "it has {count} samples, more than the {limit} that are read", count=file.frames, limit=MOST_SAMPLES
+                ).at(name)
             samples, rate, stated = file.read(dtype="float64", always_2d=True), file.samplerate, file.frames
     except soundfile.LibsndfileError as error:
-        raise MeasurementError(f"{name}: cannot be read as sound ({error}); damaged?") from error
+        raise MeasurementError("cannot be read as sound ({reason})", reason=str(error), hint="damaged?").at(
+            name
+        ) from error
     if samples.shape[0] != stated:
-        raise MeasurementError(f"{name}: states {stated} samples, {samples.shape[0]} could be read; cut off?")
+        raise MeasurementError(
+            "states {stated} samples, {count} could be read", stated=stated, count=samples.shape[0], hint="cut off?"
+        ).at(name)
     return Recording(name, np.asarray(samples), int(rate))
 
 
@@ -108,31 +120,36 @@ def read_wav(content: bytes, name: str) -> Recording:
     for kind, chunk in _chunks(content, name):
         if kind == b"fmt ":
             if form is not None:
-                raise MeasurementError(f"{name}: it has two format chunks; damaged?")
+                raise MeasurementError("it has two format chunks", hint="damaged?").at(name)
             form = _form(chunk, name)
         elif kind == b"data":
             if form is None:
-                raise MeasurementError(f"{name}: its samples come before their format; damaged?")
+                raise MeasurementError("its samples come before their format", hint="damaged?").at(name)
             return Recording(name, _samples(chunk, form, name), form[2])
-    raise MeasurementError(f"{name}: it has no {'format' if form is None else 'samples'}: cut off, or damaged")
+    raise MeasurementError(
+        "it has no format: cut off, or damaged" if form is None else "it has no samples: cut off, or damaged"
+    ).at(name)
 
 
 def _chunks(content: bytes, name: str) -> Iterator[tuple[bytes, bytes]]:
     if content[:4] != b"RIFF" or content[8:12] != b"WAVE":
-        raise MeasurementError(f"{name}: is no WAV file: it begins with {content[:12]!r}, not RIFF....WAVE")
+        raise MeasurementError("is no WAV file: it begins with {start}, not RIFF....WAVE", start=repr(content[:12])).at(
+            name
+        )
     (stated,) = struct.unpack_from("<I", content, 4)
     if stated + 8 not in {len(content), len(content) - 1, len(content) + 1}:  # some writers forget to pad
         raise MeasurementError(
-            f"{name}: its header states {stated + 8} bytes, the file has {len(content)}; cut off, or never finished:"
-            " save it again from the recorder or an audio editor"
-        )
+            "its header states {stated} bytes, the file has {size}; cut off, or never finished: save it again from "
+            "the recorder or an audio editor", stated=stated + 8, size=len(content),
+        ).at(name)  # fmt: skip
     at = 12
     while at + 8 <= len(content):
         kind, size = struct.unpack_from("<4sI", content, at)
         if at + 8 + size > len(content):
             raise MeasurementError(
-                f"{name}: chunk {kind!r} at byte {at} states {size} bytes, {len(content) - at - 8} are left; cut off?"
-            )
+                "chunk {chunk} at byte {byte} states {stated} bytes, {size} are left", chunk=repr(kind), byte=at,
+                stated=size, size=len(content) - at - 8, hint="cut off?",
+            ).at(name)  # fmt: skip
         yield kind, content[at + 8 : at + 8 + size]
         at += 8 + size + size % 2
 
@@ -140,14 +157,18 @@ def _chunks(content: bytes, name: str) -> Iterator[tuple[bytes, bytes]]:
 def _form(chunk: bytes, name: str) -> tuple[int, int, int, int]:
     """Return the code of the encoding, channels, rate and bits."""
     if len(chunk) < 16:
-        raise MeasurementError(f"{name}: its format chunk has {len(chunk)} bytes, at least 16 expected; damaged?")
+        raise MeasurementError(
+            "its format chunk has {size} bytes, at least 16 expected", size=len(chunk), hint="damaged?"
+        ).at(name)
     code, channels, rate, per_second, per_frame, bits = struct.unpack_from("<HHIIHH", chunk)
     if code == _EXTENSIBLE:
         if len(chunk) < 40 or chunk[26:40] != _REST_OF_GUID:
-            raise MeasurementError(f"{name}: its extended format cannot be understood; save it as plain PCM")
+            raise MeasurementError("its extended format cannot be understood", hint="save it as plain PCM").at(name)
         (code,) = struct.unpack_from("<H", chunk, 24)
     if (code, bits) not in {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}:
-        raise MeasurementError(f"{name}: encoding {code} of {bits} bits is not read; save it as PCM of 16 or 24 bits")
+        raise MeasurementError(
+            "encoding {code} of {bits} bits is not read", code=code, bits=bits, hint="save it as PCM of 16 or 24 bits"
+        ).at(name)
     if not 1 <= channels <= _MOST_CHANNELS:
         raise MeasurementError(
             "{name}: channels must be in [1, {most}], got {channels}; damaged?",
@@ -157,17 +178,21 @@ def _form(chunk: bytes, name: str) -> tuple[int, int, int, int]:
         )
     if per_frame != channels * bits // 8 or per_second != rate * per_frame:
         raise MeasurementError(
-            f"{name}: {channels} channels of {bits} bits at {rate} Hz are {channels * bits // 8} bytes a frame and"
-            f" {rate * channels * bits // 8} a second, the header states {per_frame} and {per_second}; damaged?"
-        )
+            "{channels} channels of {bits} bits at {rate} Hz are {frame} bytes a frame and {second} a second, the "
+            "header states {stated_frame} and {stated_second}", channels=channels, bits=bits, rate=rate,
+            frame=channels * bits // 8, second=rate * channels * bits // 8, stated_frame=per_frame,
+            stated_second=per_second, hint="damaged?",
+        ).at(name)  # fmt: skip
     return code, channels, rate, bits
 
 
 def _samples(chunk: bytes, form: tuple[int, int, int, int], name: str) -> FloatArray:
     code, channels, _, bits = form
     if not chunk or len(chunk) % (channels * bits // 8):
-        what = "no samples" if not chunk else f"{len(chunk)} bytes of samples, no whole number of frames"
-        raise MeasurementError(f"{name}: it has {what}; cut off, or never finished")
+        raise MeasurementError(
+            "it has {size} bytes of samples, no whole number of frames" if chunk else "it has no samples",
+            size=len(chunk), hint="cut off, or never finished",
+        ).at(name)  # fmt: skip
     if code == _FLOAT:
         values: FloatArray = np.frombuffer(chunk, f"<f{bits // 8}").astype(np.float64)
     elif bits == 8:

@@ -388,8 +388,9 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     lost = float(((channel >= 0.999 * channel.max()) | (channel <= 0.999 * channel.min())).mean())
     if lost > _LOST:
         raise recording.error(
-            f"{100.0 * lost:.0f} % of it is clipped, more than {100.0 * _LOST:.0f} %: record at a lower level"
-        )
+            "{clipped:.0f} % of it is clipped, more than {limit:.0f} %: record at a lower level", clipped=100.0 * lost,
+            limit=100.0 * _LOST,
+        )  # fmt: skip
     rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
     sharp, white = sharpened(clicks.sound, rate, rough)
     times, chosen, alike, tied = onsets(sharp, white, rate, rough, orders)
@@ -399,14 +400,17 @@ def impacts_heard(recording: Recording) -> ImpactTimes:
     if not why and alike < _ALIKE:
         why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
     if why:
-        raise recording.error(f"this is no sound of a rocking body: {why}")
+        raise recording.error("this is no sound of a rocking body: {reason}", reason=why)
     heard = rough = times if grows else rough
     rough, orders, members = revised(sharp, rate, rough, orders, members)
     if not np.array_equal(rough, heard):
         times, chosen, _, tied = onsets(sharp, white, rate, rough, orders)
     known = chosen > _RIVAL
     if known.sum() < _FEWEST:
-        raise recording.error(f"{known.sum()} of its {known.size} clicks can be told in time only; nearer to the body?")
+        raise recording.error(
+            "{count} of its {clicks} clicks can be told in time only", count=int(known.sum()), clicks=known.size,
+            hint="nearer to the body?",
+        )  # fmt: skip
     times, rough, orders, members = times[known], rough[known], orders[known] - orders[known][0], members[known]
     if np.any(np.diff(times) <= 0.0):
         times = rough

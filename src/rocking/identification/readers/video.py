@@ -42,9 +42,9 @@ class Film:
     time: FloatArray  # [s]
     scale: float  # pixels here for each of the video
 
-    def error(self, cause: str) -> MeasurementError:
-        """Return the error for a cause, to be raised."""
-        return MeasurementError(cause).at(self.name)
+    def error(self, cause: str, **facts: Any) -> MeasurementError:
+        """Return the error for a cause, to be raised; facts: as of `RockingError`."""
+        return MeasurementError(cause, **facts).at(self.name)
 
     @cached_property
     def changes(self) -> FloatArray:
@@ -185,9 +185,9 @@ def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float 
     moving = _moving(film)
     if region is None and moving.mean() > _ALL:
         raise film.error(
-            f"{100.0 * moving.mean():.0f} % of the picture moves, and so does the camera: put it on a tripod, or say "
-            "where the body is, region= [left, top, width, height] in pixels"
-        )
+            "{moving:.0f} % of the picture moves, and so does the camera: put it on a tripod, or say where the body "
+            "is, region= [left, top, width, height] in pixels", moving=100.0 * moving.mean(),
+        )  # fmt: skip
     body = _above_base(moving) if region is None else _stated(film, region)
     track = PoseTrack.of(film, body)
     if track is None:
@@ -197,8 +197,9 @@ def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float 
     a, b = track.first, track.last
     if b - a < _FEWEST:
         raise film.error(
-            f"the body is followed in {max(b - a, 0)} frames only, about {film.time[a]:.3g} s; a swaying camera?"
-        )
+            "the body is followed in {frames} frames only, about {time:.3g} s", frames=max(b - a, 0), time=film.time[a],
+            hint="a swaying camera?",
+        )  # fmt: skip
     rotation, doubts = track.poses[a:b, 0], []
     for lost, when, at in ((a > 0, "before", a), (b < film.time.size, "after", b - 1)):
         if lost:
@@ -221,7 +222,7 @@ def _camera(film: Film, around: BoolArray, first: int, last: int) -> tuple[Float
         return none, ["nothing but the body shows edges: whether the camera stood still is not known"]
     if still.first > first or still.last < last:
         at = film.time[still.first - 1 if still.first > first else still.last]
-        raise film.error(f"what stands still is lost at {at:.3g} s: the camera was moved, or there is a cut")
+        raise film.error("what stands still is lost at {time:.3g} s: the camera was moved, or there is a cut", time=at)
     moved = still.poses[first:last] * [0.5 * max(film.rest.shape), 1.0, 1.0]
     sways = float(np.abs(moved).max())
     if sways < _SWAYS or moved.std() < _STEADY * np.diff(moved, axis=0).std():
@@ -233,14 +234,14 @@ def _camera(film: Film, around: BoolArray, first: int, last: int) -> tuple[Float
 def read_film(path: Path) -> Film:
     """Return what a file shows."""
     if not path.is_file():
-        raise MeasurementError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
+        raise MeasurementError("not a plain file" if path.exists() else "no such file").at(str(path))
     with path.open("rb") as file:  # text that names other files is no video either
         head = file.read(12)
     if not any(head[at : at + len(kind)] == kind for at, kind in _SIGNATURES):
-        raise MeasurementError(f"{path.name}: no video by its first bytes; damaged?")
+        raise MeasurementError("no video by its first bytes", hint="damaged?").at(path.name)
     said, (frames, time) = _OPENCV.answer(Source(path.name, b""), LIMITS | {"path": str(path.absolute())})
     if np.any(np.diff(time) <= 0.0):
-        raise MeasurementError(f"{path.name}: the times of its frames do not increase; damaged, or edited?")
+        raise MeasurementError("the times of its frames do not increase", hint="damaged, or edited?").at(path.name)
     return Film(path.name, frames, time, said["scale"])
 
 
@@ -267,12 +268,15 @@ def _above_base(moving: BoolArray) -> BoolArray:
 def _stated(film: Film, region: Sequence[float]) -> BoolArray:
     rows, columns = film.rest.shape
     if np.shape(region) != (4,):
-        raise InvalidValueError(f"region must be four numbers: left, top, width, height [pixels], got {region!r:.60}")
+        raise InvalidValueError(
+            parameter="region", allowed="four numbers: left, top, width, height [pixels]", value=region
+        )
     x, y, width, height = (round(film.scale * checks.number("region", each, "pixels")) for each in region)
     if min(x, y) < 0 or min(width, height) < 4 or x + width > columns or y + height > rows:
         raise InvalidValueError(
-            f"region must lie within {columns / film.scale:.0f} x {rows / film.scale:.0f} pixels, got {list(region)}"
-        )
+            "{parameter} must lie within {columns:.0f} x {rows:.0f} pixels, got {value}", parameter="region",
+            value=list(region), columns=columns / film.scale, rows=rows / film.scale,
+        )  # fmt: skip
     found = np.zeros((rows, columns), np.bool_)
     found[y : y + height, x : x + width] = True
     return found

@@ -56,8 +56,9 @@ def emergent_of(setup: Setup, row: Results) -> Emergent:
     status = status_of(row["status"])
     if status in {BedStatus.FAILED, BedStatus.TOO_MANY_STEPS}:
         raise InvalidValueError(
-            f"no coefficient of restitution of this impact: {status.value}; stiffness or damping far off?"
-        )
+            "no coefficient of restitution of this impact: {status}", status=status.value,
+            hint="stiffness or damping far off?",
+        )  # fmt: skip
     rigid = setup.rigid
     rotation, velocity = row["rotation"], row["angular_velocity"]
     if setup.impulsive:

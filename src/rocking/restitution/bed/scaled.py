@@ -67,8 +67,9 @@ def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) 
         r[failed] = np.where(ended, found.coefficient, np.nan)
     if np.isnan(r).any():
         raise InvalidValueError(
-            f"{int(np.isnan(r).sum())} impacts did not end, the first is {impacts[int(np.argmax(np.isnan(r)))]}"
-        )
+            "{count} impacts did not end, the first is {impact}", count=int(np.isnan(r).sum()),
+            impact=str(impacts[int(np.argmax(np.isnan(r)))]),
+        )  # fmt: skip
     return r
 
 

@@ -205,7 +205,10 @@ def setup_of(
     """
     given: tuple[object, object] = (body, bed)
     if not (isinstance(given[0], Body) and isinstance(given[1], ContactBed)):
-        raise InvalidValueError(f"body and bed must be a Body and a ContactBed, got {body!r:.40} and {bed!r:.40}")
+        raise InvalidValueError(
+            "body and bed must be a Body and a ContactBed, got {body} and {bed}", body=f"{body!r:.40}",
+            bed=f"{bed!r:.40}",
+        )  # fmt: skip
     push, lift = _accelerations(ground_acceleration)
     total = checks.positive("gravity", gravity, "m/s2") + lift
     total = checks.positive("gravity + vertical ground acceleration", total, "m/s2", hint="the body floats")
@@ -240,9 +243,9 @@ def setup_of(
 def _accelerations(values: object) -> tuple[float, float]:
     if not isinstance(values, (tuple, list, np.ndarray)) or np.shape(values) != (2,):
         raise InvalidValueError(
-            f"ground_acceleration must be two finite numbers, horizontal and vertical [m/s2], got {values!r:.60}; "
-            "for a horizontal one alone give (value, 0.0)"
-        )
+            parameter="ground_acceleration", allowed="two finite numbers, horizontal and vertical [m/s2]", value=values,
+            hint="for a horizontal one alone give (value, 0.0)",
+        )  # fmt: skip
     return (
         checks.number("horizontal ground acceleration", values[0], "m/s2"),
         checks.number("vertical ground acceleration", values[1], "m/s2"),
@@ -264,7 +267,10 @@ def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: floa
     angle = -checks.within("rotation", rotation, 0.0, limit, unit="rad", open_low=True, open_high=True)
     landing = math.sqrt(2.0 * max(rigid.potential(angle), 0.0) / rigid.inertia_about(rigid.pivot(angle)))
     if landing == 0.0:
-        raise InvalidValueError(f"rotation {-angle:g} rad does not lift the centre of mass; a rounded base?")
+        raise InvalidValueError(
+            "{parameter} {value} rad does not lift the centre of mass", parameter="rotation", value=-angle,
+            hint="a rounded base?",
+        )  # fmt: skip
     return angle, landing
 
 

@@ -81,7 +81,10 @@ class SpatialImpact:
     def __post_init__(self) -> None:
         """Check the normal of the ground."""
         if not abs(dot(self.up, self.up) - 1.0) <= _UNIT:
-            raise InvalidValueError(f"up must be a unit vector, got {self.up.tolist()}: is it the vertical?")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got {value}: is it the vertical?", parameter="up",
+                allowed="a unit vector", value=self.up.tolist(),
+            )  # fmt: skip
 
     @cached_property
     def moments(self) -> SolidMoments:
@@ -116,9 +119,10 @@ class SpatialImpact:
             raise InvalidValueError(NO_SOLID)
         if not float(np.abs(self.up - UP).max()) <= _UNIT:
             raise InvalidValueError(
-                f"the body must stand upright, its up (0, 0, 1), got up = {self.up.tolist()}: where the base goes and "
-                "what units lose is not told of a body that leans; its angular velocity is model.turned(impact)"
-            )
+                "the body must stand upright, its up (0, 0, 1), got up = {up}: where the base goes and what units "
+                "lose is not told of a body that leans; its angular velocity is model.turned(impact)",
+                up=self.up.tolist(),
+            )  # fmt: skip
         return self._placed
 
     @property

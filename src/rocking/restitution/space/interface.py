@@ -62,8 +62,10 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     name = checks.spelling(model, _MODELS)
     name = name if name in _MODELS else checks.spelling(f"{model}-3d", _MODELS)
     if name not in _MODELS:
-        there, near = ", ".join(_MODELS), checks.nearest(model, _MODELS)
-        raise UnknownModelError(f"no restitution model in space is called {model!r}; there are {there}", hint=near)
+        raise UnknownModelError(
+            "no restitution model in space is called {name!r}; there are {names}", name=model, names=", ".join(_MODELS),
+            hint=checks.nearest(model, _MODELS),
+        )  # fmt: skip
     return _MODELS[name]()
 
 
@@ -119,9 +121,10 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     down = float(np.cross(before, middle_of_base(solid) - pivot)[2])
     if not down < 1e-12 * speed * solid.size:
         raise InvalidValueError(
-            f"velocity must turn the base onto the ground about the pivot; its middle rises at {down:.3g} m/s: "
-            "is the sign of the angular velocity wrong? The vector points along the axis, right-handed"
-        )
+            "{parameter} must turn the base onto the ground about the pivot; its middle rises at {speed:.3g} m/s: is "
+            "the sign of the angular velocity wrong? The vector points along the axis, right-handed",
+            parameter="velocity", speed=down,
+        )  # fmt: skip
     impact = SpatialImpact(solid.local_moments, before, pivot, landing, matter=partial(_placed, solid))
     return found.after(impact)
 
@@ -185,7 +188,10 @@ def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
     if isinstance(value, Edge):
         along = vector(f"direction of {name}", value.direction, "-")
         if abs(norm(along) - 1.0) > 1e-9 or along[2] != 0.0:
-            raise GeometryError(f"{name}: the direction of an edge must be a level unit vector, got {along.tolist()}")
+            raise GeometryError(
+                "{parameter}: the direction of an edge must be a level unit vector, got {direction}", parameter=name,
+                direction=along.tolist(),
+            )  # fmt: skip
         edge = Edge(_grounded(solid, name, value.point), along)
         _check_on_base(solid, name, edge.point, _gap_of_line(solid.local_base, edge))
         return edge
@@ -237,9 +243,9 @@ def _check_on_base(solid: Solid, name: str, given: FloatArray, gap: float) -> No
     if gap > 1e-9 * solid.size:
         x, y = (solid.origin + given)[:2].tolist()
         raise GeometryError(
-            f"{name} must touch the base, got ({x:g}, {y:g}) m, which passes it at {gap:.3g} m or more; is it in the "
-            "unit and the coordinates of the body?"
-        )
+            "{parameter} must touch the base, got ({x:g}, {y:g}) m, which passes it at {gap:.3g} m or more",
+            parameter=name, x=x, y=y, gap=gap, hint="is it in the unit and the coordinates of the body?",
+        )  # fmt: skip
 
 
 def _grounded(solid: Solid, name: str, value: Any) -> FloatArray:
@@ -247,6 +253,9 @@ def _grounded(solid: Solid, name: str, value: Any) -> FloatArray:
     full = np.array([*array.tolist(), solid.ground]) if array.shape == (2,) else array
     local = vector(name, full) - solid.origin
     if abs(float(local[2])) > 1e-9 * solid.size:
-        raise GeometryError(f"{name} must lie on the ground, z = {solid.ground:g} m, got z = {float(full[2]):g} m")
+        raise GeometryError(
+            "{parameter} must lie on the ground, z = {ground:g} m, got z = {z:g} m", parameter=name,
+            ground=solid.ground, z=float(full[2]),
+        )  # fmt: skip
     local[2] = 0.0
     return local

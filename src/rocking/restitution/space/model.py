@@ -155,7 +155,9 @@ class SpatialModel(ABC):
         """
         raw = self.angular_velocity(impact)
         if not np.isfinite(raw).all():
-            raise InvalidValueError(f"model {self.name} gives {raw.tolist()} rad/s for this impact")
+            raise InvalidValueError(
+                "model {model} gives {velocity} rad/s for this impact", model=self.name, velocity=raw.tolist()
+            )
         return raw
 
     def after(self, impact: SpatialImpact) -> SpatialRestitution:

@@ -5,7 +5,7 @@ import { KEY, NAMES, choose, language } from "/app/language.js";
 
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
 const UNTOUCHED = ["pre", "code", "textarea", "script", "style"]; // elements whose text stays as it is
-const PLACE = /\{(\w+)(?::\.?(\d*)(\w))?\}/g; // {name}, or {name:.3g} of a number
+const PLACE = /\{(\w+)(!r)?(?::\.?(\d*)(\w?))?\}/g; // {name}, {name:.3g} of a number, {name!r:.40} of a name in quotes
 
 /** @type {Map<string, string | string[]>} */
 const catalogue = new Map(); // translations by their English texts; of a text with plural forms a list of them
@@ -31,8 +31,9 @@ const formOf = (text, count = 1, context = "") => {
 };
 
 /** @param {string} form @param {{ [name: string]: any }} facts @param {(fact: any) => string} [spelling] */
-const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (place, name, digits, kind) => {
+const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (place, name, quoted, digits, kind) => {
   if (!(name in facts)) return place;
+  if (quoted) return `'${String(facts[name]).slice(0, digits || undefined)}'`;
   if (kind && typeof facts[name] === "number") return kind === "f" ? fixed(facts[name], Number(digits || 6)) : number(facts[name], Number(digits || 6));
   return spelling(facts[name]);
 });
