@@ -115,7 +115,7 @@ def test_left_out_is_not_seen():
     ("wrong", "words"),
     [
         (lambda: Forecasts([0.5], [1, 0]), "rows of one length"),
-        (lambda: Forecasts([50.0], [1]), "from 0 to 1, got 50; in per cent"),
+        (lambda: Forecasts([50.0], [1]), r"in \[0, 1\], got 50; in per cent"),
         (lambda: Forecasts([0.5], [2]), "outcome must be 1, 0 or NaN, got 2"),
         (lambda: Forecasts([0.5], [np.nan]), "nothing to score"),
         (lambda: Forecasts([0.5], [1]).skill(Forecasts([0.5], [0])), "same outcomes"),

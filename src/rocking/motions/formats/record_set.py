@@ -558,9 +558,9 @@ def _row(row: Mapping[str, str], mark: str, source: str) -> ListedRecord:
         if key in how:
             text = how[key].replace(",", ".") if mark == ";" else how[key]
             if not _is_number(text):
-                raise InvalidValueError("{key} of a row must be a number, got {text!r:.40}", key=key, text=how[key]).at(
-                    source
-                )
+                raise InvalidValueError(
+                    "{key} of a row must be a number, got {entry!r:.40}", key=key, entry=how[key]
+                ).at(source)
             how[key] = kind(float(text))
     told = {title: cell for title, cell in row.items() if title not in known and cell}
     files = {"": alone} if alone else axes
