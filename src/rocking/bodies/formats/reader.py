@@ -259,7 +259,9 @@ def _mesh(request: Request) -> Solid:
     taken = [words for words, silent in said if silent]
     density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)
     if units is None and not by_specification:
-        raise BodyFileError(f"{kind.upper()} files do not state their unit", hint=unit_to_state()).at(path.name)
+        raise BodyFileError("{format} files do not state their unit", format=kind.upper(), hint=unit_to_state()).at(
+            path.name
+        )
     options.setdefault("up", "y" if by_specification else "z")
     solid = solid_from_mesh(path, density, units=units or "m", **options)
     if taken:

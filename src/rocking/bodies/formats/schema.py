@@ -34,7 +34,7 @@ class StrictTable(BaseModel):
 
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
-        return InvalidValueError(f"unknown key {key!r:.60}", hint=suggestion(key, cls._names()))
+        return InvalidValueError("unknown key {key!r:.60}", key=key, hint=suggestion(key, cls._names()))
 
 
 class KnownTable(StrictTable):
@@ -182,15 +182,18 @@ class BodyFile(StrictTable):
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
         if key in SHAPES:
-            where = f"a part: write [[solid.part]] in a line above [solid.part.{key}]"
-            return InvalidValueError(f"unknown key {key!r} outside of {where}")
+            return InvalidValueError(
+                "unknown key {key!r} outside of a part: write [[solid.part]] in a line above [solid.part.{key}]",
+                key=key,
+            )
         tables = [name for name, table in TABLES.items() if key in table.model_fields]
         if not tables:
             return super()._unknown(key)
         others = f"other tables with {key} are {', '.join(f'[{name}]' for name in tables[1:])}" if tables[1:] else ""
         return InvalidValueError(
-            f"unknown key {key!r} outside of a table: write [{tables[0]}] in a line above {key}", hint=others
-        )
+            "unknown key {key!r} outside of a table: write [{table}] in a line above {key}", key=key, table=tables[0],
+            hint=others,
+        )  # fmt: skip
 
     @model_validator(mode="after")
     def _one_body(self) -> "BodyFile":

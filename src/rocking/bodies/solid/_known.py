@@ -116,9 +116,10 @@ def _frame(direction: FloatArray) -> FloatArray:
 
 def _misplaced(place: FloatArray, size: FloatArray) -> GeometryError:
     return GeometryError(
-        f"the centre of mass must lie within the convex hull of the body, in its box of {_at(size)} m, got "
-        f"{_at(place)} m from the lowest corner of that; was it measured from another origin, or in another unit?"
-    )
+        "the centre of mass must lie within the convex hull of the body, in its box of {size} m, got {centre} m from "
+        "the lowest corner of that", size=_at(size), centre=_at(place),
+        hint="was it measured from another origin, or in another unit?",
+    )  # fmt: skip
 
 
 def _at(values: FloatArray) -> str:

@@ -115,7 +115,7 @@ class MeasuredTable:
         sheet = source.name.lower().endswith(".xlsx")
         texts, values = _sheet(source) if sheet else _text(source)
         if values.shape[0] < 2:
-            raise source.error(None, f"at least 2 rows of numbers are needed, found {values.shape[0]}")
+            raise source.error(None, "at least 2 rows of numbers are needed, found {count}", count=values.shape[0])
         found = [_BRACKETS.fullmatch(text) for text in texts]
         names = tuple(one[1] if one else text for one, text in zip(found, texts, strict=True))
         return cls(source, names, tuple(one[2] or None if one else None for one in found), values)
@@ -124,7 +124,10 @@ class MeasuredTable:
         """Return where a named column is."""
         called = [place for place, own in enumerate(self.names) if own.casefold() == name.strip().casefold()]
         if len(called) != 1:
-            raise self.source.error(None, f"{what}={name!r:.60} names {len(called)} of {self.listed()}")
+            raise self.source.error(
+                None, "{argument}={column!r:.60} names {count} of {columns}", argument=what, column=name,
+                count=len(called), columns=self.listed(),
+            )  # fmt: skip
         return called[0]
 
     def times(self, options: ReaderOptions) -> int | None:
@@ -142,11 +145,12 @@ class MeasuredTable:
         if stated is None and given is None:
             name = self.names[place]
             hint = Message(f"write {name} [unit], or give {{option}}", {"option": Option(f"measurement.{argument}")})
-            raise self.source.error(None, f"column {name!r} states no unit", hint=hint)
+            raise self.source.error(None, "column {column!r} states no unit", column=name, hint=hint)
         if None not in (stated, given) and stated != given:
             raise self.source.error(
-                None, f"column {self.names[place]!r} is in {stated}, {argument}={given!r} was given"
-            )
+                None, "column {column!r} is in {stated}, {argument}={requested!r} was given", column=self.names[place],
+                stated=stated, argument=argument, requested=given,
+            )  # fmt: skip
         return str(stated if given is None else given)
 
     def to_state(self, argument: str) -> Message:
@@ -193,8 +197,12 @@ def motion_series(source: Source, options: ReaderOptions) -> RotationSeries | Im
     unit = table.unit(place, options.unit, "unit")
     kind = _kind(table, unit, options.kind)
     if (kind in _NEEDS_HEIGHT) != (options.height is not None):
-        need = "give" if options.height is None else "takes no"
-        raise source.error(None, f"{kind}: {need} {{option}} of the sensor [m]", option=Option("measurement.height"))
+        raise source.error(
+            None,
+            "{quantity}: give {option} of the sensor [m]" if options.height is None
+            else "{quantity}: takes no {option} of the sensor [m]",
+            quantity=kind, option=Option("measurement.height"),
+        )  # fmt: skip
     time = _increasing(table, at, factor)
     values = table.values[:, place] * UNITS[kind][unit]
     doubts = clock_doubts(time)
@@ -229,9 +237,12 @@ def _kind(table: MeasuredTable, unit: str, options: str | None) -> str:
     kinds = [kind for kind, units in UNITS.items() if unit in units]
     if not kinds:
         known = ", ".join(unit for units in UNITS.values() for unit in units)
-        raise table.source.error(None, f"unit {unit!r} is none of {known}")
+        raise table.source.error(None, "unit {unit!r} is none of {units}", unit=unit, units=known)
     if options not in (None, kinds[0]):
-        raise table.source.error(None, f"{unit} is a unit of {kinds[0]}, kind={options!r} was asked for")
+        raise table.source.error(
+            None, "{unit} is a unit of {quantity}, kind={kind!r} was asked for", unit=unit, quantity=kinds[0],
+            kind=options,
+        )  # fmt: skip
     return kinds[0]
 
 
@@ -241,8 +252,9 @@ def _increasing(table: MeasuredTable, place: int, factor: float) -> FloatArray:
     if wrong.size:
         row = int(wrong[0]) + 1
         raise table.source.error(
-            None, f"times must increase [s], got {times[row]:g} after {times[row - 1]:g} in row {row + 1} of numbers"
-        )
+            None, "times must increase [s], got {time:g} after {before:g} in row {row} of numbers",
+            time=float(times[row]), before=float(times[row - 1]), row=row + 1,
+        )  # fmt: skip
     return np.asarray(times)
 
 

@@ -453,6 +453,6 @@ def _doubts(recording: Recording, contrasts: FloatArray, orders: IntArray, times
 def refuse_sound(name: str, suffix: str) -> MeasurementError:
     """Return the refusal of a sound that nobody here can decode, to be raised."""
     return MeasurementError(
-        f"{name}: {suffix} sounds are not read: save it as WAV or FLAC, with the recorder's own export or"
-        " an audio editor"
-    )
+        "{extension} sounds are not read: save it as WAV or FLAC, with the recorder's own export or an audio editor",
+        extension=suffix,
+    ).at(name)

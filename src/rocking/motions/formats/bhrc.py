@@ -48,7 +48,7 @@ class Bhrc(RecordFormat):
         while not components or line < last:
             component, line = _component(source, line, units, time_step)
             if component.name in {other.name for other in components}:
-                raise source.error(None, f"component {component.name} is there twice")
+                raise source.error(None, "component {component} is there twice", component=component.name)
             components.append(component)
         lines = source.lines[:_TEXTS]
         metadata = metadata_of(
@@ -75,17 +75,19 @@ class Bhrc(RecordFormat):
 def _component(source: Source, top: int, units: str | None, asked: float | None) -> tuple[Component, int]:
     if len(source.lines) < top + _TEXTS + _WHOLES + _REALS:
         lines = _TEXTS + _WHOLES + _REALS
-        raise source.error(None, f"the header of a component has {lines} lines, the file ends in it")
+        raise source.error(None, "the header of a component has {lines} lines, the file ends in it", lines=lines)
     volume = numbers.matched(source, top, _VOLUME)
     if volume[1] != "1":
-        raise source.error(top, f"Volume {volume[1]}: only Volume 1 is read, the layout of others was not verified")
+        raise source.error(
+            top, "Volume {volume}: only Volume 1 is read, the layout of others was not verified", volume=volume[1]
+        )
     numbers.matched(source, top + 11, "UNITS ARE SECONDS AND G/10")
     unit = headers.acceleration_unit(source, "g/10", units)
     name = numbers.matched(source, top + 6, r"COMP ([LVT])\d?")[1]
     points = numbers.matched(source, top + 10, _POINTS)
     count, duration = int(points[1]), float(points[2])
     if count < 2:
-        raise source.error(top + 10, f"at least 2 points expected, found {count}")
+        raise source.error(top + 10, "at least 2 points expected, found {count}", count=count)
     repeated = source.lines[top + _TEXTS + 1][55:60]
     headers.check_count(source, numbers.whole(source, top + _TEXTS + 1, repeated, "number of points"), count)
     reals = top + _TEXTS + _WHOLES
@@ -97,7 +99,9 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
         headers.check_stated(source, again, duration, 1e-5 * duration, "duration")
     values, line = numbers.fixed(source, reals + _REALS, count, _PER_LINE, _WIDTH)
     if line >= len(source.lines) or source.lines[line].strip() != _END:
-        raise source.error(min(line, len(source.lines) - 1), f"{_END} expected after {count} samples")
+        raise source.error(
+            min(line, len(source.lines) - 1), "{mark} expected after {count} samples", mark=_END, count=count
+        )
     azimuth = re.search(rf"Azimuth.*\b{name} +(\d+)", source.lines[top + 7])
     return Component(name, values, unit, step, None, {"azimuth": azimuth[1]} if azimuth else {}), line + 1
 

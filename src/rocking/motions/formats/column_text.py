@@ -166,7 +166,7 @@ class ColumnText:
             raise self.source.error(commas[0], "commas but no decimal point: write decimal commas as points")
         if commas and points and self.separator not in {"", ","}:
             raise self.source.error(
-                commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind"
+                commas[0], "decimal commas here and decimal points on line {other}: write one kind", other=points[0] + 1
             )
 
     def _checked_rows(self, missing: int) -> Iterator[tuple[int, list[str]]]:
@@ -237,7 +237,9 @@ def unit_named(source: Source, line: int | None, word: str) -> str | None:
     """Return which unit of acceleration a word is, or none; one of velocity, displacement or counts is refused."""
     unit, kind = kind_of(word)
     if kind in _TAKEN_FOR:
-        raise source.error(line, f"accelerations are needed, the file states {word[:20]}, a {kind}")
+        raise source.error(
+            line, "accelerations are needed, the file states {unit}, a {quantity}", unit=word[:20], quantity=kind
+        )
     return unit
 
 
@@ -323,29 +325,30 @@ class NamedColumns:
         named = tuple(ColumnName.of(place, text) for place, text in enumerate(texts))
         for one in named:
             if not one.text:
-                raise source.error(None, f"column {one.place + 1} has no name; name it, or remove it")
+                raise source.error(None, "column {number} has no name; name it, or remove it", number=one.place + 1)
             if not one.is_time and one.name.casefold() in {other.name.casefold() for other in named[: one.place]}:
-                raise source.error(None, f"two columns are called {one.name!r:.60}; rename or remove one")
+                raise source.error(None, "two columns are called {column!r:.60}; rename or remove one", column=one.name)
         times = [one for one in named if one.is_time]
         found = tuple(one for one in named if one.is_acceleration)
         if not found:
             kinds = {kind_of(one.behind)[1] for one in named} & _TAKEN_FOR
             hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
-                None,
-                f"none of the columns {_listed(named)} is an acceleration in {_UNITS}{hold}; name one such as acc [g]",
-            )
+                None, "none of the columns {columns} is an acceleration in {units}{quantities}; name one such as acc "
+                "[g]", columns=_listed(named), units=_UNITS, quantities=hold,
+            )  # fmt: skip
         spectral = [one for one in named if one not in found and one.is_period]
         if not times and spectral:
             raise source.error(
-                None, f"{_listed(spectral)} may be periods of a spectrum: call it time [s] if it is that"
+                None,
+                "{columns} may be periods of a spectrum: call it time [s] if it is that",
+                columns=_listed(spectral),
             )
         if not times and len(found) > 1 and any(one.unit is None for one in found):
             raise source.error(
-                None,
-                f"which of {_listed(found)} is the time? Name it time [s], or write the unit behind every "
-                "acceleration, or remove all columns but one acceleration",
-            )
+                None, "which of {columns} is the time? Name it time [s], or write the unit behind every acceleration, "
+                "or remove all columns but one acceleration", columns=_listed(found),
+            )  # fmt: skip
         times.sort(key=lambda one: one.behind not in {"", *_SECONDS})
         if times and times[0].behind not in {"", *_SECONDS}:
             raise source.error(
@@ -363,7 +366,7 @@ class NamedColumns:
             return self
         if any((values[:, one.place] != values[:, self.time.place]).any() for one in self.more_times):
             times = _listed([self.time, *self.more_times])
-            raise source.error(None, f"{times} are both called a time; remove all but one")
+            raise source.error(None, "{columns} are both called a time; remove all but one", columns=times)
         return replace(self, more_times=(), left_out=(*self.left_out, *(one.text for one in self.more_times)))
 
     def with_stated_unit(self, source: Source, unit: str | None, unknown: str, asked: str | None) -> "NamedColumns":
@@ -371,7 +374,10 @@ class NamedColumns:
         own = (one.unknown_unit for one in self.accelerations if one.unknown_unit and one.unit is None)
         unknown = next(own, unknown if unit is None else "")
         if unknown and asked is not None and all(one.unit is None for one in self.accelerations):
-            raise source.error(None, f"the file states the unit {unknown[:20]!r}, you say {asked}; known are {_UNITS}")
+            raise source.error(
+                None, "the file states the unit {unit!r}, you say {requested}; known are {units}", unit=unknown[:20],
+                requested=asked, units=_UNITS,
+            )  # fmt: skip
         if unit is None or any(one.unit is not None for one in self.accelerations):
             return self
         return replace(self, accelerations=tuple(replace(one, unit=unit) for one in self.accelerations))
@@ -380,8 +386,12 @@ class NamedColumns:
         """Return the same with a unit for every acceleration."""
         silent = [one for one in self.accelerations if one.unit is None]
         if silent and asked is None and len(silent) < len(self.accelerations):
-            states = f"{_listed(silent)} state{'s' if len(silent) == 1 else ''} no unit"
-            raise source.error(None, f"{states}: write one behind, or remove the column", hint=unit_to_state())
+            raise source.error(
+                None,
+                "{columns} states no unit: write one behind, or remove the column" if len(silent) == 1
+                else "{columns} state no unit: write one behind, or remove the column",
+                columns=_listed(silent), hint=unit_to_state(),
+            )  # fmt: skip
         said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
         return replace(self, accelerations=tuple(said))
 

@@ -153,7 +153,10 @@ class HeaderWords:
     @staticmethod
     def _agreed(source: Source, line: int, stated: float | None, step: float | None) -> float | None:
         if stated is not None and step is not None and abs(stated - step) > 1e-6 * stated:
-            raise source.error(line, f"a time step of {step:g} s, and one of {stated:g} s elsewhere in the header")
+            raise source.error(
+                line, "a time step of {step:g} s, and one of {stated:g} s elsewhere in the header", step=step,
+                stated=stated,
+            )  # fmt: skip
         return step if stated is None else stated
 
     def _with_unit(self, source: Source, line: int, text: str) -> "HeaderWords":
@@ -202,6 +205,10 @@ def _names_of(text: str, columns: int) -> tuple[str, ...] | None:
 
 def _refuse_others(source: Source, line: int, text: str) -> None:
     if _SPECTRUM.search(text):
-        raise source.error(line, f"{text[:40]!r}: a response spectrum is no record; motion.target= takes one")
+        raise source.error(
+            line, "{entry!r}: a response spectrum is no record; motion.target= takes one", entry=text[:40]
+        )
     if _RECORDER_COUNTS.search(text):
-        raise source.error(line, f"{text[:40]!r}: counts of a recorder are no accelerations; divide them first")
+        raise source.error(
+            line, "{entry!r}: counts of a recorder are no accelerations; divide them first", entry=text[:40]
+        )

@@ -168,14 +168,14 @@ def _check_words(source: Source, text: ColumnText) -> None:
     """Refuse words that state a sampling in a way that is not read."""
     for line, words in text.words:
         if not is_understood(words):
-            raise source.error(line, f"{words.strip()[:60]!r} is not understood; {SKIP}")
+            raise source.error(line, "{entry!r} is not understood", entry=words.strip()[:60], hint=SKIP)
 
 
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
     """Refuse a first number below words that is the number of the samples behind it."""
     first, line = values[0], text.first[0][0]
     if first.size == 1 and first[0] >= 10.0 and first[0] in {len(values) - 1, len(values) - 2}:
-        raise source.error(line, f"{first[0]:g} may be the number of samples, no sample; {SKIP}")
+        raise source.error(line, "{count:g} may be the number of samples, no sample", count=float(first[0]), hint=SKIP)
 
 
 def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
@@ -224,7 +224,10 @@ def _by_place(source: Source, text: ColumnText) -> NamedColumns:
     """Return what columns without names are: a lone acceleration, or a time and one to three of them."""
     line, cells = text.first[0]
     if not 1 <= len(cells) <= _MOST_COLUMNS:
-        raise source.error(line, f"1 to {_MOST_COLUMNS} columns expected, found {len(cells)}; which format is it?")
+        raise source.error(
+            line, "1 to {most} columns expected, found {count}; which format is it?", most=_MOST_COLUMNS,
+            count=len(cells),
+        )  # fmt: skip
     if len(cells) == 1:
         return NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
     named = [ColumnName(place, "", f"column {place + 1}") for place in range(len(cells))]
@@ -238,7 +241,7 @@ def _row_by_row(source: Source, values: FloatArray) -> tuple[NamedColumns, Float
     rises = np.diff(first)
     if first.size > 2 and (rises > 0.0).all() and np.ptp(rises) <= 0.5 * rises.mean():
         if not np.isfinite(values).all():
-            raise source.error(None, f"the last line must have {values.shape[1]} numbers, as the first")
+            raise source.error(None, "the last line must have {count} numbers, as the first", count=values.shape[1])
         return NamedColumns(ColumnName(0, "", "column 1"), accelerations, ()), values
     one = NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
     return one, values[np.isfinite(values)].reshape(-1, 1)

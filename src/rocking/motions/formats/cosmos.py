@@ -89,7 +89,10 @@ def _table(source: Source, line: int, kind: str, least: int) -> tuple[FloatArray
     count, lines = whole(source, line, found[1], "count", least), whole(source, line, found[3], "number of lines")
     per_line, width = fortran_form(source, line, found[4])
     if lines != -(-count // per_line):
-        raise source.error(line, f"{count} values, {per_line} a line, do not make {lines} lines")
+        raise source.error(
+            line, "{count} values, {per_line} a line, do not make {lines} lines", count=count, per_line=per_line,
+            lines=lines,
+        )  # fmt: skip
     values, after = fixed(source, line + 1, count, per_line, width)
     if kind == "integer" and (values != values.round()).any():
         raise source.error(line, "whole numbers expected in this header")
@@ -102,7 +105,7 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
         raise source.error(first, "the file holds spectra, and accelerations over time are needed")
     texts = whole(source, first, title[1], "number of text lines") if title else 0
     if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
-        raise source.error(first, f"12 to {_MOST_TEXT} text lines expected, and as many lines after this one")
+        raise source.error(first, "12 to {most} text lines expected, and as many lines after this one", most=_MOST_TEXT)
     wholes, reals, _ = _table(source, first + texts, "integer", 100)
     figures, comments, layout = _table(source, reals, "real", 100)
     line = _after_comments(source, comments)
@@ -166,10 +169,11 @@ def _data_line(source: Source, line: int) -> tuple[re.Match[str], int]:
         raise source.error(line, "the file holds counts of the recorder, no accelerations; take its V1 or V2 file")
     if not re.search(r"\baccel", found[2], re.IGNORECASE) or code not in _UNITS:
         raise source.error(
-            line, f"acceleration in g (02) or cm/sec2 (04) expected, found {found[2]} in {found[4].strip()}"
-        )
+            line, "acceleration in g (02) or cm/sec2 (04) expected, found {quantity} in {unit}", quantity=found[2],
+            unit=found[4].strip(),
+        )  # fmt: skip
     if found[4].strip(" .\t").lower() not in _UNITS[code][1]:
-        raise source.error(line, f"unit {found[4].strip()!r} contradicts its code {code:02d}")
+        raise source.error(line, "unit {unit!r} contradicts its code {code:02d}", unit=found[4].strip(), code=code)
     return found, code
 
 

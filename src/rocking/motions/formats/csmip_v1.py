@@ -65,7 +65,9 @@ class CsmipV1(RecordFormat):
     def _channel(self, source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
         after = first + _HEADER_LINES
         if len(source.lines) <= after or not self.begins.match(source.lines[first]):
-            raise source.error(first, f"UNCORRECTED ACCELEROGRAM DATA and {after - first} header lines expected")
+            raise source.error(
+                first, "UNCORRECTED ACCELEROGRAM DATA and {count} header lines expected", count=after - first
+            )
         header = source.lines[first:after]
         wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
         # the last line of the reals is written full or not

@@ -61,7 +61,7 @@ class CsmipV2(RecordFormat):
 def _channel(source: Source, first: int, unit: str, time_step: float | None) -> tuple[Channel, int]:
     header = source.lines[first : first + _HEADER_LINES]
     if len(header) < _HEADER_LINES or not _TITLE.match(header[0]):
-        raise source.error(first, f"CORRECTED ACCELEROGRAM and {_HEADER_LINES} header lines expected")
+        raise source.error(first, "CORRECTED ACCELEROGRAM and {count} header lines expected", count=_HEADER_LINES)
     wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
     figures, line = fixed(source, reals, 100, 8, 10)
     part: Component | None = None
@@ -133,7 +133,9 @@ def _check_texts(
     for line, text in enumerate(texts, first):
         peak, points = _PEAK.fullmatch(text), _POINTS.match(text)
         if _SAYS_PEAK.match(text) and not peak:
-            raise source.error(line, f"PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {text[:60]!r}")
+            raise source.error(
+                line, "PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {entry!r}", entry=text[:60]
+            )
         if peak:
             slack = max(rounding, headers.half_digit(peak[1]))
             stated = number(source, line, peak[1], "peak")

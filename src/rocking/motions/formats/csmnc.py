@@ -35,7 +35,7 @@ class Csmnc(RecordFormat):
         stated = header_value(source, first, "(?:UN)?CORRECTED", r"\w+\s+UNIT:\s*(\S+)")[1]
         unit = unit_named(source, None, stated)
         if unit is None:
-            raise source.error(None, f"unit CM/SEC/SEC expected, found {stated[:20]!r}")
+            raise source.error(None, "unit CM/SEC/SEC expected, found {unit!r}", unit=stated[:20])
         unit = headers.acceleration_unit(source, unit, units)
         points = header_value(
             source, first, r"NO\. OF POINTS:", r"(\d{1,9})\s+EQUALLY SPACED INTERVALS OF:\s*(\d*\.?\d+)\s*SEC"

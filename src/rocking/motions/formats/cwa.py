@@ -39,10 +39,10 @@ class Cwa(RecordFormat):
         if first is None or not source.is_text:
             raise source.error(None, "the line #Data: is missing")
         if "".join(source.lines[first].split()) != "#Data:4F10.3":
-            raise source.error(first, f"#Data: 4F10.3 expected, found {source.lines[first].strip()[:40]!r}")
+            raise source.error(first, "#Data: 4F10.3 expected, found {entry!r}", entry=source.lines[first].strip()[:40])
         said = _header(source, first)
         if not re.match(r"gal\b", said["AmplitudeUnit"]):
-            raise source.error(None, f"the unit gal expected, found {said['AmplitudeUnit'][:40]!r}")
+            raise source.error(None, "the unit gal expected, found {unit!r}", unit=said["AmplitudeUnit"][:40])
         unit = headers.acceleration_unit(source, "gal", units)
         rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
         seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
@@ -56,7 +56,10 @@ class Cwa(RecordFormat):
         table = values.reshape(-1, 4)
         late = np.flatnonzero(np.abs(table[:, 0] - table[0, 0] - np.arange(len(table)) * step) > 1.02e-3)
         if late.size:
-            raise source.error(first + 1 + int(late[0]), f"time {table[late[0], 0]:g} s is off the step of {step:g} s")
+            raise source.error(
+                first + 1 + int(late[0]), "time {time:g} s is off the step of {step:g} s",
+                time=float(table[late[0], 0]), step=step,
+            )  # fmt: skip
         peaks = _check_amplitudes(source, first, table)
         components = (
             Component(name, table[:, k].copy(), unit, step, peaks[name]) for k, name in enumerate(_COMPONENTS, 1)
@@ -91,17 +94,17 @@ def _header(source: Source, first: int) -> dict[str, str]:
     said: dict[str, str] = {}
     for line, text in enumerate(source.lines[:first]):
         if text.strip() and not text.startswith("#"):
-            raise source.error(line, f"header lines begin with #, found {text.strip()[:40]!r}")
+            raise source.error(line, "header lines begin with #, found {entry!r}", entry=text.strip()[:40])
         key, colon, value = text[1:].partition(": ")
         if colon and not key.startswith("AmplitudeMAX"):
             if key in said:
-                raise source.error(line, f"{key[:40]!r} is stated twice")
+                raise source.error(line, "{key!r} is stated twice", key=key[:40])
             said[key] = value.strip()
     for key in ("RecordLength(sec)", "SampleRate(Hz)", "AmplitudeUnit"):
         if key not in said:
-            raise source.error(None, f"the header line #{key}: is missing")
+            raise source.error(None, "the header line #{key}: is missing", key=key)
     if not any(line.split() == _SEQUENCE.split() for line in source.lines[:first]):
-        raise source.error(None, f"the header line {_SEQUENCE} is missing")
+        raise source.error(None, "the header line {key} is missing", key=_SEQUENCE)
     return said
 
 
@@ -112,7 +115,9 @@ def _check_amplitudes(source: Source, first: int, table: FloatArray) -> dict[str
             continue
         stated = re.fullmatch(_AMPLITUDE, text.strip())
         if stated is None or stated[1] in found:
-            raise source.error(line, f"both extremes of one component expected, found {text.strip()[:60]!r}")
+            raise source.error(
+                line, "both extremes of one component expected, found {entry!r}", entry=text.strip()[:60]
+            )
         row = table[:, _COMPONENTS.index(stated[1]) + 1]
         high, low = float(stated[2]), float(stated[3])
         headers.check_stated(source, high, float(row.max()), headers.half_digit(stated[2]), f"maximum {stated[1]}")

@@ -57,7 +57,7 @@ class Eqsig(RecordFormat):
         values = numbers.rows(source, line + 1, len(source.lines))
         headers.check_count(source, int(found[1]), values.size)
         if values.size < 2:
-            raise source.error(line, f"at least 2 samples are needed, found {values.size}")
+            raise source.error(line, "at least 2 samples are needed, found {count}", count=values.size)
         part = Component("acceleration", values, unit, step)
         return Record(self.name, (part,), "\n".join(source.lines[: line + 1]), metadata_of(event=names))
 

@@ -80,13 +80,19 @@ class Esm(RecordFormat):
         keys = _header(source)
         line, kind = _value(source, keys, "DATA_TYPE")
         if kind.upper() != "ACCELERATION":
-            raise source.error(line, f"only ACCELERATION can be read, DATA_TYPE is {kind[:40]!r}; take the .ACC. file")
+            raise source.error(
+                line,
+                "only ACCELERATION can be read, DATA_TYPE is {quantity!r}; take the .ACC. file",
+                quantity=kind[:40],
+            )
         step = headers.step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)
         at, word = _value(source, keys, "NDATA")
         count = whole(source, at, word, "number of samples", 2)
         at, word = _value(source, keys, "UNITS")
         if word.lower() not in _UNITS:
-            raise source.error(at, f"UNITS must be one of {', '.join(_UNITS)}, found {word[:40]!r}")
+            raise source.error(
+                at, "UNITS must be one of {units}, found {unit!r}", units=", ".join(_UNITS), unit=word[:40]
+            )
         unit = headers.acceleration_unit(source, _UNITS[word.lower()], units)
         values = free(source, len(keys), len(source.lines), 1)[:, 0]
         headers.check_count(source, count, values.size)
@@ -124,18 +130,21 @@ def _header(source: Source) -> dict[str, tuple[int, str]]:
         if found is None:
             break
         if found[1] in keys:
-            raise source.error(line, f"{found[1]} is stated twice")
+            raise source.error(line, "{key} is stated twice", key=found[1])
         keys[found[1]] = (line, (found[2] or "").strip())
     if not keys:
         raise source.error(0, "a header of lines KEY: value expected")
     if keys.get("HEADER_FORMAT", (0, ""))[1] == "DYNA 1.2" and len(keys) != len(_KEYS):
-        raise source.error(len(keys), f"a DYNA 1.2 header has {len(_KEYS)} lines KEY: value, found {len(keys)}")
+        raise source.error(
+            len(keys), "a DYNA 1.2 header has {expected} lines KEY: value, found {count}", expected=len(_KEYS),
+            count=len(keys),
+        )  # fmt: skip
     return keys
 
 
 def _value(source: Source, keys: dict[str, tuple[int, str]], key: str) -> tuple[int, str]:
     if key not in keys:
-        raise source.error(None, f"the header has no line {key}")
+        raise source.error(None, "the header has no line {key}", key=key)
     return keys[key]
 
 
@@ -154,7 +163,7 @@ def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: Float
     _, word = _value(source, keys, label)
     peak = _number(source, keys, label)
     if peak is None:
-        raise source.error(keys[label][0], f"{label} states no number, and nothing else confirms unit and data")
+        raise source.error(keys[label][0], "{key} states no number, and nothing else confirms unit and data", key=label)
     # the peak has the 6 decimals of the data; one with fewer than 3 would check nothing
     rounding = min(1.1e-3, 1.1 * 10.0 ** -len(word.partition(".")[2]))
     headers.check_peak(source, peak, values, rounding, label)

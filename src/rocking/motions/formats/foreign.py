@@ -109,14 +109,25 @@ class ForeignReader:
         if "missing" in said:
             return MissingExtraError(how_to_install(source.name, self.module, ImportError(name=said["missing"])))
         if "error" in said:
-            return source.error(None, f"{self.needs} cannot read it: {said['message'] or said['error']}"[:200])
+            return source.error(
+                None, "{format} cannot read it: {reason:.180}", format=self.needs,
+                reason=said["message"] or said["error"],
+            )  # fmt: skip
         if "memory" in said:
-            return source.error(None, f"{self.needs} needs more than {self.memory / 2**30:g} GiB for it; damaged?")
+            return source.error(
+                None, "{format} needs more than {memory:g} GiB for it", format=self.needs, memory=self.memory / 2**30,
+                hint="damaged?",
+            )  # fmt: skip
         died = said.get("died")
         if "slow" in said or died == getattr(signal, "SIGALRM", None):
-            return source.error(None, f"{self.needs} takes more than {self.seconds:g} s for it; damaged?")
+            return source.error(
+                None, "{format} takes more than {time:g} s for it", format=self.needs, time=self.seconds,
+                hint="damaged?",
+            )  # fmt: skip
         name = signal.Signals(died).name if died in set(signal.Signals) else "its process ended"
-        return source.error(None, f"{self.needs} crashes on it ({name}): the file is damaged")
+        return source.error(
+            None, "{format} crashes on it ({signal}): the file is damaged", format=self.needs, signal=name
+        )
 
 
 def _end(worker: subprocess.Popen[bytes]) -> None:

@@ -48,7 +48,7 @@ class GeonetV2A(RecordFormat):
         while len(components) < 3:
             component, line = self._component(source, line, unit, time_step)
             if component.name in {other.name for other in components}:
-                raise source.error(None, f"component {component.name[:20]!r} is there twice")
+                raise source.error(None, "component {component!r} is there twice", component=component.name[:20])
             components.append(component)
         headers.check_end(source, line)
         header = "\n".join(source.lines[: _TEXTS + _WHOLES + _REALS])
@@ -77,7 +77,9 @@ class GeonetV2A(RecordFormat):
     def _component(self, source: Source, top: int, unit: str, asked: float | None) -> tuple[Component, int]:
         text = source.lines[top : top + _TEXTS]
         if len(text) < _TEXTS or not text[0].startswith(self.begins):
-            raise source.error(top, f"a component beginning with {self.begins!r} expected; one of three missing?")
+            raise source.error(
+                top, "a component beginning with {mark!r} expected", mark=self.begins, hint="one of three missing?"
+            )
         points = numbers.matched(source, top + 9, _POINTS)
         count, duration = int(points[1]), float(points[2])
         step = headers.step_between_samples(source, float(numbers.matched(source, top + 10, self.step)[1]), asked)
@@ -87,7 +89,7 @@ class GeonetV2A(RecordFormat):
         for place in self.counts:
             headers.check_count(source, int(wholes[place]), count)
         if count < 2:
-            raise source.error(top + 9, f"at least 2 points expected, found {count}")
+            raise source.error(top + 9, "at least 2 points expected, found {count}", count=count)
         headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
 
         def series(k: int, line: int) -> tuple[FloatArray, float, int]:

@@ -19,11 +19,13 @@ def header_value(source: Source, last: int, key: str, value: str) -> re.Match[st
     found = [(line, hit) for line, text in enumerate(source.lines[:last]) if (hit := begins.fullmatch(text[:_LONGEST]))]
     plain = _plain(key)
     if len(found) != 1:
-        raise source.error(None, f"one header line that begins with {plain!r} expected, found {len(found)}")
+        raise source.error(
+            None, "one header line that begins with {key!r} expected, found {count}", key=plain, count=len(found)
+        )
     line, hit = found[0]
     understood = re.fullmatch(value, hit[1], re.IGNORECASE)
     if understood is None:
-        raise source.error(line, f"{plain} cannot be understood: {hit[1][:40]!r}")
+        raise source.error(line, "{key} cannot be understood: {entry!r}", key=plain, entry=hit[1][:40])
     return understood
 
 
@@ -45,7 +47,7 @@ def after(source: Source, mark: str, most: int) -> int:
     form = re.compile(mark, re.IGNORECASE)
     found = [line for line, text in enumerate(source.lines[:most]) if form.match(text[:_LONGEST])]
     if not found or not source.is_text:
-        raise source.error(None, f"no line that begins with {_plain(mark)!r} near the top")
+        raise source.error(None, "no line that begins with {key!r} near the top", key=_plain(mark))
     return found[-1] + 1
 
 
@@ -76,9 +78,12 @@ def side_by_side(
         else:
             headers.check_end(source, behind)
     if values.size != count * across:
-        raise source.error(None, f"the header states {count} samples, the file holds {values.size / across:g}")
+        raise source.error(
+            None, "the header states {stated} samples, the file holds {count:g}", stated=count,
+            count=values.size / across,
+        )  # fmt: skip
     if count < 2:
-        raise source.error(None, f"at least 2 samples are needed, found {count}")
+        raise source.error(None, "at least 2 samples are needed, found {count}", count=count)
     word = next(text.split()[0] for text in source.lines[first:] if text.strip())
     word = word if form is None else source.lines[first][: form[1]]
     parts = []

@@ -31,7 +31,9 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     if stated is None and asked is None:
         raise source.error(None, "the file does not state its unit", hint=unit_to_state())
     if stated is not None and asked is not None and ACCELERATION_UNITS[stated] != ACCELERATION_UNITS[asked]:
-        raise source.error(None, f"the file states the unit {stated}, you say {asked}")
+        raise source.error(
+            None, "the file states the unit {stated}, you say {requested}", stated=stated, requested=asked
+        )
     return stated or asked or ""
 
 
@@ -50,10 +52,9 @@ def refuse_other(source: Source, words: str = "") -> None:
         if found and not _ACCELERATION.search(text[:LONGEST_LINE]):
             kind = "velocity" if found[1] else "displacement"
             raise source.error(
-                None,
-                f"accelerations are needed, and {where} says {found[0]!r}, a {kind}; take the file of accelerations, "
-                "or correct that if it holds them",
-            )
+                None, "accelerations are needed, and {origin} says {entry!r}, a {quantity}; take the file of "
+                "accelerations, or correct that if it holds them", origin=where, entry=found[0], quantity=kind,
+            )  # fmt: skip
 
 
 def doubt_channel(source: Source, code: str) -> None:
@@ -70,7 +71,9 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
         hint = Message("say {option} in seconds", {"option": Option("motion.time_step")})
         raise source.error(None, "the file does not state its time step", hint=hint)
     if stated is not None and asked is not None and abs(stated - asked) > 1e-9 * stated:
-        raise source.error(None, f"the file states a time step of {stated:g} s, you say {asked:g}")
+        raise source.error(
+            None, "the file states a time step of {stated:g} s, you say {requested:g}", stated=stated, requested=asked
+        )
     if not 1e-6 <= step <= 10.0:
         raise source.error(None, Message("time step must be in [1e-6, 10] s, got {step:g}", {"step": step}))
     return float(step)
@@ -143,7 +146,7 @@ def _last_digits(times: FloatArray, decimals: list[int]) -> FloatArray:
 def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) -> float:
     """Return the step of times uniform to rounding at `unit`, the last digit: the shortest decimal that fits [s]."""
     if times.size < 2:
-        raise source.error(None, f"at least 2 samples are needed, found {times.size}")
+        raise source.error(None, "at least 2 samples are needed, found {count}", count=times.size)
     steps = times.size - 1
     mean = (float(times[-1]) - float(times[0])) / steps
     if not 1e-6 <= mean <= 10.0:
@@ -161,15 +164,15 @@ def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) ->
         # so few digits could hide a missing line: the times must lie on the decimal step itself
         even, slack = step, 0.501 * unit
     if float(np.max(slack)) > 0.51 * mean:
-        raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
+        raise source.error(None, "the times have too few digits to tell their step of about {step:g} s", step=mean)
     off = np.abs(times - times[0] - even * np.arange(times.size))
     worst = int((off - slack).argmax())
     if off[worst] > np.broadcast_to(slack, off.shape)[worst]:
         raise source.error(
-            None,
-            f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
-            f"even step of {even:g} s; resample it first, or a line is missing",
-        )
+            None, "the times are not evenly spaced: sample {sample} at {time:g} s is {deviation:.3g} s off the even "
+            "step of {step:g} s; resample it first, or a line is missing", sample=worst + 1, time=float(times[worst]),
+            deviation=float(off[worst]), step=even,
+        )  # fmt: skip
     return step
 
 
@@ -215,7 +218,9 @@ def at_even_steps(
 def check_count(source: Source, stated: int, found: int) -> None:
     """Refuse a file that holds another number of samples than its header states."""
     if stated != found:
-        raise source.error(None, f"the header states {stated} samples, the file holds {found}")
+        raise source.error(
+            None, "the header states {stated} samples, the file holds {count}", stated=stated, count=found
+        )
 
 
 def check_said_peak(
@@ -291,14 +296,20 @@ def printed_rounding(stated: str, sample: str, least: int) -> float:
 def check_stated(source: Source, stated: float, found: float, rounding: float, what: str) -> None:
     """Refuse a file whose header states another number than its data give; signs count."""
     if not abs(stated - found) <= rounding:
-        raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")
+        raise source.error(
+            None, "the header states a {quantity} of {stated:g}, the data have {computed:g}", quantity=what,
+            stated=stated, computed=found,
+        )  # fmt: skip
 
 
 def samples_of(source: Source, line: int | None, rate: float, seconds: float, what: str) -> int:
     """Return the number of samples that a stated rate [Hz] and duration [s] make, which must be whole."""
     wanted = rate * seconds
     if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
-        raise source.error(line, f"{what} times rate must be a whole number of samples, found {wanted:g}")
+        raise source.error(
+            line, "{quantity} times rate must be a whole number of samples, found {count:g}", quantity=what,
+            count=wanted,
+        )  # fmt: skip
     return round(wanted)
 
 

@@ -61,7 +61,9 @@ def _relative_response(about: dict[str, str], stations: Places, step: float, cou
     channel, source = channel_at(sources[0], found["channels"], sources, name, about["starttime"])
     sensitivity_of(replace(source, doubts=[]), channel, name)  # of acceleration, or refused
     if "array" not in channel:
-        raise source.error(None, f"{name}: the StationXML states no stages of a response; ask for level=response")
+        raise source.error(
+            None, "{station}: the StationXML states no stages of a response; ask for level=response", station=name
+        )
     return arrays[channel["array"]], f"{source.name}, SHA-256 {source.sha256}"
 
 

@@ -58,7 +58,7 @@ class Knet(RecordFormat):
         step = headers.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
         gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", said[13])
         if not gal or not counts_per_gal:
-            raise source.error(13, f"scale factor must be above zero, found {said[13][:40]!r}")
+            raise source.error(13, "scale factor must be above zero, found {entry!r}", entry=said[13][:40])
         counts = _counts(source)
         headers.check_count(source, headers.samples_of(source, 11, rate, seconds, "duration"), counts.size)
         raw = counts * (gal / counts_per_gal)
@@ -113,17 +113,22 @@ class Knet(RecordFormat):
 
 def _header(source: Source) -> list[str]:
     if not source.is_text or len(source.lines) <= len(_KEYS):
-        raise source.error(None, f"a K-NET header of {len(_KEYS)} lines expected, found {len(source.lines)} lines")
+        raise source.error(
+            None, "a K-NET header of {expected} lines expected, found {count} lines", expected=len(_KEYS),
+            count=len(source.lines),
+        )  # fmt: skip
     for line, key in enumerate(_KEYS):
         if not source.lines[line].startswith(key):
-            raise source.error(line, f"{key!r} expected, found {source.lines[line].strip()[:40]!r}")
+            raise source.error(
+                line, "{key!r} expected, found {entry!r}", key=key, entry=source.lines[line].strip()[:40]
+            )
     return [source.lines[line][len(key) :].strip() for line, key in enumerate(_KEYS)]
 
 
 def _stated(source: Source, line: int, form: str, text: str) -> list[float]:
     found = re.fullmatch(form, text)
     if found is None:
-        raise source.error(line, f"{_KEYS[line]} cannot be understood: {text[:40]!r}")
+        raise source.error(line, "{key} cannot be understood: {entry!r}", key=_KEYS[line], entry=text[:40])
     return [numbers.number(source, line, word) for word in found.groups()]
 
 
@@ -133,9 +138,11 @@ def _counts(source: Source) -> FloatArray:
         rows.pop()
     for (line, words), _ in pairwise(rows):
         if len(words) != _PER_LINE:
-            raise source.error(line, f"{_PER_LINE} counts expected, found {len(words)}")
+            raise source.error(line, "{expected} counts expected, found {count}", expected=_PER_LINE, count=len(words))
     if rows and len(rows[-1][1]) > _PER_LINE:
-        raise source.error(rows[-1][0], f"at most {_PER_LINE} counts expected, found {len(rows[-1][1])}")
+        raise source.error(
+            rows[-1][0], "at most {most} counts expected, found {count}", most=_PER_LINE, count=len(rows[-1][1])
+        )
     counts = [
         numbers.whole(source, line, word, "count of the recorder", least=-_LARGEST_COUNT)
         for line, words in rows

@@ -79,7 +79,9 @@ class MiniSeed(RecordFormat):
         ids = [trace.id for trace in traces]
         if len(set(ids)) != len(ids):
             twice = next(name for name in ids if ids.count(name) > 1)
-            raise source.error(None, f"channel {twice} has a gap, an overlap or a change of rate; cut it out first")
+            raise source.error(
+                None, "channel {channel} has a gap, an overlap or a change of rate; cut it out first", channel=twice
+            )
         codes = [trace.about["channel"] for trace in traces]
         names = codes if len(set(codes)) == len(codes) else ids
         components = tuple(
@@ -123,7 +125,10 @@ def _check_room(source: Source) -> None:
         bits = _LEAST_BITS.get(encoding, 16.0)
         most = int(max((1 << length) - start, 0) * 8 / bits)
         if count > most:
-            raise source.error(None, f"the record at byte {at} states {count} samples, it has room for {most}; damaged")
+            raise source.error(
+                None, "the record at byte {byte} states {count} samples, it has room for {most}; damaged", byte=at,
+                count=count, most=most,
+            )  # fmt: skip
         at += 1 << length
 
 
@@ -132,13 +137,15 @@ def _component(
 ) -> Component:
     values: FloatArray = trace.samples.astype(np.float64)
     if values.size < 2 or not np.isfinite(values).all():
-        raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
+        raise source.error(
+            None, "{channel}: at least 2 finite samples are needed, found {count}", channel=trace.id, count=values.size
+        )
     step = headers.step_between_samples(source, trace.step, asked)
     about = {key: text for key, text in trace.about.items() if text}
     side = directions.orientation(trace.about["channel"])
     if trace.channels is None:
         if trace.samples.dtype.kind in "iu":
-            raise source.error(None, f"{trace.id} holds counts, no accelerations", hint=STATIONS)
+            raise source.error(None, "{channel} holds counts, no accelerations", channel=trace.id, hint=STATIONS)
         headers.doubt_channel(source, trace.about["channel"])
         stated = "m/s2" if trace.id.split(".")[2:3] == [_SI] else None
         about[directions.KEY] = directions.as_text(side)
@@ -147,7 +154,10 @@ def _component(
     channel, described_in = channel_at(source, trace.channels, stations, trace.id, trace.about["starttime"])
     sensitivity = sensitivity_of(source, channel, trace.id)
     if abs(channel["rate"] * trace.step - 1.0) > 1e-4:
-        raise source.error(None, f"{trace.id}: {1 / trace.step:g} samples/s, the StationXML states {channel['rate']:g}")
+        raise source.error(
+            None, "{channel}: {rate:g} samples/s, the StationXML states {stated:g}", channel=trace.id,
+            rate=1 / trace.step, stated=channel["rate"],
+        )  # fmt: skip
     if channel["dip"] is not None:  # downwards from the level
         side = directions.both(side, directions.of_angles(channel["azimuth"], 90.0 + channel["dip"]))
     offset = float(values.mean())

@@ -41,7 +41,9 @@ class Nsmn(RecordFormat):
         names = source.lines[first - 1].split()
         if [name.strip() for name, _ in peaks] != names:
             raise source.error(
-                first - 1, f"the peaks are of {', '.join(name for name, _ in peaks)}, the columns of others"
+                first - 1,
+                "the peaks are of {components}, the columns of others",
+                components=", ".join(name for name, _ in peaks),
             )
         texts = {key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
         metadata = {key: readable(text, turkish=True) for key, text in texts.items()}

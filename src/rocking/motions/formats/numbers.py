@@ -23,10 +23,12 @@ def number(source: Source, line: int, word: str, what: str = "number") -> float:
     """Return one number."""
     text = word.strip()
     if not _NUMBER.fullmatch(text):
-        raise source.error(line, f"{what} expected, found {text[:40]!r}{gap_words(text)}")
+        raise source.error(
+            line, "{quantity} expected, found {entry!r}{gap}", quantity=what, entry=text[:40], gap=gap_words(text)
+        )
     value = float(text.replace("D", "e").replace("d", "e"))
     if not math.isfinite(value):
-        raise source.error(line, f"{what} is beyond all range: {text[:40]!r}")
+        raise source.error(line, "{quantity} is beyond all range: {entry!r}", quantity=what, entry=text[:40])
     return value
 
 
@@ -95,7 +97,7 @@ def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> in
     """Return one whole number."""
     text = word.strip()
     if not re.fullmatch(r"[+-]?\d{1,9}", text) or int(text) < least:
-        raise source.error(line, f"{what} expected, found {text[:40]!r}")
+        raise source.error(line, "{quantity} expected, found {entry!r}", quantity=what, entry=text[:40])
     return int(text)
 
 
@@ -103,7 +105,7 @@ def matched(source: Source, line: int, form: str) -> re.Match[str]:
     """Return a line, of which a pattern must make sense."""
     found = re.fullmatch(form, source.lines[line].strip())
     if found is None:
-        raise source.error(line, f"cannot be understood: {source.lines[line].strip()[:60]!r}")
+        raise source.error(line, "cannot be understood: {entry!r}", entry=source.lines[line].strip()[:60])
     return found
 
 
@@ -117,7 +119,7 @@ def _free_rows(source: Source, first: int, last: int, columns: int | None) -> It
     for line in range(first, last):
         words = source.lines[line].split()
         if columns is not None and words and len(words) != columns:
-            raise source.error(line, f"{columns} numbers expected, found {len(words)}")
+            raise source.error(line, "{expected} numbers expected, found {count}", expected=columns, count=len(words))
         yield line, words
 
 
@@ -129,7 +131,10 @@ def rows(source: Source, first: int, last: int) -> FloatArray:
         words = len(source.lines[line].split())
         columns = columns or words
         if words and (short or words > columns):
-            raise source.error(line, f"{columns} numbers a line expected save on the last; missing or damaged?")
+            raise source.error(
+                line, "{expected} numbers a line expected save on the last", expected=columns,
+                hint="missing or damaged?",
+            )  # fmt: skip
         short = short or 0 < words < columns
     if not columns:
         raise source.error(None, "no sample after the header")
@@ -155,12 +160,15 @@ def _fixed_rows(source: Source, first: int, count: int, per_line: int, width: in
     for done in range(0, count, per_line):
         line = first + done // per_line
         if line >= len(source.lines):
-            raise source.error(None, f"{count} samples expected, the file ends after {done}")
+            raise source.error(None, "{count} samples expected, the file ends after {read}", count=count, read=done)
         text = source.lines[line].rstrip()
         text = text[skip:] if not text[:skip].strip() else text
         wanted = min(per_line, count - done)
         if len(text) > wanted * width or len(text) <= (wanted - 1) * width:
-            raise source.error(line, f"{wanted} columns of {width} characters expected, found {len(text)} characters")
+            raise source.error(
+                line, "{columns} columns of {width} characters expected, found {count} characters", columns=wanted,
+                width=width, count=len(text),
+            )  # fmt: skip
         yield line, [text[k * width : (k + 1) * width] for k in range(wanted)]
 
 
@@ -172,7 +180,7 @@ def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     """
     found = re.fullmatch(r"\(?(?:1P,?)?(\d{1,3})[FEGI](\d{1,2})(?:\.\d{1,2})?\)?", word.strip().upper())
     if found is None or not int(found[1]) or not int(found[2]):
-        raise source.error(line, f"a format such as (8F10.5) expected, found {word.strip()[:40]!r}")
+        raise source.error(line, "a format such as (8F10.5) expected, found {entry!r}", entry=word.strip()[:40])
     return int(found[1]), int(found[2])
 
 

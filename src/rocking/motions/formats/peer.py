@@ -60,7 +60,10 @@ class Peer(RecordFormat):
         for at, text in enumerate(header):
             for points, spacing in _IN_WORDS.findall(text):
                 if whole(source, at, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
-                    raise source.error(at, f"{points} points at {spacing} s stated here, {count} at {step:g} s below")
+                    raise source.error(
+                        at, "{points} points at {spacing} s stated here, {count} at {step:g} s below", points=points,
+                        spacing=spacing, count=count, step=step,
+                    )  # fmt: skip
         values = _values(source, line + 1)
         check_count(source, count, values.size)
         metadata, name = _who(header)
@@ -97,7 +100,7 @@ def _size(source: Source, line: int) -> tuple[int, float]:
     old = _OLD.fullmatch(text)
     words = {"NPTS": old[1], "DT": old[2]} if old else _keyed(text)
     if words is None:
-        raise source.error(line, f"NPTS= and DT= expected once each, found {text.strip()[:60]!r}")
+        raise source.error(line, "NPTS= and DT= expected once each, found {entry!r}", entry=text.strip()[:60])
     return whole(source, line, words["NPTS"], "number of samples", 2), number(source, line, words["DT"], "time step")
 
 
@@ -115,10 +118,16 @@ def _unit(source: Source, header: list[str]) -> str | None:
         beside = f": a {other[1].lower()}; its acceleration is in the .AT2 file beside it" if other else ""
         for stated in _UNIT.findall(text):
             if stated.strip("()").upper() != "G":
-                raise source.error(line, f"PEER accelerations are in g, the header states {stated[:20]!r}{beside}")
+                raise source.error(
+                    line, "PEER accelerations are in g, the header states {entry!r}{kind}", entry=stated[:20],
+                    kind=beside,
+                )  # fmt: skip
             found = "g"
         if beside:
-            raise source.error(line, f"PEER accelerations are in g, the header states {text.strip()[:40]!r}{beside}")
+            raise source.error(
+                line, "PEER accelerations are in g, the header states {entry!r}{kind}", entry=text.strip()[:40],
+                kind=beside,
+            )  # fmt: skip
     return found
 
 

@@ -195,7 +195,10 @@ def read_motion(  # noqa: PLR0913 - every one of them is a property of some file
     upright = _chosen(record, "vertical", vertical)
     level = _chosen(record, "component", component, upright)
     if upright.time_step != level.time_step:
-        raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
+        raise source.error(
+            None, "steps of {step:g} s and {vertical_step:g} s; resample one first", step=level.time_step,
+            vertical_step=upright.time_step,
+        )  # fmt: skip
     told = f"component {upright.name}, unit {upright.unit}"
     acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
     about = {"component": upright.name}
@@ -341,7 +344,9 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
             component=name,
         )  # fmt: skip
     if late := delay(motion, upright):
-        raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
+        raise beside.error(
+            None, "it starts {delay:g} s after the horizontal component; trim both to one start", delay=late
+        )
     return with_vertical(motion, upright)
 
 
@@ -372,12 +377,12 @@ def _recognised(source: Source) -> RecordFormat:
     if len(found) > 1:
         names = ", ".join(one.name for one in found)
         hint = Message("say {option} one of these", {"option": Option("motion.format")})
-        raise source.error(None, f"it could be {names}", hint=hint)
+        raise source.error(None, "it could be {formats}", formats=names, hint=hint)
     if found:
         return found[0]
     if near := next((one for one in known if one.resembles(source)), None):
         hint = Message("say {option} to see where", {"option": Option("motion.format", near.name)})
-        raise source.error(None, f"its header is nearly that of {near.name}; damaged?", hint=hint)
+        raise source.error(None, "its header is nearly that of {format}; damaged?", format=near.name, hint=hint)
     if last.recognises(source):
         return last
     top = " ".join(source.lines[:5])[:1000].lower() if source.is_text else ""

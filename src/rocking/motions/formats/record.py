@@ -108,7 +108,7 @@ class Source:
 
     def expected(self, line: int, what: str) -> RecordError:
         """Return the error for a line that should say something else, or of which the file ends too early."""
-        return self.error(min(line, len(self.lines) - 1), f"{what} expected")
+        return self.error(min(line, len(self.lines) - 1), "{content} expected", content=what)
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,7 +50,10 @@ class Sac(RecordFormat):
         for place, (offset, most) in _PLACES.items():
             value = struct.unpack_from(order + "f", source.content, offset)[0]
             if value != _UNDEFINED and not abs(value) <= most:
-                raise source.error(None, f"the header's {place} must be within {most:g} degrees of 0, found {value:g}")
+                raise source.error(
+                    None, "the header's {quantity} must be within {most:g} degrees of 0, found {degrees:g}",
+                    quantity=place, most=most, degrees=value,
+                )  # fmt: skip
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.sac
         own = str(said.get("kuser0", "")).strip()
@@ -58,11 +61,13 @@ class Sac(RecordFormat):
         if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
             raise source.error(None, "an evenly spaced time series is needed")
         if said.get("idep") in _OTHER:
-            raise source.error(None, f"accelerations are needed, the file holds {_OTHER[said['idep']]}")
+            raise source.error(
+                None, "accelerations are needed, the file holds {quantity}", quantity=_OTHER[said["idep"]]
+            )
         values = trace.samples.astype(np.float64)
         headers.check_count(source, int(said["npts"]), values.size)
         if values.size < 2 or not np.isfinite(values).all():
-            raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
+            raise source.error(None, "at least 2 finite samples are needed, found {count}", count=values.size)
         step = headers.step_between_samples(source, _step(float(said["delta"])), time_step)
         known = {key: float(said.get(key, _UNDEFINED)) for key in ("b", "e", "depmin", "depmax")}
         if not all(math.isfinite(value) for value in known.values()):
@@ -153,17 +158,19 @@ def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **op
     for warning in found.get("warnings", ()):
         source.doubt(None, f"ObsPy warns: {warning}")
     if not found["traces"]:
-        raise source.error(None, f"no trace in this {form} file")
+        raise source.error(None, "no trace in this {format} file", format=form)
     for said, samples in zip(found["traces"], arrays, strict=True):
         if samples.dtype.kind not in "iuf":
-            raise source.error(None, f"{said['id']} holds text, no samples")
+            raise source.error(None, "{channel} holds text, no samples", channel=said["id"])
     return [Trace(**said, samples=samples) for said, samples in zip(found["traces"], arrays, strict=True)]
 
 
 def check_stations(found: dict[str, Any], stations: Sequence[Source]) -> None:
     """Refuse a StationXML file that ObsPy cannot read."""
     if "stations" in found:
-        raise stations[found["file_index"]].error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
+        raise stations[found["file_index"]].error(
+            None, "ObsPy cannot read it as StationXML: {reason}", reason=found["stations"]
+        )
 
 
 def need_obspy(form: str) -> Any:

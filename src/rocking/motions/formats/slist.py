@@ -42,7 +42,9 @@ class Slist(RecordFormat):
         names = [part.name for part in parts]
         if len(set(names)) != len(names):
             raise source.error(
-                None, f"a channel of {', '.join(sorted(set(names)))} has a gap or an overlap; cut it out first"
+                None,
+                "a channel of {channels} has a gap or an overlap; cut it out first",
+                channels=", ".join(sorted(set(names))),
             )
         metadata = {key: text for key, text in parts[0].metadata.items() if text}
         return Record(self.name, tuple(parts), "\n".join(source.lines[line] for line in starts), metadata)
@@ -82,10 +84,10 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
         times = [np.datetime64(words[0].rstrip("Z"), "ns") for _, words in rows]
         late = np.array([float((time - times[0]) / np.timedelta64(1, "ns")) * 1e-9 for time in times])
         if np.abs(late - step * np.arange(late.size)).max(initial=0.0) > 0.01 * step + 1e-6:
-            raise source.error(first, f"the times are not {step:g} s apart throughout; a line missing?")
+            raise source.error(first, "the times are not {step:g} s apart throughout; a line missing?", step=step)
     headers.check_count(source, int(count), values.size)
     if values.size < 2:
-        raise source.error(first, f"at least 2 samples are needed, found {values.size}")
+        raise source.error(first, "at least 2 samples are needed, found {count}", count=values.size)
     headers.doubt_channel(source, code)
     return Component(
         code or "unnamed", values, unit, step, None, {"network": network, "station": station, "starttime": start}
@@ -94,5 +96,5 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
 
 def _value(source: Source, line: int, words: list[str]) -> float:
     if len(words) != 2 or not re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z?", words[0]):
-        raise source.error(line, f"a time and a sample expected, found {' '.join(words)[:60]!r}")
+        raise source.error(line, "a time and a sample expected, found {entry!r}", entry=" ".join(words)[:60])
     return numbers.number(source, line, words[1])

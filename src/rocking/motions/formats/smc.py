@@ -63,7 +63,7 @@ class SmcUsgs(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         if not self.recognises(source):
             raise source.error(
-                None, f"no {self.name} file: the 16 lines of numbers after 11 lines of text are not there"
+                None, "no {format} file: the 16 lines of numbers after 11 lines of text are not there", format=self.name
             )
         header = _header(source)
         rate, count = header.real[1], header.whole[16]
@@ -72,7 +72,7 @@ class SmcUsgs(RecordFormat):
                 TEXTS + 2, Message("number of samples must be at least 2, found {count}", {"count": count})
             )
         if rate is not None and not rate > 0.0:
-            raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
+            raise source.error(TEXTS + WHOLES, "sampling rate must be above zero, found {rate:g}", rate=rate)
         unit = headers.acceleration_unit(source, "cm/s2", units)
         values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
         done: dict[str, str] = {}
@@ -83,7 +83,7 @@ class SmcUsgs(RecordFormat):
         else:
             # without a rate there are as many times as samples, and both are counted
             if count % 2:
-                raise source.error(TEXTS + 2, f"pairs of time and sample make an even count, found {count}")
+                raise source.error(TEXTS + 2, "pairs of time and sample make an even count, found {count}", count=count)
             with source.doubting():
                 headers.check_end(source, after)
             times, values = values[::2], values[1::2].copy()
@@ -176,7 +176,9 @@ class SmcUsgs(RecordFormat):
 def _header(source: Source) -> _Header:
     kind = int(source.lines[0].split()[0])
     if kind not in _KINDS:
-        raise source.error(0, f"no accelerogram but {_OTHER.get(kind, f'kind {kind}')}: accelerations are needed")
+        raise source.error(
+            0, "no accelerogram but {content}: accelerations are needed", content=_OTHER.get(kind, f"kind {kind}")
+        )
     for line in range(TEXTS, TEXTS + WHOLES + REALS):
         row = source.lines[line].rstrip() if line < len(source.lines) else ""
         if not re.fullmatch(_WHOLES, row) if line < TEXTS + WHOLES else len(row) != 75 or not re.fullmatch(_REALS, row):
@@ -194,7 +196,9 @@ def _header(source: Source) -> _Header:
     comments, after = whole[15] or 0, first_real + REALS
     for line in range(after, after + max(comments, 0)):
         if line >= len(source.lines) or not source.lines[line].startswith("|"):
-            raise source.error(None, f"the header states {comments} lines of comment, one of them is missing")
+            raise source.error(
+                None, "the header states {count} lines of comment, one of them is missing", count=comments
+            )
     return _Header(kind, whole, real, after + max(comments, 0))
 
 

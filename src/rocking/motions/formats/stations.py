@@ -69,11 +69,16 @@ def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
     """Return the overall sensitivity of a channel [counts/(m/s2)]; counts under no name are doubted."""
     total = channel["sensitivity"]
     if not total:
-        raise source.error(None, f"{name}: the StationXML states no overall sensitivity; ask for level=response")
+        raise source.error(
+            None, "{station}: the StationXML states no overall sensitivity; ask for level=response", station=name
+        )
     before, after = ("".join(str(unit).upper().split()) for unit in total[1:])
     spelt = _SPELT.fullmatch(before)
     if spelt is None or not (after in _COUNTS or after in _UNNAMED):
-        raise source.error(None, f"{name}: sensitivity from M/S**2 to counts needed, found {before} to {after}")
+        raise source.error(
+            None, "{station}: sensitivity from M/S**2 to counts needed, found {input} to {output}", station=name,
+            input=before, output=after,
+        )  # fmt: skip
     if after in _UNNAMED:
         source.doubt(None, f"{name}: the StationXML states a sensitivity to {after or 'no unit'}, taken as counts")
     value = float(total[0]) / _FACTORS[spelt[1]]
@@ -97,6 +102,12 @@ def channel_at(
     if not exact:
         others = sorted({f"location {one['location'] or 'blank'}, {one['from']} to {one['to']}" for one in found})
         beside = f"; they describe {'; '.join(others[:4])}" if others else ""
-        raise source.error(None, f"{name} at {when}: the StationXML files do not describe this channel{beside}")
+        raise source.error(
+            None, "{station} at {time}: the StationXML files do not describe this channel{others}", station=name,
+            time=when, others=beside,
+        )  # fmt: skip
     files = ", ".join(sorted({stations[one["file_index"]].name for one in exact}))
-    raise source.error(None, f"{name} at {when}: {len(distinct)} different descriptions in {files}; name one file")
+    raise source.error(
+        None, "{station} at {time}: {count} different descriptions in {files}; name one file", station=name, time=when,
+        count=len(distinct), files=files,
+    )  # fmt: skip

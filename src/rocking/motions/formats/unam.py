@@ -45,7 +45,9 @@ class Unam(RecordFormat):
         form = header_value(source, head, r"FORMATO DATOS[^:]*:", r".*")[0]
         across, width = numbers.fortran_form(source, head, form)
         if across != channels:
-            raise source.error(None, f"{channels} channels are stated, and samples in {form[:20]}")
+            raise source.error(
+                None, "{channels} channels are stated, and samples in {form}", channels=channels, form=form[:20]
+            )
         sides = names
         if len(set(names)) < channels or "" in names:
             names = [f"CHAN {place}" for place in range(1, channels + 1)]
@@ -91,6 +93,7 @@ def _listed(source: Source, last: int, key: str, channels: int, form: str) -> li
     words = [word.strip() for word in words]
     if len(words) != channels or not all(re.fullmatch(form, word) for word in words):
         raise source.error(
-            None, f"{key.replace(chr(92), '')}: {channels} values behind slashes expected, found {words[:12]}"
-        )
+            None, "{key}: {channels} values behind slashes expected, found {entry}", key=key.replace(chr(92), ""),
+            channels=channels, entry=str(words[:12]),
+        )  # fmt: skip
     return words
