@@ -206,6 +206,18 @@ def test_a_fragility(studies: Any, shot: Any) -> None:
     shot(studies, "studies-fragility")
 
 
+def test_a_study_without_a_form_of_its_own(studies: Any, shot: Any) -> None:
+    """Its fields are the keys of its table; a value that its class refuses starts nothing."""
+    studies.get_by_role("radio", name="Histories").check(force=True)
+    studies.get_by_label("scales").fill("one")
+    refused(studies, "Scales must be")
+    studies.get_by_label("scales").fill("0.5, 1, 2")
+    studies.locator("#study-name").fill("three scales")
+    studies.get_by_test_id("study-launch").click()
+    expect(studies.get_by_test_id("study-counts").first).to_contain_text("overturns")
+    shot(studies, "studies-histories")
+
+
 def test_rocking_spectra(studies: Any, shot: Any) -> None:
     """Spectra show one curve for every slenderness and model."""
     studies.get_by_role("radio", name="Rocking spectra").check(force=True)

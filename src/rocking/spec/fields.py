@@ -34,6 +34,15 @@ def kinds_of(field: FieldInfo) -> list[Any]:
     return [get_args(kind)[0] if get_origin(kind) is Annotated else kind for kind in inner if kind is not NoneType]
 
 
+def limits_of(field: FieldInfo) -> dict[str, float]:
+    """Return the limits of a number: ge, gt, le and lt, where it has them."""
+    inner = [part for kind in (field, *get_args(field.annotation)) for part in getattr(kind, "metadata", ())]
+    inner += [part for kind in get_args(field.annotation) for part in getattr(kind, "__metadata__", ())]
+    parts = [one for part in inner for one in (part.metadata if isinstance(part, FieldInfo) else [part])]
+    names = ("ge", "gt", "le", "lt")
+    return {name: value for part in parts for name in names if (value := getattr(part, name, None)) is not None}
+
+
 class JobTable(StrictTable):
     """A table of a job file."""
 

@@ -15,7 +15,7 @@ from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
 from rocking.spec.documents.response import ResponseTable
-from rocking.spec.fields import JobTable, Values, meaning_and_unit
+from rocking.spec.fields import JobTable, Values, limits_of, meaning_and_unit
 from rocking.spec.motion_tables import ComponentsTable, FileKeys, MotionTable
 from rocking.spec.question import BodyQuestion, CampaignTable
 from rocking.spec.questions import questions
@@ -91,9 +91,12 @@ def _within(
 
 
 def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
-    """Return what is said of the keys of a table: unit, meaning, kind, usual value and choices."""
+    """Return what is said of the keys of a table: unit, meaning, kind, usual value, choices and limits."""
     return {
-        field.alias or key: _said(field.description or "", field.default, field.annotation, needed=field.is_required())
+        field.alias or key: {
+            **_said(field.description or "", field.default, field.annotation, needed=field.is_required()),
+            **limits_of(field),
+        }
         for key, field in table.model_fields.items()
     }
 

@@ -40,6 +40,7 @@ class Axis:
     low: float = 0.0
     high: float = 1e9
     low_is_allowed: bool = False
+    usual: tuple[float, float] = (1.0, 2.0)  # first and last value that a form proposes
     values: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __call__(self, values: Any) -> "Axis":
@@ -223,49 +224,52 @@ _ALL = (
     Axis(
         "frequency_ratio", "1", "omega_p / p, frequency of the pulse over that of the body", _TIME, TIME,
         lambda case, values: _period(case, 2.0 * np.pi / (values * case.frequency_parameter)), _check_period,
+        usual=(0.5, 8.0),
     ),
     Axis(
         "amplitude_ratio", "1", "a_p / (g tan alpha), or a_p / (g alpha) in the linear equations", _AMPLITUDE,
         AMPLITUDE, _scaled(lambda case, values: values * case.uplift_acceleration / case.question.motion.peak),
-        high=1e6,
+        high=1e6, usual=(1.0, 10.0),
     ),
     Axis(
         "scale", "1", "factor on the motion", _AMPLITUDE, AMPLITUDE, _scaled(lambda _, values: values),
         lambda axis, question: plausibility.warn(plausibility.of_scaled([question.motion], axis.values)), -1e6, 1e6,
+        usual=(0.25, 4.0),
     ),
     Axis(
         "pga", "m/s2", "peak ground acceleration", _AMPLITUDE, AMPLITUDE,
         _scaled(lambda case, values: values / case.question.motion.peak),
         lambda axis, _: plausibility.warn(plausibility.of_acceleration(float(axis.values.max()))), high=1e6,
+        usual=(1.0, 12.0),
     ),
     Axis(
         "pgv", "m/s",
         "peak ground velocity, by scaling the motion, or by stretching its time where the other axis scales it",
-        "the velocity of the motion", VELOCITY, _velocity, high=1e6,
+        "the velocity of the motion", VELOCITY, _velocity, high=1e6, usual=(0.1, 2.0),
     ),
-    Axis("period", "s", "period T_p of the pulse", _TIME, TIME, _period, _check_period),
+    Axis("period", "s", "period T_p of the pulse", _TIME, TIME, _period, _check_period, usual=(0.2, 3.0)),
     Axis(
         "duration", "s", "duration of the motion, stretched in time", _TIME, TIME,
-        lambda case, values: {"stretch": values / case.question.motion.duration},
+        lambda case, values: {"stretch": values / case.question.motion.duration}, usual=(0.5, 5.0),
     ),
     Axis(
         "semi_diagonal", "m", "semi-diagonal R; the body with all lengths scaled", "size", BODY,
-        _geometry("semi_diagonal"),
+        _geometry("semi_diagonal"), usual=(0.25, 4.0),
     ),
     # of a block: a slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width
     Axis(
         "slenderness_ratio", "1", "slenderness ratio h/b of the block", "slenderness", BODY, _slenderness_ratio,
-        _check_block,
+        _check_block, usual=(2.0, 8.0),
     ),
     Axis(
         "slenderness_angle", "rad", "slenderness angle alpha of the block", "slenderness", BODY,
-        _geometry("slenderness_angle"), _check_block, high=0.5 * np.pi,
+        _geometry("slenderness_angle"), _check_block, high=0.5 * np.pi, usual=(0.1, 0.4),
     ),
-    Axis("width", "m", "width of the block", "width", BODY, _geometry("width"), _check_block),
-    Axis("height", "m", "height of the block", "height", BODY, _geometry("height"), _check_block),
+    Axis("width", "m", "width of the block", "width", BODY, _geometry("width"), _check_block, usual=(0.2, 2.0)),
+    Axis("height", "m", "height of the block", "height", BODY, _geometry("height"), _check_block, usual=(0.5, 6.0)),
     Axis(
         "restitution", "1", "coefficient of restitution, ratio of velocities", "restitution", RESTITUTION,
-        _restitution, _check_law, high=1.0, low_is_allowed=True,
+        _restitution, _check_law, high=1.0, low_is_allowed=True, usual=(0.7, 1.0),
     ),
     Axis(
         "friction", "1", "coefficient of friction between body and ground", "friction", RESTITUTION,
@@ -280,12 +284,12 @@ _ALL = (
     Axis(
         "initial_rotation", "rad", "initial rotation of a plane body", "rotation", RESTITUTION,
         lambda case, values: {"sides": {**case.sides, "rotation": values}}, _check_in_plane, -1.57, 1.57,
-        low_is_allowed=True,
+        low_is_allowed=True, usual=(-0.2, 0.2),
     ),
     Axis(
         "initial_angular_velocity", "rad/s", "initial angular velocity of a plane body", "angular velocity",
         RESTITUTION, lambda case, values: {"sides": {**case.sides, "velocity": values}}, _check_in_plane, -1e3, 1e3,
-        low_is_allowed=True,
+        low_is_allowed=True, usual=(-1.0, 1.0),
     ),
 )  # fmt: skip
 

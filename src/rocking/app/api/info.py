@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any, Literal
 
 from fastapi import APIRouter, Request
+from pydantic import Field
 
 from rocking.app.answers import JsonAnswer, QuantityAnswer, answered, shape
 from rocking.app.inputs import CAPS
@@ -77,7 +78,11 @@ FormatFacts: Any = shape(
 )
 UnitNames: Any = shape("UnitNames", "Units that may be said.", length=list[str], acceleration=list[str])
 KindOfStudy: Any = shape(
-    "KindOfStudy", "A kind of study, and the table that its job has of its own.", name=str, table=str
+    "KindOfStudy",
+    "A kind of study, and the table that its job has of its own.",
+    name=str,
+    table=str,
+    has_body=(bool, "whether its job has a table of a body"),
 )
 KeyFacts: Any = shape(
     "KeyFacts",
@@ -88,9 +93,19 @@ KeyFacts: Any = shape(
     usual=(str, "as it is written; empty where there is none"),
     needed=bool,
     choices=(list[str], "all that may be said, where these are few"),
+    ge=(float | None, Field(None, description="lowest value that it may have")),
+    gt=(float | None, Field(None, description="value that it must be above")),
+    le=(float | None, Field(None, description="highest value that it may have")),
+    lt=(float | None, Field(None, description="value that it must be below")),
 )
 StepFacts: Any = shape(
     "StepFacts", "A step, or a spectrum.", words=str, one=(bool, "only one key is given"), keys=dict[str, KeyFacts]
+)
+AxisFacts: Any = shape(
+    "AxisFacts",
+    "An axis of a map.",
+    QuantityAnswer,
+    usual=(list[float], "first and last value that a form proposes, in `unit`"),
 )
 Info: Any = shape(
     "Info",
@@ -104,7 +119,7 @@ Info: Any = shape(
     formats=list[FormatFacts],
     units=UnitNames,
     measures=list[QuantityAnswer],
-    axes=list[QuantityAnswer],
+    axes=list[AxisFacts],
     study_kinds=list[KindOfStudy],
     steps=(dict[str, StepFacts], "that a record goes through"),
     targets=(dict[str, StepFacts], "spectra that records are scaled to"),
@@ -116,7 +131,9 @@ Info: Any = shape(
 @router.get("/info", summary="What there is to choose from", responses=answered(Info, "What there is."))
 def info(request: Request) -> JsonAnswer:
     """Answer with version, engine, models, pulses, families of motions, formats, units, measures, axes and limits."""
-    limits = {**asdict(state_of(request).settings.limits), **CAPS}
+    from rocking.app.studies.job_document import MOST_MOTIONS
+
+    limits = {**asdict(state_of(request).settings.limits), **CAPS, "study_motions": MOST_MOTIONS}
     return JsonAnswer({**_constant(*models().values()), "limits": limits})
 
 
@@ -131,13 +148,15 @@ def _constant(*kinds: type) -> dict[str, Any]:
     from rocking.motions.synthetic.families import families
     from rocking.spec.documents.prediction import PredictTable
     from rocking.spec.motion_tables import MotionTable, OneMotionTable
+    from rocking.spec.question import BodyQuestion
     from rocking.spec.questions import questions
     from rocking.spec.questions.inventory import InventoryTable
-    from rocking.spec.questions.minimum import MinimumTable
     from rocking.spec.reference import described, steps, targets
     from rocking.studies.axis import axes
 
     fast = fast_engine.available()
+    launched: Any = {kind: questions()[kind] for kind in launched_kinds()}
+    own = {question.own_table(): question for question in launched.values()}
     return {
         "version": __version__,
         "engine": {
@@ -162,12 +181,16 @@ def _constant(*kinds: type) -> dict[str, Any]:
         ],
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
-        "axes": [_quantity(one) for one in axes().values()],
-        "study_kinds": [{"name": name, "table": questions()[name].own_table()} for name in launched_kinds()],
+        "axes": [{**_quantity(one), "usual": one.usual} for one in axes().values()],
+        "study_kinds": [
+            {"name": kind, "table": question.own_table(), "has_body": issubclass(question, BodyQuestion)}
+            for kind, question in launched.items()
+        ],
         "steps": steps(),
         "targets": targets(),
         "keys": {
-            "motion": described(OneMotionTable), "motions": described(MotionTable), "minimum": described(MinimumTable),
+            **{table: described(question.model_fields[table].annotation) for table, question in own.items()},
+            "motion": described(OneMotionTable), "motions": described(MotionTable),
             "predict": described(PredictTable), "contact_bed": described(ContactBedRequest),
             "inventory": described(InventoryTable),
         },

@@ -20,7 +20,10 @@ from rocking.spec.question import StudyQuestion
 from rocking.spec.questions import question_in, questions
 
 _QUICKLY_MADE = 200
-_MOST = {"restitutions": 64, "bodies": 1000, "states": 20, "blocks times restitutions": 100_000, "motions": 2000}
+MOST_MOTIONS = 2000
+_MOST = {
+    "restitutions": 64, "bodies": 1000, "states": 20, "blocks times restitutions": 100_000, "motions": MOST_MOTIONS
+}  # fmt: skip
 _FILES = {"file", "dxf", "geojson", "path"}
 _BODY_KEYS = {
     "slenderness_angle", "semi_diagonal", *BodyInput.model_fields, *RegionTable.model_fields,

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rocking import cli, spec
+from rocking.app.api.info import _constant
 from rocking.app.studies.job_document import JobDocument, launched_kinds
 from rocking.campaigns.jobs import Job, JobFolder, status_of
 from rocking.errors import InvalidValueError
@@ -109,6 +110,14 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     assert keys_of("polarity") == ["factor"]
     assert "### [polarity]" in reference()
     assert "| `factor` | number | `1.0` | scale factor of both polarities [-] |" in reference()
+
+
+def test_one_file_has_a_form(added):
+    """The page hears of the kind, its table, and the unit, default and limits of each key."""
+    info = _constant.__wrapped__()
+    assert {"name": "polarity", "table": "polarity", "has_body": True} in info["study_kinds"]
+    facts = {"unit": "-", "words": "scale factor of both polarities", "kind": "number", "usual": "1.0", "gt": 0.0}
+    assert info["keys"]["polarity"] == {"factor": {**facts, "needed": False, "choices": []}}
 
 
 def test_one_file_is_a_command(added, run, refuses, monkeypatch):

@@ -22,6 +22,7 @@ export const filled = (texts, known) => Object.fromEntries(
 const valueOf = (text, kind) => {
   if (kind === "true or false") return text === "true";
   if (kind === "any") return numbersOf(text.replace(/^\[(.*)\]$/, "$1")) ?? text;
+  if (kind === "numbers") return numbersOf(text) ?? text;
   if (!kind.includes("number")) return text;
   if (!kind.startsWith("list")) return parseNumber(text) ?? text;
   return partsOf(text).map((part) => parseNumber(part) ?? part);

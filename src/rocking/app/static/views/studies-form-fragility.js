@@ -2,30 +2,25 @@
 import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { pretty } from "/app/format.js";
 import { Choice, NumberField, Segmented } from "/parts/fields.js";
-import { Range, rangeOf, unitOf } from "/views/studies-form-parts.js";
+import { Range, limitsOf, rangeOf, unitOf, usualRange } from "/views/studies-form-parts.js";
 import { RecordChoice } from "/views/studies-form-records.js";
 import { t } from "/app/words.js";
 
 const ANALYSES = [["stripes", "Stripes"], ["incremental", "Incremental"], ["cloud", "Cloud"]];
 const SOURCES = [["synthetic", "Synthetic set"], ["records", "Uploaded records"]];
 
-/** Where the levels of a measure usually lie. @type {{ [measure: string]: number[] | undefined }} */
-const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
-
 /** Form of a fragility. @param {{ app: App, question: StudyQuestion, visits: number }} props */
 export const FragilityQuestion = ({ app, question, visits }) => {
-  const { families, measures } = app.info;
+  const { families, measures, keys: { fragility: keys, motions } } = app.info;
   /** @type {Signal<any>} */
   const chosen = useSignal({
-    kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: "pga", state: 0.5,
+    kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: keys.measure.usual,
+    state: JSON.parse(keys.states.usual)[0],
   });
   const { kind, source, measure } = chosen.value;
   const records = useRef(null);
   const measured = measures.find(({ name }) => name === measure);
-  const levels = useMemo(() => {
-    const [from, to] = USUAL[measure] ?? [1, 12];
-    return { from, to, count: 12 };
-  }, [measure]);
+  const levels = useMemo(() => usualRange(app, measure, 12), [measure]);
   /** @param {string} key */
   const take = (key) => (/** @type {any} */ value) => (chosen.value = { ...chosen.value, [key]: value });
   /** @param {any} Kind @param {string} key @param {string} label @param {object} more */
@@ -38,15 +33,15 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     ${field(Segmented, "source", "Motions", { options: SOURCES })}
     <div class="fields" hidden=${source !== "synthetic"}>
       ${choice("family", "Family", families.map(({ name, title }) => [name, title ?? name]))}
-      ${field(NumberField, "count", "Motions", { min: 2, max: 2000, step: 1 })}
-      ${field(NumberField, "seed", "Seed", { min: 0, step: 1, whole: true })}
+      ${field(NumberField, "count", "Motions", { ...limitsOf(motions.count), max: app.info.limits.study_motions, step: 1 })}
+      ${field(NumberField, "seed", "Seed", { ...limitsOf(motions.seed), step: 1, whole: true })}
     </div>
     <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
     ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
       [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
     ${field(NumberField, "state", "Rocking counts from", {
-      unit: "\u03b1", min: 0.01, max: 1, step: 0.05,
+      unit: "\u03b1", above: 0, step: 0.05,
       help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
     })}
   </div>`;

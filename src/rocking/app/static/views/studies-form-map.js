@@ -2,27 +2,9 @@
 import { html, useMemo, useSignal } from "/parts/preact.js";
 import { Choice } from "/parts/fields.js";
 import { greek } from "/views/studies-words.js";
-import { Range, motionsOf, rangeOf, unitOf } from "/views/studies-form-parts.js";
+import { Range, motionsOf, rangeOf, unitOf, usualRange } from "/views/studies-form-parts.js";
 import { t } from "/app/words.js";
 
-/** @type {{ [measure: string]: number[] | undefined }} */
-const USUAL = {
-  frequency_ratio: [0.5, 8],
-  amplitude_ratio: [1, 10],
-  scale: [0.25, 4],
-  pga: [1, 12],
-  pgv: [0.1, 2],
-  period: [0.2, 3],
-  duration: [0.5, 5],
-  semi_diagonal: [0.25, 4],
-  slenderness_ratio: [2, 8],
-  slenderness_angle: [0.1, 0.4],
-  width: [0.2, 2],
-  height: [0.5, 6],
-  restitution: [0.7, 1],
-  initial_rotation: [-0.2, 0.2],
-  initial_angular_velocity: [-1, 1],
-};
 /** Axes that only a pulse has. */
 const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
@@ -37,7 +19,7 @@ export const MapQuestion = ({ app, question }) => {
   const first = pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
   const wanted = { ...first, ...own.value };
   const chosen = Object.values(wanted).every((axis) => offered.some(({ name }) => name === axis)) ? wanted : first;
-  const [x, y] = [useAxis(chosen.x), useAxis(chosen.y)];
+  const [x, y] = [chosen.x, chosen.y].map((axis) => useMemo(() => usualRange(app, axis, 50), [axis]));
   question.current = {
     name: "overturning map",
     tables: (inputs) => {
@@ -54,9 +36,3 @@ export const MapQuestion = ({ app, question }) => {
       unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;
   return html`<div class="map-question">${side("x", x)}${side("y", y)}</div>`;
 };
-
-/** The usual range of an axis, to be changed by its fields. @param {string} axis */
-const useAxis = (axis) => useMemo(() => {
-  const [from, to] = USUAL[axis] ?? [1, 2];
-  return { from, to, count: 50 };
-}, [axis]);

@@ -9,12 +9,21 @@ export const Range = ({ name, unit = "", range }) => {
   const field = (key, label, more) => html`<${NumberField} label=${label} value=${range[key]}
     on=${(given) => (range[key] = given)} ...${more} />`;
   return html`<fieldset class="range-fields"><legend>${name}</legend>
-    ${field("from", "from", { unit })}${field("to", "to", { unit })}${field("count", "number", { min: 1, max: 400, step: 1 })}
+    ${field("from", "from", { unit })}${field("to", "to", { unit })}${field("count", "number", { min: 1, step: 1 })}
   </fieldset>`;
 };
 
 /** A range as a job file writes it. @param {{ from: number, to: number, count: number, [more: string]: unknown }} range */
 export const rangeOf = ({ from, to, count, ...more }) => ({ from, to, count: Math.round(count), ...more });
+
+/** The usual range of an axis, or of a measure, to be changed by its fields. @param {App} app @param {string} name @param {number} count */
+export const usualRange = ({ info }, name, count) => {
+  const [from, to] = info.axes.find((axis) => axis.name === name)?.usual ?? [1, 12];
+  return { from, to, count };
+};
+
+/** Limits of the field of a number from what the server says of its key. @param {Server.KeyFacts} facts */
+export const limitsOf = ({ ge, gt, le }) => ({ min: ge ?? undefined, above: gt ?? undefined, max: le ?? undefined });
 
 /** The unit that a label has, of none nothing. @param {{ unit: string }} [axis] */
 export const unitOf = ({ unit } = { unit: "" }) => (unit === "1" ? "" : unit);

@@ -4,12 +4,20 @@ import { Button, Field, Segmented, wrongIn } from "/parts/fields.js";
 import { MapQuestion } from "/views/studies-form-map.js";
 import { FragilityQuestion } from "/views/studies-form-fragility.js";
 import { SpectrumQuestion } from "/views/studies-form-spectrum.js";
+import { KeysQuestion } from "/views/studies-form-keys.js";
 
-/** @type {{ [kind: string]: (given: any) => VNode }} */
-const QUESTIONS = { "overturning-map": MapQuestion, fragility: FragilityQuestion, "rocking-spectrum": SpectrumQuestion };
-const KINDS = [
-  ["overturning-map", "Overturning map"], ["fragility", "Fragility"], ["rocking-spectrum", "Rocking spectra"],
-];
+/** Forms of studies by the table of their jobs. @type {{ [table: string]: ((given: any) => VNode) | undefined }} */
+const QUESTIONS = { map: MapQuestion, fragility: FragilityQuestion, spectrum: SpectrumQuestion };
+/** @type {{ [table: string]: string | undefined }} */
+const LABELS = {
+  map: "Overturning map", fragility: "Fragility", spectrum: "Rocking spectra", histories: "Histories", minimum: "Minimum accelerations",
+};
+
+/** One kind of study for each table, in the order of the labels. @param {Server.Info} info @returns {Map<string, Server.KindOfStudy>} */
+const kindsOf = ({ study_kinds: kinds }) => {
+  const tables = [...new Set([...Object.keys(LABELS), ...kinds.map(({ table }) => table)])];
+  return new Map(tables.flatMap((table) => kinds.filter((kind) => kind.table === table).map((kind) => [table, kind])));
+};
 
 /** A name that no study has yet. @param {string} name @param {Set<string>} taken */
 const fresh = (name, taken) => {
@@ -21,9 +29,12 @@ const fresh = (name, taken) => {
 /** Form with one question at a time; calls onLaunched(id); `taken` says which names there are.
  * @param {{ app: App, visits: number, onLaunched: (id: string) => unknown, taken: () => Set<string> }} props */
 export const StudyForm = ({ app, visits, onLaunched, taken }) => {
-  const [kind, name, problem, busy] = [useSignal("overturning-map"), useSignal(""), useSignal(""), useSignal(false)];
+  const [kind, name, problem, busy] = [useSignal("map"), useSignal(""), useSignal(""), useSignal(false)];
   const [form, question] = [useRef(null), useRef(null)];
-  const Question = QUESTIONS[kind.value];
+  const kinds = kindsOf(app.info);
+  /** @param {string} table */
+  const labelOf = (table) => LABELS[table] ?? table.replaceAll("_", " ");
+  const Question = QUESTIONS[kind.value] ?? KeysQuestion;
 
   /** A field in error holds its last good number, which is not the one on the screen. */
   const faultOf = () => {
@@ -58,8 +69,9 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   };
   return html`
     <form ref=${form} class="study-form" onSubmit=${launch}>
-      <${Segmented} label="Kind" options=${KINDS} value=${kind.value} on=${choose} />
-      <div class="study-question"><${Question} app=${app} question=${question} visits=${visits} /></div>
+      <${Segmented} label="Kind" options=${[...kinds.keys()].map((table) => [table, labelOf(table)])} value=${kind.value} on=${choose} />
+      <div class="study-question"><${Question} key=${kind.value} app=${app} question=${question} visits=${visits}
+        kind=${kinds.get(kind.value)} label=${labelOf(kind.value)} /></div>
       <${Field} label="Name" id="study-name" value=${name} maxlength="100" />
       <p class="error-text" role="alert" id="study-problem">${problem.value}</p>
       <div class="toolbar"><${Button} type="submit" kind="primary" data-testid="study-launch" disabled=${busy.value}>Launch<//></div>
