@@ -256,6 +256,7 @@ class RockingError(Exception):
         """
 
         def bare(text: Any) -> Any:
+            text = str(text) if isinstance(text, PurePath) else text
             return text.replace(f"{folder}{sep}", "").replace(str(folder), name) if isinstance(text, str) else text
 
         self.text, self.hint, self.value = bare(self.text), bare(self.hint), bare(self.value)
@@ -267,10 +268,15 @@ class RockingError(Exception):
 def _plain(value: Any) -> Any:
     """Return a value as JSON has it: a number, a text, true, false or None; else as Python writes it."""
     value = value.value if isinstance(value, Amount) else value
-    value = value.item() if hasattr(value, "dtype") and not value.ndim else value
+    value = _scalar(value)
     if value is None or isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     return value[:_LONGEST] if isinstance(value, str) else _SHORT.repr(value)[:_LONGEST]
+
+
+def _scalar(value: Any) -> Any:
+    """Return a number of numpy as one of Python, and other values as they are."""
+    return value.item() if hasattr(value, "dtype") and not value.ndim else value
 
 
 def _ends(allowed: Any) -> dict[str, Any]:
@@ -283,6 +289,7 @@ def _ends(allowed: Any) -> dict[str, Any]:
 
 def _shown(value: Any) -> str:
     """Return a refused value as Python writes it, cut where it is long."""
+    value = _scalar(value)
     if isinstance(value, float):
         return f"{value:g}"
     text = _SHORT.repr(value) if isinstance(value, (list, tuple, dict, set)) else repr(value)

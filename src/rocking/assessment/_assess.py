@@ -289,7 +289,7 @@ def assess(  # noqa: PLR0913 - what is asked, what is known and how it is comput
         plane, records = in_the_plane(whole, known.get("azimuth"))
         flat, moving = subject, plane
     if still := next((each for each in plane if not each.peak > 0.0), None):
-        raise InvalidValueError(f"motion {still.name!r} is zero throughout: nothing would move")
+        raise InvalidValueError("motion {motion!r} is zero throughout: nothing would move", motion=still.name)
     different = list({id(each): each for each in plane}.values())
     place = [next(k for k, other in enumerate(different) if other is each) for each in plane]
     kept = MotionList(different)
@@ -385,7 +385,9 @@ def _margins(
         except RockingError as error:
             refused[name] = str(error)
     if not found:
-        raise InvalidValueError(f"no restitution says anything of this body: {'; '.join(refused.values())}")
+        raise InvalidValueError(
+            "no restitution says anything of this body: {reasons}", reasons="; ".join(refused.values())
+        )
     return found, beside, refused
 
 

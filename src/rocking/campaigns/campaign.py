@@ -75,7 +75,7 @@ class Campaign:
         with disk.guarded(path, lambda: "nothing was written"):
             disk.make_folder(path)
             with FolderLock(path):
-                disk.refuse_used(path, NAME, {LOCK, SHARDS}, ": open it, or take a new folder")
+                disk.refuse_used(path, NAME, {LOCK, SHARDS}, "open it, or take a new folder")
                 disk.make_folder(path / SHARDS)
                 identity.write(path)
         return cls(path, histories, identity)
@@ -216,7 +216,7 @@ class Campaign:
             If Ctrl-C or SIGTERM asked it to stop.
         """
         if progress is not None and not callable(progress):
-            raise InvalidValueError(f"progress must be a function of a Progress, or None, got {progress!r:.60}")
+            raise InvalidValueError(parameter="progress", allowed="a function of a Progress, or None", value=progress)
         if order_seed is not None:
             checks.whole("order_seed", order_seed)
         who = chosen(executor, workers, start_method)
@@ -277,5 +277,5 @@ class Campaign:
 
 def _histories(value: object) -> Histories:
     if not isinstance(value, Histories):
-        raise InvalidValueError(f"histories must be a Table, a Product or another Histories, got {value!r:.60}")
+        raise InvalidValueError(parameter="histories", allowed="a Table, a Product or another Histories", value=value)
     return value

@@ -67,7 +67,11 @@ class Plan:
         """Check the numbers."""
         for name, value, low, high in (("count", self.count, 1, 1 << 48), ("chunk", self.size, 1, LARGEST_CHUNK)):
             if type(value) is not int or not low <= value <= high:
-                raise InvalidValueError(f"{name} must be a whole number of histories in [{low}, {high}], got {value!r}")
+                raise InvalidValueError(
+                    parameter=name,
+                    allowed=f"a whole number of histories in [{low}, {high}]",
+                    value=value,
+                )  # fmt: skip
 
     @property
     def chunks(self) -> int:
@@ -77,7 +81,7 @@ class Plan:
     def chunk(self, number: int) -> Chunk:
         """Return a chunk, named by the SHA-256 of the plan without its size and of its first and last history."""
         if not 0 <= number < self.chunks:
-            raise InvalidValueError(f"chunk must be in [0, {self.chunks - 1}], got {number}")
+            raise InvalidValueError(parameter="chunk", allowed=f"in [0, {self.chunks - 1}]", value=number)
         first = number * self.size
         last = min(first + self.size, self.count)
         content = {name: value for name, value in asdict(self).items() if name != "size"}
@@ -123,7 +127,10 @@ def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
         raise CampaignDamagedError(_where_broken(data, place))
     header = _read_header(data, place)
     if header.get("name") != chunk.name:
-        raise CampaignDamagedError(f"it holds another chunk, {str(header.get('name'))[:12]}, not {chunk.name[:12]}")
+        raise CampaignDamagedError(
+            "it holds another chunk, {name}, not {expected}", name=str(header.get("name"))[:12],
+            expected=chunk.name[:12],
+        )  # fmt: skip
     if sealed is not None and seal(data) != sealed:
         raise CampaignDamagedError("it is whole, but not the one that the ledger recorded")
     return _columns(data, place, chunk, header)
@@ -134,7 +141,7 @@ def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
     if header.get("first") != chunk.first or header.get("last") != chunk.last or header.get("columns") != _NAMES:
         raise CampaignDamagedError("its header does not fit its name")
     if (due := place + count * WIDTH + _SEAL) != len(data):
-        raise CampaignDamagedError(f"it has {len(data)} bytes, {due} are due")
+        raise CampaignDamagedError("it has {count} bytes, {expected} are due", count=len(data), expected=due)
     for name, kind in _COLUMNS.items():
         arrays[name] = np.frombuffer(data, kind, count, place).astype(RESULTS[name], copy=False)
         place += count * kind.itemsize
@@ -144,15 +151,18 @@ def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
 def _payload_at(data: bytes) -> int:
     """Check the first bytes; where the columns start."""
     if len(data) < _LENGTHS.size + _SEAL:
-        raise CampaignDamagedError(f"it was cut short: {len(data)} bytes are no shard")
+        raise CampaignDamagedError("it was cut short: {count} bytes are no shard", count=len(data))
     magic, version, length = _LENGTHS.unpack_from(data)
     if magic != MAGIC:
         raise CampaignDamagedError("it does not start as a shard does")
     if version != FORMAT:
-        raise CampaignDamagedError(f"it says format {version}, not {FORMAT}; of another version of this package?")
+        raise CampaignDamagedError(
+            "it says format {version}, not {expected}", version=version, expected=FORMAT,
+            hint="of another version of this package?",
+        )  # fmt: skip
     place = _LENGTHS.size + int(length)
     if place + _SEAL > len(data):
-        raise CampaignDamagedError(f"it was cut short within its header: {len(data)} bytes")
+        raise CampaignDamagedError("it was cut short within its header: {count} bytes", count=len(data))
     return place
 
 

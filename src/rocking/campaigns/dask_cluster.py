@@ -40,7 +40,9 @@ class DaskExecutor(Executor):
     def __init__(self, address: str, *, ahead: int = 2, timeout: float = 10.0) -> None:
         value: object = address
         if not isinstance(value, str) or not value:
-            raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {value!r:.60}')
+            raise InvalidValueError(
+                parameter="address", allowed='that of a scheduler, as in "tcp://host:8786"', value=value
+            )
         self.address, self.ahead, self.timeout = address, checks.whole("ahead", ahead, 1, MOST_WORKERS), timeout
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
@@ -52,7 +54,9 @@ class DaskExecutor(Executor):
         try:
             client = dask.Client(self.address, timeout=self.timeout, set_as_default=False)
         except (OSError, ValueError) as error:
-            raise CampaignWorkerError(f"no Dask scheduler answers at {self.address}: {error}") from error
+            raise CampaignWorkerError(
+                "no Dask scheduler answers at {address}: {reason}", address=self.address, reason=str(error)
+            ) from error
         with client:
             yield from _Window(dask, client, job, self).work(chunks, stop, retried)
 
@@ -84,8 +88,10 @@ class _Window:
                     yield done._replace(attempts=attempts)
                     continue
                 if attempts >= 3 or self._client.status != "running":
-                    where = f"histories {chunk.first} to {chunk.last - 1}"
-                    raise CampaignWorkerError(f"the Dask cluster lost {where}; is it gone?")
+                    raise CampaignWorkerError(
+                        "the Dask cluster lost histories {first} to {last}", first=chunk.first, last=chunk.last - 1,
+                        hint="is it gone?",
+                    )  # fmt: skip
                 retried(chunk, "the cluster lost a chunk; it is computed again")
                 self._submit(chunk, attempts + 1)
 
@@ -117,8 +123,10 @@ class _Window:
         except Exception as error:
             if isinstance(error, (self._dask.CancelledError, self._dask.comm.CommClosedError)):
                 return None
-            where = f"histories {chunk.first} to {chunk.last - 1}"
-            raise CampaignWorkerError(f"{where}: {type(error).__name__}: {error}") from error
+            raise CampaignWorkerError(
+                "histories {first} to {last}: {error}: {reason}", first=chunk.first, last=chunk.last - 1,
+                error=type(error).__name__, reason=str(error),
+            ) from error  # fmt: skip
         return self._job.keep(chunk, data, seconds, worker)
 
 

@@ -90,13 +90,15 @@ def make_folder(folder: Path) -> None:
         sync_folder(each.parent)
 
 
-def refuse_used(folder: Path, mark: str, allowed: set[str], how: str) -> None:
+def refuse_used(folder: Path, mark: str, allowed: set[str], hint: str) -> None:
     """Refuse a folder that has the file by which a campaign is known, or any that it is not allowed to begin with."""
     there = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
     if mark in there:
-        raise CampaignMismatchError(f"{folder}: a campaign is here already{how}")
+        raise CampaignMismatchError("a campaign is here already", hint=hint).at(str(folder))
     if odd := sorted(there - allowed):
-        raise CampaignMismatchError(f"{folder}: not empty ({odd[0]} ...); a campaign takes a folder of its own")
+        raise CampaignMismatchError(
+            "not empty ({name} ...)", name=odd[0], hint="a campaign takes a folder of its own"
+        ).at(str(folder))
 
 
 def remove_unfinished(folder: Path) -> None:
@@ -127,15 +129,21 @@ def guarded(
     except OSError as error:
         if foreign(error) or isinstance(error, ConnectionError):
             raise
-        raise CampaignStorageError(f"{folder}: {error.strerror or error}; {safe()}; {_ADVICE}") from error
+        raise CampaignStorageError("{fault}; {kept}", fault=error.strerror or str(error), kept=safe(), hint=_ADVICE).at(
+            str(folder)
+        ) from error
     except sqlite3.DatabaseError as error:
         if foreign(error):
             raise
         code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
         if code in _DENIED:
-            raise CampaignStorageError(f"{folder}: the ledger: {error}; {safe()}; {_ADVICE}") from error
+            raise CampaignStorageError("the ledger: {reason}; {kept}", reason=str(error), kept=safe(), hint=_ADVICE).at(
+                str(folder)
+            ) from error
         if code in _TAKEN:
-            raise CampaignBusyError(f"{folder}: another process holds the ledger ({error}); try again later") from error
+            raise CampaignBusyError(
+                "another process holds the ledger ({reason})", reason=str(error), hint="try again later"
+            ).at(str(folder)) from error
         raise ledger_damaged(folder, str(error)) from error
 
 
@@ -173,7 +181,9 @@ class FolderLock:
             if time.monotonic() > deadline:
                 runs = _text(handle)
                 os.close(handle)
-                raise CampaignBusyError(f"{self._path.parent}: {runs} runs this campaign; wait for it, or stop it")
+                raise CampaignBusyError(
+                    "{process} runs this campaign", process=runs, hint="wait for it, or stop it"
+                ).at(str(self._path.parent))
             time.sleep(0.02)
         _held.add(handle)
         self._handle = handle

@@ -137,17 +137,18 @@ class WorkerTask:
         software = identity.software()
         if software != self.software:
             raise CampaignWorkerError(
-                f"this worker has version {software}, the campaign was begun with {self.software}"
-            )
+                "this worker has version {software}, the campaign was begun with {expected}", software=software,
+                expected=self.software,
+            )  # fmt: skip
         here, wanted = identity.engine_of(self.histories), self.engine
         if kind_of(here) != kind_of(wanted):
             kinds = f"{kind_of(here)} engine, the campaign takes the {kind_of(wanted)} one"
-            raise CampaignWorkerError(f"this worker has the {kinds}")
+            raise CampaignWorkerError("this worker has the {versions}", versions=kinds)
         if here != wanted:
             raise CampaignWorkerError(
-                f"this worker computes other last digits: its engine is {here}, that of the campaign is {wanted} "
-                f"({identity.LAST_DIGITS})"
-            )
+                "this worker computes other last digits: its engine is {engine}, that of the campaign is {expected} "
+                "({reason})", engine=here, expected=wanted, reason=identity.LAST_DIGITS,
+            )  # fmt: skip
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:
         """Return the shard of a chunk, or of as much of it from its start as takes a second; None if it was stopped."""

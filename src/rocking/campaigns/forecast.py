@@ -47,8 +47,9 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(
-            f"{status.folder}: {needed / 1e6:.0f} MB are needed, {free / 1e6:.0f} MB are free; make room first"
-        )
+            "{needed:.0f} MB are needed, {free:.0f} MB are free", needed=needed / 1e6, free=free / 1e6,
+            hint="make room first",
+        ).at(str(status.folder))  # fmt: skip
     return Forecast(left, chunks, work, needed, free)
 
 

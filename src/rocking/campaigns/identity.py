@@ -119,21 +119,25 @@ class Identity:
         try:
             text = path.read_bytes()
         except (FileNotFoundError, NotADirectoryError) as error:
-            raise CampaignMismatchError(f"{folder}: no campaign here ({NAME} is missing)") from error
+            raise CampaignMismatchError("no campaign here ({file} is missing)", file=NAME).at(str(folder)) from error
         try:
             outer = json.loads(text)
             content, stated = outer["campaign"], outer["sha256"]
             if _encoded(content, stated) != text or _sum(content) != stated:
                 raise ValueError("its checksum does not fit")
             if content["plan"]["format"] != FORMAT:
-                raise CampaignMismatchError(f"{path}: format {content['plan']['format']}, this is {FORMAT}")
+                raise CampaignMismatchError(
+                    "format {number}, this is {expected}", number=content["plan"]["format"], expected=FORMAT
+                ).at(str(path))
             return cls(Plan(**content["plan"]), content["histories"])
         except (ValueError, KeyError, TypeError, InvalidValueError) as error:
             hint = (
                 "the shards are intact: create a campaign of the same histories and chunk size elsewhere, copy them "
                 "into its folder shards, and run it"
             )
-            raise CampaignDamagedError(f"it is damaged ({error})", hint=hint).at(str(path)) from error
+            raise CampaignDamagedError("it is damaged ({reason})", reason=str(error), hint=hint).at(
+                str(path)
+            ) from error
 
     def write(self, folder: Path) -> None:
         """Write it; a folder becomes a campaign by this."""
@@ -149,19 +153,23 @@ class Identity:
             differences.sort(key=lambda text: "..." in text)  # what a person can read comes first
             more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
             shown = "; ".join(differences[:_SHOWN]) + more
-            raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
+            raise CampaignMismatchError(
+                "this campaign is of other histories: {differences}", differences=shown or "their key"
+            ).at(str(folder))
         for what, before, here in (("software", was.software, now.software), ("engine", was.engine, now.engine)):
             if before == here:
                 continue
             if what == "engine" and kind_of(before) == kind_of(here):
                 raise CampaignMismatchError(
-                    f"{folder}: this machine computes other last digits: begun with engine {before}, here it is {here} "
-                    f"({LAST_DIGITS}); finish it where it was begun, or create a new campaign"
-                )
+                    "this machine computes other last digits: begun with engine {expected}, here it is {engine} "
+                    "({reason})", expected=before, engine=here, reason=LAST_DIGITS,
+                    hint="finish it where it was begun, or create a new campaign",
+                ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(
-                f"{folder}: begun with {what} {before}, this is {here}, whose results may differ in their last bits; "
-                f"finish it with {before}, or create a new campaign"
-            )
+                "begun with {software} {expected}, this is {version}, whose results may differ in their last bits",
+                software=what, expected=before, version=here,
+                hint=f"finish it with {before}, or create a new campaign",
+            ).at(str(folder))  # fmt: skip
 
 
 def usual_chunk(histories: Histories) -> int:

@@ -223,7 +223,9 @@ def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
     """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time."""
     seals = {chunk.number: seal for chunk, seal in _records(folder, plan) if not chunk.of}
     if len(seals) < plan.chunks:
-        raise CampaignIncompleteError(f"{folder}: {len(seals)} of {plan.chunks} chunks are finished; run the campaign")
+        raise CampaignIncompleteError(
+            "{done} of {chunks} chunks are finished", done=len(seals), chunks=plan.chunks, hint="run the campaign"
+        ).at(str(folder))
     for number in range(plan.chunks):
         chunk = plan.chunk(number)
         yield HistoryRange(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
@@ -311,6 +313,6 @@ def _read(folder: Path, chunk: Chunk, sealed: str) -> Arrays:
     try:
         return shard.unpack(path.read_bytes(), chunk, sealed)
     except FileNotFoundError as error:
-        raise CampaignDamagedError(f"{path} is missing; {advice}") from error
+        raise CampaignDamagedError("{path} is missing", path=path, hint=advice) from error
     except CampaignDamagedError as error:
-        raise CampaignDamagedError(f"{path}: {error}; {advice}") from error
+        raise CampaignDamagedError("{reason}", reason=str(error), hint=advice).at(str(path)) from error

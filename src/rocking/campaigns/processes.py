@@ -165,8 +165,10 @@ class _Crew:
                 if isinstance(answer, Failure):
                     if answer.number is not None:
                         raise OSError(answer.number, answer.why)
-                    where = f"histories {answer.chunk.first} to {answer.chunk.last - 1}"
-                    raise CampaignWorkerError(f"{where}: {answer.why}")
+                    raise CampaignWorkerError(
+                        "histories {first} to {last}: {reason}", first=answer.chunk.first, last=answer.chunk.last - 1,
+                        reason=answer.why,
+                    )  # fmt: skip
                 yield answer._replace(attempts=member.tasks.popleft()[1])
 
     def close(self) -> None:
@@ -185,8 +187,10 @@ class _Crew:
         for place, (chunk, attempts) in enumerate(reversed(member.tasks), 1 - len(member.tasks)):
             at_work = place == 0
             if at_work and attempts >= _ATTEMPTS:
-                where = f"histories {chunk.first} to {chunk.last - 1}"
-                raise CampaignWorkerError(f"{where}: {attempts} workers died of them, the last one {why}; {_GUARD}")
+                raise CampaignWorkerError(
+                    "histories {first} to {last}: {attempts} workers died of them, the last one {cause}",
+                    first=chunk.first, last=chunk.last - 1, attempts=attempts, cause=why, hint=_GUARD,
+                )  # fmt: skip
             self._again.appendleft((chunk, attempts + at_work))
             if at_work:
                 self._retried(chunk, f"a worker ended ({why}); its chunk is computed again")
@@ -217,13 +221,18 @@ def _no_interruption() -> Iterator[None]:
 def chosen(executor: str | Executor, workers: int | None, start_method: str | None) -> Executor:
     """Return the executor of a name, or the one that is given."""
     if executor != "processes" and start_method is not None:
-        raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
+        raise InvalidValueError(
+            '{parameter}={value} goes with executor="processes" only', parameter="start_method", value=start_method
+        )
     if isinstance(executor, Executor):
         if workers is not None:
-            raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
+            raise InvalidValueError(
+                "{parameter}={value} goes with the name of an executor", parameter="workers", value=workers,
+                hint="the object has its own",
+            )  # fmt: skip
         return executor
     if executor == "serial":
         return Serial(workers)
     if executor == "processes":
         return Processes(workers, start_method or "spawn")
-    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {executor!r:.60}')
+    raise InvalidValueError(parameter="executor", allowed='"serial", "processes" or an Executor', value=executor)

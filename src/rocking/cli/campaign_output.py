@@ -21,7 +21,7 @@ from rocking.campaigns import (
 )
 from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
 from rocking.campaigns.jobs.folder import JOB, JobStatus
-from rocking.campaigns.jobs.rounds import resume
+from rocking.campaigns.jobs.rounds import resume_hint
 from rocking.cli.page import lines, print_json
 from rocking.errors import InvalidValueError
 
@@ -53,7 +53,7 @@ def codes(folder: Path | None = None) -> Iterator[None]:
 def executor_of(name: str, workers: int | None, address: str | None) -> tuple[str | Executor, int | None]:
     """Return who computes."""
     if name not in {"serial", "processes", "dask"}:
-        raise InvalidValueError(f"--executor must be serial, processes or dask, got {name!r:.60}")
+        raise InvalidValueError(parameter="--executor", allowed="serial, processes or dask", value=name)
     if (address is not None) != (name == "dask"):
         raise InvalidValueError("--address goes with --executor dask, which needs it: tcp://host:8786")
     if address is None:
@@ -115,7 +115,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
         for first, last in check.missing:
             print(f"missing: histories {first} to {last - 1}")
         if not check.whole:
-            print(f"go on with: {resume(folder)}")
+            print(resume_hint(folder))
     if not check.whole:
         raise typer.Exit(DAMAGED)
 
@@ -152,8 +152,8 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         print(f"  disk       {estimate.disk / 1e6:.1f} MB{free}")
     if estimate.free is not None and estimate.free < estimate.disk:
         raise CampaignStorageError(
-            f"{out}: {estimate.disk / 1e6:.0f} MB are needed, {estimate.free / 1e6:.0f} MB are free"
-        )
+            "{needed:.0f} MB are needed, {free:.0f} MB are free", needed=estimate.disk / 1e6, free=estimate.free / 1e6
+        ).at(str(out))
 
 
 def _facts(job_status: JobStatus) -> dict[str, Any]:
@@ -185,11 +185,11 @@ def _chunks(number: int) -> str:
 def _sentence(job_status: JobStatus) -> str:
     status, name, folder = job_status.status, job_status.name, job_status.path
     if status is None:
-        return f"{name}: nothing is computed yet; go on with: {resume(folder)}"
+        return f"{name}: nothing is computed yet; {resume_hint(folder)}"
     if job_status.complete:
         many = "" if job_status.rounds is None else f"{job_status.rounds} rounds, "
         return f"{name}: all {status.histories} histories ({many}{_chunks(status.chunks)}) are safe in {folder}"
-    now = f"{status.running} runs it" if status.running else f"go on with: {resume(folder)}"
+    now = f"{status.running} runs it" if status.running else resume_hint(folder)
     share = (
         f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {_chunks(status.chunks)})"
     )

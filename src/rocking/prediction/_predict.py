@@ -180,7 +180,10 @@ def _mechanics(
         from rocking.prediction.space import SampledInSpace
 
         if bounce:
-            raise InvalidValueError(f"bounce is of plane bodies: in space corners do not bounce, got {bounce:g}")
+            raise InvalidValueError(
+                "{parameter} is of plane bodies: in space corners do not bounce, got {value}", parameter="bounce",
+                value=bounce,
+            )  # fmt: skip
         return SampledInSpace(body, motions, given, gravity)
     from rocking.prediction.plane import SampledInPlane, whole_settings
 

@@ -247,7 +247,10 @@ def score(  # noqa: PLR0913 - the outcomes and what shook each, beside how they 
         )
     for name, each in zip(("pga", "pgv"), peaks, strict=True):
         if not ((each > 0.0) & np.isfinite(each)).all():
-            raise InvalidValueError(f"{name} must be above zero, got {each[~(each > 0.0)][:1]}; is a record empty?")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got {values}", parameter=name, allowed="above zero",
+                values=each[~(each > 0.0)][:1], hint="is a record empty?",
+            )  # fmt: skip
     if count is not None:
         n = checks.whole("count", count, 1, 1 << 24)
         inside = (given >= 0.0) & (given <= 1.0)  # what is not is refused by its own value
@@ -327,11 +330,13 @@ class Outcomes:
     def read(cls, path: Path) -> "Outcomes":
         """Return what a file says, each row checked by itself."""
         if path.stat().st_size > MOST_BYTES:
-            raise InvalidValueError(f"{path.name}: a table must be below {MOST_BYTES >> 20} MiB; another kind of file?")
+            raise InvalidValueError(
+                "a table must be below {limit} MiB", limit=MOST_BYTES >> 20, hint="another kind of file?"
+            ).at(path.name)
         try:
             text = path.read_bytes().decode("utf-8-sig")
         except UnicodeDecodeError as error:
-            raise InvalidValueError(f'{path.name} is not UTF-8 text: save it as "CSV UTF-8"') from error
+            raise InvalidValueError('{file} is not UTF-8 text: save it as "CSV UTF-8"', file=path.name) from error
         return cls.parsed(text, path.name)
 
     @classmethod
@@ -344,7 +349,7 @@ class Outcomes:
         """
         delimiter = _delimiter(text)
         if delimiter is None:
-            raise InvalidValueError(f"{source}: {_HOW}")
+            raise InvalidValueError(_HOW).at(source)
         (_, head), *rows = rows_of(text, delimiter, source)
         titles = [title.strip().casefold() for title in head]
         _check_titles(titles, source)
@@ -380,26 +385,33 @@ def _delimiter(text: str) -> str | None:
 
 def _check_titles(titles: Sequence[str], source: str) -> None:
     if twice := next((title for title in titles if title and titles.count(title) > 1), None):
-        raise InvalidValueError(f"{source}: column {twice!r:.60} stands twice; leave one")
+        raise InvalidValueError("column {column!r:.60} stands twice", column=twice, hint="leave one").at(source)
     if ("motion" in titles) == ("x" in titles):
-        raise InvalidValueError(f"{source}: give the column motion, or x with y and z, and not both; {_HOW}")
+        raise InvalidValueError("give the column motion, or x with y and z, and not both", hint=_HOW).at(source)
     if "motion" in titles and (odd := [axis for axis in AXES if axis in titles]):
-        raise InvalidValueError(f"{source}: column {odd[0]!r} goes with x: name the column motion x")
+        raise InvalidValueError("column {column!r} goes with x: name the column motion x", column=odd[0]).at(source)
     for title in titles:
         words = set(title.replace("_", " ").replace("-", " ").split())
         near = [*(words & set(COLUMNS)), *difflib.get_close_matches(title, COLUMNS, n=1, cutoff=0.75)]
         if title not in COLUMNS and near:  # what it says would change the answer, so it must not be passed over
-            raise InvalidValueError(f"{source}: column {title!r:.60} is not known; did you mean {near[0]!r}? Rename it")
+            raise InvalidValueError(
+                "column {column!r:.60} is not known", column=title,
+                hint=f"did you mean {near[0]!r}? Rename it",
+            ).at(source)  # fmt: skip
 
 
 def _trial(line: int, cells: Sequence[str], titles: Sequence[str], mark: DecimalMark) -> Trial:
     if len(cells) != len(titles):
         hint = "a decimal comma between commas?" if len(cells) > len(titles) else "a separator missing?"
-        raise InvalidValueError(f"it has {len(cells)} fields, the first line {len(titles)}; {hint}")
+        raise InvalidValueError(
+            "it has {count} fields, the first line {expected}", count=len(cells), expected=len(titles), hint=hint
+        )
     row = {title: cell.strip() for title, cell in zip(titles, cells, strict=True)}
     files = tuple((axis, row[key]) for axis, key in (("x", "motion"), *((a, a) for a in AXES)) if row.get(key))
     if not files or files[0][0] != "x":
-        raise InvalidValueError(f"{'motion' if 'motion' in row else 'x'} is empty: the name of a record file")
+        raise InvalidValueError(
+            "{parameter} is empty: the name of a record file", parameter="motion" if "motion" in row else "x"
+        )
     scale = mark.number("scale", row["scale"]) if row.get("scale") else 1.0
     if scale == 0.0:
         raise InvalidValueError("scale must not be 0: nothing would move")
@@ -407,7 +419,7 @@ def _trial(line: int, cells: Sequence[str], titles: Sequence[str], mark: Decimal
     for column, event in EVENTS.items():
         word = row.get(column, "").casefold()
         if word not in _SEEN:
-            raise InvalidValueError(f"{column} must be 1, 0, yes, no, true, false or empty, got {row[column]!r:.60}")
+            raise InvalidValueError(parameter=column, allowed="1, 0, yes, no, true, false or empty", value=row[column])
         seen[event] = _SEEN[word]
     return Trial(line, files, scale, seen)
 

@@ -11,6 +11,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.motions.components import Components, components_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -53,14 +54,17 @@ class Uncertain:
         if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
             return (cls._of_range if len(given) == 2 else cls._of_sample)(name, given, ends, told)
         if isinstance(given, (str, bool)) or given is None:
-            raise InvalidValueError(f"{name} must be {_HINT}, got {given!r:.60}")
+            raise InvalidValueError(parameter=name, allowed=_HINT, value=given)
         value = checks.within(name, given, low, high)
         return cls(f"{value:g}{told}", lambda u: np.full(u.shape, value), fixed=True)
 
     @classmethod
     def _of_table(cls, name: str, given: Mapping[str, Any], ends: _Ends, unit: str) -> "Uncertain":
         if set(given) not in _WAYS:
-            raise InvalidValueError(f"{name} must be {_HINT}, got {', '.join(map(str, given)) or 'an empty table'}")
+            raise InvalidValueError(
+                "{parameter} must be {allowed}, got {keys}", parameter=name, allowed=_HINT, value=given,
+                keys=", ".join(map(str, given)) or "an empty table",
+            )  # fmt: skip
         if "low" in given:
             return cls._of_range(name, (given["low"], given["high"]), ends, unit)
         if "values" in given:
@@ -73,7 +77,10 @@ class Uncertain:
             checks.within(f"{name} {end}", value, *ends) for end, value in zip(("from", "to"), given, strict=True)
         )
         if not least < most:
-            raise InvalidValueError(f"{name} must be a range from low to high, got {least:g} to {most:g}")
+            raise InvalidValueError(
+                "{parameter} must be a range from low to high, got {low:g} to {high:g}", parameter=name, low=least,
+                high=most,
+            )  # fmt: skip
         return cls(f"from {least:g} to {most:g}{unit}, all alike", lambda u: least + u * (most - least))
 
     @classmethod
@@ -81,7 +88,9 @@ class Uncertain:
         several = list(given) if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str) else [given]
         values = np.sort([checks.within(f"each value of {name}", value, *ends) for value in several])
         if values.size < 2:
-            raise InvalidValueError(f"{name} as a sample takes two values or more, got {values.size}")
+            raise InvalidValueError(
+                "{parameter} as a sample takes two values or more, got {count}", parameter=name, count=values.size
+            )
         words = f"one of {values.size} values from {values[0]:g} to {values[-1]:g}{unit}, each as likely"
         return cls(words, lambda u: values[np.minimum((u * values.size).astype(np.int64), values.size - 1)])
 
@@ -101,7 +110,10 @@ class Uncertain:
                 scaled = np.log(np.maximum(scaled, 0.0))
         low, high = ndtr((scaled[:2] - scaled[2]) / spread).tolist()
         if not high - low >= 0.5:
-            raise InvalidValueError(f"{name}: most of {words} is outside [{ends[0]:g}, {ends[1]:g}]; in other units?")
+            raise InvalidValueError(
+                "{parameter}: most of {distribution} is outside {limits}", parameter=name, distribution=words,
+                limits=Range(*ends).limits(), hint="in other units?",
+            )  # fmt: skip
 
         def quantile(u: FloatArray) -> FloatArray:
             found = scaled[2] + spread * ndtri(low + u * (high - low))
@@ -113,7 +125,10 @@ class Uncertain:
     def _of_ppf(cls, name: str, given: Any, ends: _Ends, unit: str) -> "Uncertain":
         low, high = np.asarray(given.ppf(np.array([1e-6, 1.0 - 1e-6])), dtype=np.float64).tolist()
         if not ends[0] <= low <= high <= ends[1]:
-            raise InvalidValueError(f"{name} must be within [{ends[0]:g}, {ends[1]:g}], got {low:g} to {high:g}")
+            raise InvalidValueError(
+                "{parameter} must be within {limits}, got {low:g} to {high:g}", parameter=name, allowed=Range(*ends),
+                limits=Range(*ends).limits(), low=low, high=high,
+            )  # fmt: skip
         words = f"of a distribution, nearly all from {low:.4g} to {high:.4g}{unit}"
         return cls(words, lambda u: np.clip(np.asarray(given.ppf(u), dtype=np.float64), *ends))
 
@@ -213,11 +228,13 @@ class _ScaledToPeak(Sequence[Any]):
         whole = Components(x, y, z)
         if (support := support_of(whole)) != GROUND:
             raise InvalidValueError(
-                f"pga is of the ground, and {x.name!r:.80} is the motion of {support}; put scale:pga before floor in "
-                "the steps of the record"
-            )
+                "pga is of the ground, and {motion!r:.80} is the motion of {support}", motion=x.name, support=support,
+                hint="put scale:pga before floor in the steps of the record",
+            )  # fmt: skip
         if not whole.peak > 0.0:
-            raise InvalidValueError(f"motion {x.name!r:.80} is zero throughout and cannot be scaled to a PGA")
+            raise InvalidValueError(
+                "motion {motion!r:.80} is zero throughout and cannot be scaled to a PGA", motion=x.name
+            )
         scaled = whole.each(lambda part: _to_peak(part, self._pga, whole.peak))
         return scaled.x if y is None and z is None else scaled
 
@@ -237,8 +254,10 @@ def several(motions: Any, pga: float | None = None) -> Any:
         motions = [motions]
     if isinstance(motions, str) or not motions:
         raise InvalidValueError(
-            f"motions must be one or more records, pulses or pairs x and y, got {checks.given('motions', motions)}"
-        )
+            "{parameter} must be {allowed}, got {given}", parameter="motions",
+            allowed="one or more records, pulses or pairs x and y", value=motions,
+            given=checks.given("motions", motions),
+        )  # fmt: skip
     return motions if pga is None else _ScaledToPeak(motions, pga)
 
 

@@ -76,7 +76,7 @@ class SampledInPlane(SampledBodies):
             **({"azimuth": ((0.0, turn), -turn, turn, "rad")} if self._turns else {}),
         })  # fmt: skip
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
-            raise InvalidValueError(f"polarity must be 1, -1 or both as a sample, got {given['polarity']!r:.60}")
+            raise InvalidValueError(parameter="polarity", allowed="1, -1 or both as a sample", value=given["polarity"])
         self._set_restitution(given.get("restitution"))
 
     def _set_restitution(self, told: Any) -> None:

@@ -114,12 +114,11 @@ class SampledInSpace(SampledBodies):
             self.assumed["restitution"] = f"{words} (the published measurements, with the scatter of single bodies)"
         elif word:
             if word not in _LAWS:
-                names = ", ".join([*MEASURED, *_LAWS])
                 raise InvalidValueError(
-                    "restitution in space must be one of {names}, or a coefficient, got {model}",
-                    names=names,
-                    model=f"{word!r}",
-                )
+                    "restitution in space must be {allowed}, got {value}", parameter="restitution",
+                    allowed=f"one of {', '.join([*MEASURED, *_LAWS])}, or a coefficient",
+                    value=word,
+                )  # fmt: skip
             self._law, one = _LAWS[word], Uncertain(word, lambda u: np.zeros(u.shape), fixed=True)
         else:
             self._law, one = histories.COEFFICIENT, Uncertain.of("restitution", told, 0.0, 1.0)

@@ -213,18 +213,22 @@ def checked(
     what = exports_of(folder)[0] if what is None else checks.one_of("what", what, ENDINGS)
     suffix = target.suffix.lower()
     if suffix not in ENDINGS[what]:
-        more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
+        hint = ".xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
-            more = "; the .nc of the histories (--out histories=FILE.nc) holds points and polylines too"
-        allowed = ", ".join(ENDINGS[what])
-        raise InvalidValueError(f"{what} can be written as {allowed}, got {suffix or 'no ending'!r}{more}")
+            hint = "the .nc of the histories (--out histories=FILE.nc) holds points and polylines too"
+        raise InvalidValueError(
+            "{content} can be written as {endings}, got {ending!r}", content=what, endings=", ".join(ENDINGS[what]),
+            ending=suffix or "no ending", hint=hint,
+        )  # fmt: skip
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
     if what not in ANALYSES and crossing is not None:
         raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves")
     if what not in exports_of(folder):
-        why = f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}{_WHY.get(what, "")}'
-        raise InvalidValueError(f"nothing to export because {why}")
+        raise InvalidValueError(
+            'nothing to export because a campaign of kind "{kind}" has no {content}{reason}',
+            kind=folder.job.document.campaign.kind, content=what, reason=_WHY.get(what, ""),
+        )  # fmt: skip
     if what in ANALYSES:
         check_crossing("keep-uplift" if crossing is None else crossing)
     if what in _OF_ONE:
@@ -233,7 +237,7 @@ def checked(
         raise InvalidValueError("bootstrap goes with fragility, fragility-points and fema-p58: it is about curves")
     whole = checks.within("bootstrap", bootstrap or 0, 0, MOST_REPETITIONS, hint="how many times the study is repeated")
     if 0 < whole < FEWEST or whole != int(whole):
-        raise InvalidValueError(f"bootstrap must be 0 or a whole number >= {FEWEST}, got {bootstrap!r}")
+        raise InvalidValueError(parameter="bootstrap", allowed=f"0 or a whole number >= {FEWEST}", value=bootstrap)
     return target, what
 
 

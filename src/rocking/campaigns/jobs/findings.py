@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.campaigns import CampaignIncompleteError
 from rocking.campaigns.jobs.folder import JobFolder, job_status
-from rocking.campaigns.jobs.rounds import replayed, resume
+from rocking.campaigns.jobs.rounds import replayed, resume_hint
 from rocking.campaigns.ledger import HistoryRange
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from rocking.studies.inventory.assessment import Assessment
 
 READ = ("outcome", "peak_rotation", "least_force")  # all that analyses and assessments read of a history: 17 bytes
-_NOTHING = "nothing to export because"
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
@@ -36,12 +35,16 @@ def refuse_unfinished(folder: JobFolder) -> None:
     if known.complete:
         return
     status = known.status or folder.campaign.status(verify=False)
-    share = f"{status.chunks_done} of {status.chunks} chunks of {path} are finished"
+    text = "nothing to export because {done} of {chunks} chunks of {folder} are finished"
     if known.rounds is not None:
-        rounds = "one round" if known.rounds <= 1 else f"{known.rounds} rounds"
-        share = f"{path} is not finished: {status.chunks_done} of {status.chunks} chunks of {rounds} so far"
-        share += ", and more rounds may follow"
-    raise CampaignIncompleteError(f"{_NOTHING} {share}; go on with: {resume(path)}")
+        text = (
+            "nothing to export because {folder} is not finished: {done} of {chunks} chunks of {rounds} so far, and "
+            "more rounds may follow"
+        )
+    rounds = "one round" if (known.rounds or 1) == 1 else f"{known.rounds} rounds"
+    raise CampaignIncompleteError(
+        text, done=status.chunks_done, chunks=status.chunks, folder=path, rounds=rounds, hint=resume_hint(path)
+    )
 
 
 def analyses(folder: JobFolder) -> dict[str, Any]:
@@ -64,7 +67,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     """
     study = folder.job.study
     if study.finish is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no fragility')
+        raise InvalidValueError('a campaign of kind "{kind}" has no fragility', kind=folder.job.document.campaign.kind)
     return study.finish(folder.campaign.results(*READ))
 
 
@@ -90,7 +93,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
     """
     search = folder.job.study.search
     if search is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no rounds')
+        raise InvalidValueError('a campaign of kind "{kind}" has no rounds', kind=folder.job.document.campaign.kind)
     return replayed(search, folder.path)
 
 
@@ -114,7 +117,7 @@ def assessment(folder: JobFolder) -> "Assessment":
     """
     assess = folder.job.study.assess
     if assess is None:
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no assessment')
+        raise InvalidValueError('a campaign of kind "{kind}" has no assessment', kind=folder.job.document.campaign.kind)
     refuse_unfinished(folder)
     result: Assessment = assess(folder.campaign.results(*READ))
     return result
@@ -212,7 +215,10 @@ def measure_comparison(
     """
     document, study = folder.job.document, folder.job.study
     if MEASURES not in study.exports:
-        raise InvalidValueError(f"{_NOTHING} measures are compared over a cloud, this is {document.campaign.kind!r}")
+        raise InvalidValueError(
+            "nothing to export because measures are compared over a cloud, this is {kind!r}",
+            kind=document.campaign.kind,
+        )  # fmt: skip
     refuse_unfinished(folder)
     clouds = analyses(folder)
     cloud = clouds[label_of(MEASURES, restitution, list(clouds))]
@@ -233,14 +239,17 @@ def measure_comparison(
     try:
         return compare_measures(cloud, names, columns, progress=measured)
     except InvalidValueError as error:
-        raise InvalidValueError(f"{_NOTHING} {error}") from error
+        raise InvalidValueError("nothing to export because {reason}", reason=error.sentence) from error
 
 
 def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
     """Return the restitution that is meant, where each has something of its own."""
     if restitution is None and len(labels) > 1:
         own = what if what == MEASURES else f"a {what}"
-        raise InvalidValueError(f"restitution must be one of {', '.join(labels)}: each has {own} of its own")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}: each has {own} of its own", parameter="restitution",
+            allowed=f"one of {', '.join(labels)}", own=own,
+        )  # fmt: skip
     return labels[0] if restitution is None else checks.one_of("restitution", restitution, labels)
 
 

@@ -26,7 +26,7 @@ from rocking.campaigns.jobs.rounds import (
     finished_rounds,
     of_rounds,
     opened,
-    resume,
+    resume_hint,
     round_folder,
     run_rounds,
     summed,
@@ -84,9 +84,9 @@ class JobFolder:
         }
         with disk.guarded(path, lambda: "nothing was written"):
             if path.exists() and not path.is_dir():
-                raise CampaignMismatchError(f"{path}: a file, not a folder")
+                raise CampaignMismatchError("a file, not a folder").at(str(path))
             disk.make_folder(path)
-            disk.refuse_used(path, JOB, {INPUTS}, f"; go on with: {resume(path)}")
+            disk.refuse_used(path, JOB, {INPUTS}, resume_hint(path))
             disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
             disk.write_new(path / JOB, job.text.encode())
         begun = cls(path, job)
@@ -120,7 +120,9 @@ class JobFolder:
         text, content = _kept(path)
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
-            raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
+            raise InvalidValueError(
+                "the folder of its inputs, {inputs}, is not there", inputs=base, hint="give --inputs"
+            ).at(str(path))
         with located(str(path), "file"):
             files = InputFiles(base)
             for item in content["files"]:  # before they are read: what has changed may not be readable
@@ -265,7 +267,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the job as it was copied, and what was noted of its inputs."""
     with disk.guarded(path):
         if not (path / JOB).is_file():
-            raise CampaignMismatchError(f"{path}: no campaign of a job file here ({JOB} is missing)")
+            raise CampaignMismatchError("no campaign of a job file here ({file} is missing)", file=JOB).at(str(path))
         text, noted = (path / JOB).read_bytes(), (path / INPUTS).read_bytes() if (path / INPUTS).exists() else b""
     try:
         content = json.loads(noted)
@@ -273,14 +275,15 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
         if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders have none
             raise CampaignDamagedError(
-                f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
-                "folder"
-            )
+                "{file} has changed since the campaign began", file=path / JOB,
+                hint="restore it, or begin a new campaign in another folder",
+            )  # fmt: skip
         return text.decode(), content | {name: str(content[name]) for name in ("job_folder", "job_file")}
     except (ValueError, KeyError, TypeError, AssertionError) as error:
         raise CampaignDamagedError(
-            f"{path / INPUTS} is missing or damaged ({error}); begin a new campaign of {path / JOB} in another folder"
-        ) from error
+            "{file} is missing or damaged ({reason})", file=path / INPUTS, reason=str(error),
+            hint=f"begin a new campaign of {path / JOB} in another folder",
+        ) from error  # fmt: skip
 
 
 def _sha256(data: bytes) -> str:

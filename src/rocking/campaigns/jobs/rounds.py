@@ -43,13 +43,13 @@ def round_folder(folder: Path, number: int) -> Path:
     return folder / f"round-{number:03}"
 
 
-def resume(folder: Path) -> str:
-    """Return the command that goes on with a campaign.
+def resume_hint(folder: Path) -> str:
+    """Return the hint with the command that resumes a campaign.
 
-    >>> resume(Path("my study"))
-    "rocking campaign resume 'my study'"
+    >>> resume_hint(Path("my study"))
+    "go on with: rocking campaign resume 'my study'"
     """
-    return f"rocking campaign resume {shlex.quote(str(folder))}"
+    return f"go on with: rocking campaign resume {shlex.quote(str(folder))}"
 
 
 @contextmanager
@@ -60,11 +60,12 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
         if not any(PurePath(place.name).name == NAME for place in error.places):  # a shard or the ledger: made anew
-            error.hint = f"go on with: {resume(folder)}"
+            error.hint = resume_hint(folder)
             raise
         raise CampaignDamagedError(
-            f"{path / NAME} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
-        ) from error
+            "{file} is damaged", file=path / NAME,
+            hint=f"remove {path} and {resume_hint(folder)}; the other rounds are kept",
+        ) from error  # fmt: skip
 
 
 def of_rounds(folder: Path, adaptive: bool, look: Callable[[Path], _T]) -> list[_T]:
@@ -93,8 +94,10 @@ def finished_rounds(folder: Path) -> dict[str, int] | None:
     except FileNotFoundError:
         return None
     except (ValueError, KeyError, TypeError) as error:
-        advice = f"remove it, and go on with: {resume(folder)}"
-        raise CampaignDamagedError(f"{folder / FINISHED} is damaged ({error}); {advice}") from error
+        raise CampaignDamagedError(
+            "{file} is damaged ({reason})", file=folder / FINISHED, reason=str(error),
+            hint=f"remove it, and {resume_hint(folder)}",
+        ) from error  # fmt: skip
 
 
 class Rounds:
@@ -121,7 +124,7 @@ class Rounds:
             if self.between.requested():
                 raise CampaignInterrupted("between rounds")
             if self.who is None and not (path / NAME).exists():
-                raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
+                raise CampaignIncompleteError("{folder} is missing", folder=path, hint=resume_hint(self.folder))
             campaign = opened(path, histories, self.chunk)
             if self.who is not None:
                 with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
@@ -161,12 +164,14 @@ class Rounds:
                 yield
         except CampaignInterrupted as error:
             stopped = f"{folder}: stopped in round {self.number + 1}; {disk.NOTHING_LOST}"
-            raise CampaignInterrupted(f"{stopped}; go on with: {resume(folder)}") from error
+            raise CampaignInterrupted(f"{stopped}; {resume_hint(folder)}") from error
         except CampaignStorageError as error:
             cause = error.__cause__
-            why = f"{getattr(cause, 'strerror', None) or cause or error} in round {self.number + 1}"
-            advice = f"make room or allow writing, then go on with: {resume(folder)}"
-            raise CampaignStorageError(f"{folder}: {why}; {disk.NOTHING_LOST}; {advice}") from error
+            raise CampaignStorageError(
+                "{fault} in round {number}; {kept}", fault=str(getattr(cause, "strerror", None) or cause or error),
+                number=self.number + 1, kept=disk.NOTHING_LOST,
+                hint=f"make room or allow writing, then {resume_hint(folder)}",
+            ).at(str(folder)) from error  # fmt: skip
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
@@ -180,13 +185,14 @@ def replayed(search: Search, folder: Path) -> AdaptiveResult:
     """Return the result of a finished study, from its rounds on disk; nothing is computed."""
     noted = finished_rounds(folder)
     if noted is None:
-        raise CampaignIncompleteError(f"{folder}: not finished; go on with: {resume(folder)}")
+        raise CampaignIncompleteError("not finished", hint=resume_hint(folder)).at(str(folder))
     rounds = Rounds(folder)
     result = search(rounds.compute)
     if noted != rounds.counts:
         raise CampaignDamagedError(
-            f"{folder / FINISHED} tells of {noted}, and there are {rounds.counts}; go on with: {resume(folder)}"
-        )
+            "{file} tells of {expected}, and there are {counts}", file=folder / FINISHED, expected=noted,
+            counts=rounds.counts, hint=resume_hint(folder),
+        )  # fmt: skip
     more = {"rounds": noted["rounds"], "all_histories": noted["histories"]}
     return replace(result, attributes={**result.attributes, **more})
 
