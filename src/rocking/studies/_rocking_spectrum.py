@@ -123,7 +123,10 @@ def rocking_spectrum(
 def _row(name: str, row: Any, unit: str) -> FloatArray:
     values = np.atleast_1d(checks.positive_array(name, row, unit))
     if values.ndim != 1 or not values.size:
-        raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got shape {values.shape}")
+        raise InvalidValueError(
+            "{parameter} must be a row of numbers [{unit}], got shape {shape}", parameter=name, unit=unit,
+            shape=values.shape,
+        )  # fmt: skip
     return values
 
 

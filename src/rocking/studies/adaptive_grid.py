@@ -28,8 +28,9 @@ class Plane:
     def __post_init__(self) -> None:
         if self.x.sets == self.y.sets:
             raise InvalidValueError(
-                f"x and y must set different things, got {self.x.name} and {self.y.name}: both set {self.x.sets}"
-            )
+                "x and y must set different things, got {x} and {y}: both set {sets}", x=self.x.name, y=self.y.name,
+                sets=self.x.sets,
+            )  # fmt: skip
         for axis, other in ((self.x, self.y), (self.y, self.x)):
             axis.check(self.question)
             axis.check_beside(other)

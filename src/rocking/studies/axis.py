@@ -46,7 +46,9 @@ class Axis:
     def __call__(self, values: Any) -> "Axis":
         row = np.atleast_1d(checks.real_array(self.name, values, self.unit)).copy()
         if row.ndim != 1 or not row.size:
-            raise InvalidValueError(f"{self.name} must be a row of numbers, got shape {row.shape}")
+            raise InvalidValueError(
+                "{parameter} must be a row of numbers, got shape {shape}", parameter=self.name, shape=row.shape
+            )
         above = row >= self.low if self.low_is_allowed else row > self.low
         bad = np.flatnonzero(~(above & (row <= self.high)))
         if bad.size:
@@ -78,7 +80,9 @@ class Axis:
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:
-            raise InvalidValueError(f"the amplitude of {question.motion.name!r} cannot be set: it is zero throughout")
+            raise InvalidValueError(
+                "the amplitude of {motion!r} cannot be set: it is zero throughout", motion=question.motion.name
+            )
         if self.check_kind is not None:
             self.check_kind(self, question)
 
@@ -104,9 +108,9 @@ def main_period(motion: Motion) -> float:
     frequency = abs(motion.waves[0][1]) if isinstance(motion, Sinusoids) else 0.0
     if frequency == 0.0:
         raise InvalidValueError(
-            f"the period of a pulse cannot vary for {motion.name!r}, which has none; "
-            "the axes scale, pga, pgv and duration take any motion"
-        )
+            "the period of a pulse cannot vary for {motion!r}, which has none", motion=motion.name,
+            hint="the axes scale, pga, pgv and duration take any motion",
+        )  # fmt: skip
     return 2.0 * math.pi / frequency
 
 
@@ -169,13 +173,15 @@ def _refuse_zero(scales: FloatArray) -> None:
 
 def _check_block(axis: Axis, question: Question) -> None:
     if not isinstance(question.body, Block):
-        raise InvalidValueError(f"{axis.name} varies only for a Block, got {question.body!r:.60}")
+        raise InvalidValueError(
+            "{axis} varies only for a Block, got {value}", parameter="body", value=question.body, axis=axis.name
+        )
 
 
 def _check_law(axis: Axis, question: Question) -> None:
     if not isinstance(question.law, ConstantRestitution):
         raise InvalidValueError(
-            f"{axis.name} is an axis: leave the law of impact out, got {type(question.law).__name__}"
+            "{axis} is an axis: leave the law of impact out, got {law}", axis=axis.name, law=type(question.law).__name__
         )
 
 
@@ -186,12 +192,16 @@ def _check_friction(_: Axis, question: Question) -> None:
 
 def _check_in_plane(axis: Axis, question: Question) -> None:
     if not isinstance(question.body, Body):
-        raise InvalidValueError(f"{axis.name} varies only for a plane body, got {question.body!r:.60}")
+        raise InvalidValueError(
+            "{axis} varies only for a plane body, got {value}", parameter="body", value=question.body, axis=axis.name
+        )
 
 
 def _check_in_space(axis: Axis, question: Question) -> None:
     if isinstance(question.body, Body):
-        raise InvalidValueError(f"{axis.name} varies only for a body in space, got {question.body!r:.60}")
+        raise InvalidValueError(
+            "{axis} varies only for a body in space, got {value}", parameter="body", value=question.body, axis=axis.name
+        )
 
 
 def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
@@ -318,13 +328,17 @@ def axis_of(axis: Any) -> Axis:
     """Return an axis, or the one of a name and values; one without values is refused."""
     if isinstance(axis, Axis):
         if not axis.values.size:
-            raise InvalidValueError(f"the axis {axis.name} has no values: call it with them, in {axis.unit}")
+            raise InvalidValueError(
+                "the axis {axis} has no values: call it with them, in {unit}", axis=axis.name, unit=axis.unit
+            )
         return axis
     if not isinstance(axis, Sequence) or isinstance(axis, str) or len(axis) != 2 or not isinstance(axis[0], str):
-        raise InvalidValueError(f'an axis is written as ("scale", values), got {axis!r:.60}')
+        raise InvalidValueError('an axis is written as ("scale", values), got {value}', parameter="axis", value=axis)
     known = axes()
     name = checks.spelling(axis[0], known)
     if name not in known:
-        there, near = ", ".join(sorted(known)), checks.nearest(name, known)
-        raise InvalidValueError(f"no axis named {name!r}; there are {there}", hint=near)
+        raise InvalidValueError(
+            "no axis named {value}; there are {names}", parameter="axis", value=name, names=", ".join(sorted(known)),
+            hint=checks.nearest(name, known),
+        )  # fmt: skip
     return known[name](axis[1])

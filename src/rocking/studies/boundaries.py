@@ -107,10 +107,12 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 def checked(plane: Plane, by: str, tolerance: float) -> float:
     """Refuse what a boundary cannot be asked with; return the width of the last brackets over the coordinate [-]."""
     if by not in {"verdict", "mode"}:
-        raise InvalidValueError(f'by must be "verdict" or "mode", got {by!r:.60}')
+        raise InvalidValueError(parameter="by", allowed='"verdict" or "mode"', value=by)
     for axis in (plane.x, plane.y):
         if axis.values.size < 2:
-            raise InvalidValueError(f"{axis.name} must have at least 2 values to have a boundary between, got 1")
+            raise InvalidValueError(
+                "{parameter} must have at least 2 values to have a boundary between, got 1", parameter=axis.name
+            )
     return checks.within("tolerance", tolerance, 1e-15, 0.1)
 
 

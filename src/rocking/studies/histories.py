@@ -223,7 +223,10 @@ class Histories(ABC):
 def checked_range(first: int, last: int, count: int) -> None:
     """Refuse numbers that are not of histories."""
     if not 0 <= first <= last <= count:
-        raise InvalidValueError(f"histories must be within [0, {count}], got {first} to {last}")
+        raise InvalidValueError(
+            "{parameter} must be within [0, {count}], got {first} to {last}", parameter="histories", count=count,
+            first=first, last=last,
+        )  # fmt: skip
 
 
 def results_of(
@@ -318,10 +321,16 @@ class Product(Histories):
         shapes = {np.shape(values) for values in self.sides.values()}
         (size, *others) = shapes
         if set(self.sides) != names or others or len(size) not in {2, 3} or size[:-2] not in {(), (len(self.motions),)}:
-            raise InvalidValueError(f"sides must be {', '.join(sorted(names))}, each of shape (bodies, restitutions)")
+            raise InvalidValueError(
+                "{parameter} must be {names}, each of shape (bodies, restitutions)", parameter="sides",
+                names=", ".join(sorted(names)),
+            )  # fmt: skip
         scales = np.asarray(self.scales, dtype=np.float64)
         if scales.ndim not in {1, 2} or (scales.ndim == 2 and len(scales) != len(self.motions)) or not scales.size:
-            raise InvalidValueError(f"scales must be of shape (scales,) or (motions, scales), got {scales.shape}")
+            raise InvalidValueError(
+                "{parameter} must be of shape (scales,) or (motions, scales), got {shape}", parameter="scales",
+                shape=scales.shape,
+            )  # fmt: skip
         sides = {name: checks.real_array(name, values) for name, values in self.sides.items()}
         object.__setattr__(self, "sides", {name: _own(array, self.sides[name]) for name, array in sides.items()})
         object.__setattr__(self, "scales", _own(scales, self.scales))

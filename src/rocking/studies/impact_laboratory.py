@@ -59,7 +59,10 @@ class Laboratory:
         if self.modulus_over_thickness is not None:
             checks.positive("modulus over thickness", self.modulus_over_thickness, "Pa/m")
         if self.profile and len(self.profile) != self.points:
-            raise InvalidValueError(f"profile must have {self.points} heights, one a point, got {len(self.profile)}")
+            raise InvalidValueError(
+                "{parameter} must have {points} heights, one a point, got {count}", parameter="profile",
+                points=self.points, count=len(self.profile),
+            )  # fmt: skip
 
     def but(self, **changes: Any) -> "Laboratory":
         """Return the same laboratory with something changed."""
@@ -140,8 +143,9 @@ def whole(name: str, value: Any, least: int) -> int:
     result = checks.number(name, value)
     if result != int(result) or result < least:
         raise InvalidValueError(
-            f"{name} must be a whole number of at least {least}, got {result:g}; it counts, and is not rounded"
-        )
+            parameter=name, allowed=f"a whole number of at least {least}", value=result,
+            hint="it counts, and is not rounded",
+        )  # fmt: skip
     return int(result)
 
 
@@ -190,7 +194,10 @@ def study(
     _check_options(varied, options)
     row = np.atleast_1d(checks.real_array(varied, values))
     if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
-        raise InvalidValueError(f"{varied} must be a row of finite numbers [{unit}], got shape {row.shape}")
+        raise InvalidValueError(
+            "{parameter} must be a row of finite numbers [{unit}], got shape {shape}", parameter=varied, unit=unit,
+            shape=row.shape,
+        )  # fmt: skip
     start = laboratory or Laboratory()
     if varied in _ON_A_LAYER:
         start = start.layered
@@ -216,11 +223,13 @@ def _check_options(varied: str, options: Mapping[str, Any]) -> None:
     names = [option.name for option in known]
     for name in options:
         if name not in names:
-            has = f"has the options {', '.join(names)}" if names else "has no options"
-            raise InvalidValueError(f"the study of {varied} {has}, got {name}")
+            raise InvalidValueError(
+                "the study of {study} has {options}, got {option}", study=varied, option=name,
+                options=f"the options {', '.join(names)}" if names else "no options",
+            )  # fmt: skip
     for option in known:
         if option.default is option.empty and option.name not in options:
-            raise InvalidValueError(f"the study of {varied} needs {option.name}")
+            raise InvalidValueError("the study of {study} needs {option}", study=varied, option=option.name)
 
 
 def _labelled(
@@ -271,7 +280,10 @@ def points_convergence(
     # ends. The limit is the exact r; by default extrapolated from the last two with order 2.
     intervals = np.array(counts, dtype=np.float64) - 1.0
     if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
-        raise InvalidValueError(f"counts must be three or more with doubled intervals: 11, 21, 41; got {counts}")
+        raise InvalidValueError(
+            "{parameter} must be three or more with doubled intervals: 11, 21, 41; got {counts}", parameter="counts",
+            counts=counts,
+        )  # fmt: skip
     block = Laboratory(slenderness=slenderness).block
     law = KelvinVoigt(0.0, damping=1e12 * block.mass)
     r = bed_impacts(

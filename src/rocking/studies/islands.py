@@ -215,7 +215,9 @@ def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str
         return overturning["mode"], first.values, second.values, (first.name, second.name)
     mode = overturning["mode"] if hasattr(overturning, "data_vars") and "mode" in overturning else None
     if mode is None or mode.ndim != 2:
-        raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(overturning).__name__}")
+        raise InvalidValueError(
+            "a map is a dataset with a mode over two axes, got {kind}", kind=type(overturning).__name__
+        )
     along_y, along_x = (str(name) for name in mode.dims)
     x, y = (np.asarray(overturning[name].values) for name in (along_x, along_y))
     return np.asarray(mode.values), x, y, (along_x, along_y)

@@ -129,9 +129,10 @@ class MapSearch:
         points = planes[0].x.values.size * planes[0].y.values.size
         if points > MOST_POINTS:
             raise InvalidValueError(
-                f"map.refine is for maps of up to {MOST_POINTS} points, which are in memory together, got {points}; "
-                "take fewer points, and one level more: it halves the spacing"
-            )
+                "{parameter} is for maps of up to {limit} points, which are in memory together, got {points}",
+                parameter="map.refine", limit=MOST_POINTS, points=points,
+                hint="take fewer points, and one level more: it halves the spacing",
+            )  # fmt: skip
         with located("map.refine"):
             tolerance = checked(planes[0], by, tolerance)
             AdaptiveGrid(planes[0], levels)

@@ -149,7 +149,10 @@ class Cases:
     ) -> "Cases":  # fmt: skip
         """Return the cases of some bodies under one motion, to be looked for between peak accelerations [m/s2]."""
         if not motion.peak > 0.0:
-            raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {motion.name!r}")
+            raise InvalidValueError(
+                "{parameter} must have a peak above zero to be scaled, got {motion!r}", parameter="motion",
+                motion=motion.name,
+            )  # fmt: skip
         both = np.stack([sides["alpha_right"], sides["alpha_left"]])
         lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
         uplift, record = lifts.min(axis=0), isinstance(motion, GroundMotion)
@@ -164,10 +167,10 @@ class Cases:
         if bad.size:
             k = bad[0]
             raise InvalidValueError(
-                f"{{lowest}} must be below {{highest}}, got {low[k]:g} and {high[k]:g} m/s2 for body {k}",
-                lowest=Parameter("minimum.lowest", "lowest"),
-                highest=Parameter("minimum.highest", "highest"),
-            )
+                "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2 for body {index}",
+                lowest=Parameter("minimum.lowest", "lowest"), highest=Parameter("minimum.highest", "highest"),
+                low=low[k], high=high[k], index=k,
+            )  # fmt: skip
         return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, record)
 
     @classmethod
@@ -297,8 +300,9 @@ def minimum_overturning_acceleration(
     """
     if isinstance(body, Sequence):
         raise InvalidValueError(
-            f"body must be one body, got {body!r:.60}; for several bodies there is minimum_overturning_accelerations"
-        )
+            parameter="body", allowed="one body", value=body,
+            hint="for several bodies there is minimum_overturning_accelerations",
+        )  # fmt: skip
     search: dict[str, Any] = {"lowest": lowest, "highest": highest, "points": points, "tolerance": tolerance}
     return minimum_overturning_accelerations([body], motion, restitution, **search, **options)[0]
 
@@ -339,7 +343,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     """
     several: object = bodies
     if not isinstance(several, Sequence) or not several:
-        raise InvalidValueError(f"bodies must be a sequence of at least one body, got {bodies!r:.60}")
+        raise InvalidValueError(parameter="bodies", allowed="a sequence of at least one body", value=bodies)
     engine = settings.pop("engine", "auto")
     question = Question(bodies[0], motion, restitution, study_settings(bodies[0], settings, gravity), threads, engine)
     effort = Effort(points, levels, tolerance)
@@ -353,7 +357,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     for k, each in enumerate(searched(cases, effort, run)):
         if each is None:
             raise InvalidValueError(
-                f"no history of body {k} could be computed; is the range of accelerations too wide?"
+                "no history of body {index} could be computed", index=k, hint="is the range of accelerations too wide?"
             )
         transitions.append(each)
     return tuple(transitions)

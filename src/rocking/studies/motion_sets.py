@@ -67,15 +67,17 @@ class MotionList(MotionSet):
 
     def __init__(self, motions: Any, *, plane: bool = False) -> None:
         single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
-        wanted = "motions must be ground motions or pulses"
+        wanted = "{parameter} must be ground motions or pulses, got {given}"
         if not single and (isinstance(motions, (str, os.PathLike)) or not isinstance(motions, Iterable)):
-            raise InvalidValueError(f"{wanted}, got {checks.given('motions', motions)}")
+            raise InvalidValueError(wanted, parameter="motions", value=motions, given=checks.given("motions", motions))
         found = [together(each, plane=plane) for each in ([motions] if single else motions)]
         if not found:
-            raise InvalidValueError(f"{wanted}, got none")
+            raise InvalidValueError(wanted, parameter="motions", given="none")
         for k, item in enumerate(found):
             if not isinstance(item, (GroundMotion, Pulse, Components)):
-                raise InvalidValueError(f"{wanted}, got {checks.given('motions', item, f' at index {k}')}")
+                raise InvalidValueError(
+                    wanted, parameter="motions", value=item, given=checks.given("motions", item, f" at index {k}")
+                )
         if len({isinstance(leading(item), Pulse) for item in found}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
         self._motions: list[Motion] = found
@@ -163,7 +165,7 @@ class SyntheticSet(MotionSet):
         self.count, self.seed = checks.whole("count", count, 1, MOST_MOTIONS), checks.whole("seed", seed)
         given = {name: value for name, value in level.items() if value is not None}
         if len(given) > 1:
-            raise InvalidValueError(f"motions can be scaled to {' or to '.join(given)}, not to both")
+            raise InvalidValueError("motions can be scaled to {measures}, not to both", measures=" or to ".join(given))
         self.level: dict[str, float] = {}
         for name, value in given.items():
             one = measure(name)
@@ -215,15 +217,16 @@ def _named(make: Callable[..., GroundMotion]) -> str:
     held = getattr(make, "__closure__", None) or (getattr(make, "__self__", None) is not None)
     if not name or "<lambda>" in name or held:
         raise InvalidValueError(
-            "make of a family must be a function with a name that holds no other values, got "
-            f"{make!r:.60}: a lambda, a partial, a method or a closure does not say which motions it makes"
-        )
+            "make of a family must be a function with a name that holds no other values, got {value}: a lambda, a "
+            "partial, a method or a closure does not say which motions it makes", parameter="make", value=make,
+        )  # fmt: skip
     return f"{make.__module__}.{name}"
 
 
 def _told(name: str, distribution: Distribution) -> str:
     if type(distribution).__repr__ is object.__repr__:
         raise InvalidValueError(
-            f"distribution {name} must say what makes it by repr(), as a dataclass does, got {distribution!r:.60}"
-        )
+            "distribution {parameter} must say what makes it by repr(), as a dataclass does, got {value}",
+            parameter=name, value=distribution,
+        )  # fmt: skip
     return f"{full_name(type(distribution))}: {distribution!r}"

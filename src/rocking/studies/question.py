@@ -93,9 +93,9 @@ class Question:
         """Refuse to stretch time where the restitution would notice."""
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
-                f"{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
-                f"in rad/s, got {type(self.law).__name__}; vary scale and size instead"
-            )
+                "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
+                "in rad/s, got {law}", name=name, law=type(self.law).__name__, hint="vary scale and size instead",
+            )  # fmt: skip
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
         """Return what was computed from what and how, as plain values."""
@@ -205,13 +205,17 @@ def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
         return body
     if not isinstance(body, Body):
         if set(parameters) != {"semi_diagonal"}:
-            raise InvalidValueError(f"of a body in space only the semi-diagonal varies, got {', '.join(parameters)}")
+            raise InvalidValueError(
+                "of a body in space only the semi-diagonal varies, got {names}", names=", ".join(parameters)
+            )
         return body.scaled(size=parameters["semi_diagonal"] / SpatialBody.of(body).size)
     if set(parameters) == {"semi_diagonal"}:
         side = body.side(reference_side(body))  # type: ignore[arg-type]
         return body.scaled(size=parameters["semi_diagonal"] / side.semi_diagonal)
     if not isinstance(body, Block):
-        raise InvalidValueError(f"slenderness, width and height vary only for a Block, got {body!r:.60}")
+        raise InvalidValueError(
+            "slenderness, width and height vary only for a Block, got {value}", parameter="body", value=body
+        )
     if body.known is not None or not body.stands_on_corners:
         raise InvalidValueError(
             "slenderness, width and height vary only for a homogeneous Block on its corners: leave centre, "
@@ -235,7 +239,9 @@ def _dimensions(block: Block, dimensions: Mapping[str, float]) -> tuple[float, f
         known = next((side for side in (height, width) if side is not None), 0.0)
         square = 4.0 * diagonal**2 - known**2
         if square <= 0.0:
-            raise InvalidValueError(f"no block of semi-diagonal {diagonal:g} m has a side of {known:g} m")
+            raise InvalidValueError(
+                "no block of semi-diagonal {diagonal:g} m has a side of {side:g} m", diagonal=diagonal, side=known
+            )
         other = math.sqrt(square)
         return (width, other) if width is not None else (other, dimensions["height"])
     return (block.width if width is None else width), (block.height if height is None else height)

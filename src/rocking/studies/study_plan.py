@@ -80,7 +80,11 @@ class Study:
     def __post_init__(self) -> None:
         """Check the dimensions."""
         if int(np.prod(self.shape, dtype=np.int64)) != self.histories.count:
-            raise InvalidValueError(f"dimensions {self.dims} do not fit {self.histories.count} histories")
+            raise InvalidValueError(
+                "dimensions {names} do not fit {count} histories",
+                names=", ".join(self.dims),
+                count=self.histories.count,
+            )
 
     @property
     def shape(self) -> tuple[int, ...]:

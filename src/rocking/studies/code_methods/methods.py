@@ -34,8 +34,9 @@ class BodySides:
         for body in bodies:
             if not isinstance(body, Body):
                 raise InvalidValueError(
-                    f"code methods know plane bodies, got {body!r:.60}; a solid stands in a plane by in_plane(azimuth)"
-                )
+                    "code methods know plane bodies, got {value}", parameter="body", value=body,
+                    hint="a solid stands in a plane by in_plane(azimuth)",
+                )  # fmt: skip
         sides = [[body.side(foot, gravity) for foot in FEET[::-1]] for body in bodies]
         names = "half_width", "centre_height", "frequency_parameter"
         b, h, p = (np.array([[getattr(side, name) for side in pair] for pair in sides]) for name in names)

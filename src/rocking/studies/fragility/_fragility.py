@@ -97,7 +97,9 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     if tolerance is not None:
         kind = checks.one_of("analysis", analysis, ANALYSES)
         if kind != "incremental":
-            raise InvalidValueError(f'tolerance is for analysis="incremental" only, this is "{kind}"')
+            raise InvalidValueError(
+                '{parameter} is for analysis="incremental" only, this is "{kind}"', parameter="tolerance", kind=kind
+            )
         options["tolerance"] = tolerance
     return _with_curves(fragility_analysis(
         body, motions, levels, restitution, analysis=analysis, measure=measure, states=states, factor=factor,

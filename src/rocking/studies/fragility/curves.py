@@ -165,7 +165,10 @@ class FragilityModel:
         object.__setattr__(self, "levels", checked_levels("levels", levels, self.unit))
         for name, counts in {"trials": self.trials, **self.reached}.items():
             if np.shape(counts) != self.levels.shape:
-                raise InvalidValueError(f"{name} must be {self.levels.size} counts, got shape {np.shape(counts)}")
+                raise InvalidValueError(
+                    "{parameter} must be {size} counts, got shape {shape}", parameter=name, size=self.levels.size,
+                    shape=np.shape(counts),
+                )  # fmt: skip
 
     def __repr__(self) -> str:
         curves = "; ".join(f"{c.state}: median {c.median:.4g}, dispersion {c.dispersion:.3g}" for c in self.curves)
@@ -269,9 +272,9 @@ def _alone(analysis: Any, name: str, source: str = "", states: Sequence[str] | N
     without = [state for state, curve in found.items() if curve is None]
     if len(without) == len(found):
         raise InvalidValueError(
-            f"nothing to export: no state of {name!r:.60} has a lognormal curve; the histories must both reach a "
-            f"state and miss it, at levels that overlap ({', '.join(without)})"
-        )
+            "nothing to export: no state of {name!r:.60} has a lognormal curve", name=name,
+            hint=f"the histories must both reach a state and miss it, at levels that overlap ({', '.join(without)})",
+        )  # fmt: skip
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
     return FragilityModel(
         name, measure.name, measure.unit, tuple(filter(None, found.values())), analysis.levels, analysis.trials,
@@ -360,7 +363,9 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     """Return the model with all states fitted again with one dispersion, from its counts."""
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
     if missing:
-        raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
+        raise InvalidValueError(
+            "counts of all states are needed for one dispersion, got none of {state!r:.60}", state=missing[0]
+        )
     tried = np.asarray(model.trials) > 0
     reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
     try:
@@ -473,8 +478,9 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
         keep = Option("export.crossing", "keep-uplift")
         hint = Message("their dispersions differ: {option} fits one for all states but rocking", {"option": keep})
     raise InvalidValueError(
-        f"curves must not cross, but {worst.words(model)}, at most {TOLERANCE:g} is allowed", hint=hint
-    )
+        "curves must not cross, but {crossing}, at most {limit:g} is allowed", crossing=worst.words(model),
+        limit=TOLERANCE, hint=hint,
+    )  # fmt: skip
 
 
 def check_crossing(crossing: Any) -> str:

@@ -183,14 +183,15 @@ def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
     spectral = spectral_period(model.measure)
     if model.measure != "pga" and (spectral is None or spectral[1] != 0.05):
         raise InvalidValueError(
-            f"for PELICUN curves stand against pga or sa(period) with 5 % damping, got {model.measure!r:.60}"
-        )
+            "for PELICUN curves stand against pga or sa(period) with 5 % damping, got {measure!r:.60}",
+            measure=model.measure,
+        )  # fmt: skip
     on_floor = _support(model) != GROUND
     if on_floor and spectral is not None:
         raise InvalidValueError(
-            f"for PELICUN curves of motions of {_support(model)} stand against pga (written as Peak Floor "
-            f"Acceleration), got {model.measure!r:.60}"
-        )
+            "for PELICUN curves of motions of {support} stand against pga (written as Peak Floor Acceleration), got "
+            "{measure!r:.60}", support=_support(model), measure=model.measure,
+        )  # fmt: skip
     peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
     demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
     unit, size = exchange_unit(model.measure, model.unit)
@@ -376,9 +377,9 @@ def to_nrml(
     loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
     if _support(model) != GROUND:
         raise InvalidValueError(
-            f"OpenQuake takes {model.measure} as that of the ground; these motions are of {_support(model)}. "
-            "Fit curves to motions of the ground, or export to PELICUN or FEMA P-58"
-        )
+            "OpenQuake takes {measure} as that of the ground; these motions are of {support}. Fit curves to motions "
+            "of the ground, or export to PELICUN or FEMA P-58", measure=model.measure, support=_support(model),
+        )  # fmt: skip
     imt, unit, size = intensity_type(model.measure)
     model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
     top = model.highest if highest is None else highest
@@ -412,9 +413,9 @@ def intensity_type(measure: str) -> tuple[str, str, float]:
     if one is None or one.openquake is None:
         known = ", ".join(name for name, each in MEASURES.items() if each.openquake)
         raise InvalidValueError(
-            f"OpenQuake knows {known} and sa(period) with 5 % damping, got {measure!r:.60}; "
-            "fit the curves against one of these"
-        )
+            "OpenQuake knows {names} and sa(period) with 5 % damping, got {measure!r:.60}", names=known,
+            measure=measure, hint="fit the curves against one of these",
+        )  # fmt: skip
     return one.openquake
 
 
@@ -425,7 +426,9 @@ def _support(model: FragilityModel) -> str:
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:
     """Return mean and standard deviation of a lognormal variable, in the unit of its median."""
     if dispersion > 25.0:
-        raise InvalidValueError(f"dispersion must be at most 25 for a finite standard deviation, got {dispersion:g}")
+        raise InvalidValueError(
+            parameter="dispersion", allowed="at most 25 for a finite standard deviation", value=float(dispersion)
+        )
     mean = median * math.exp(0.5 * dispersion**2)  # Eq. 228
     return mean, mean * math.sqrt(math.expm1(dispersion**2))  # Eq. 228
 
@@ -451,5 +454,5 @@ def _identifiers(names: list[str]) -> list[str]:
 def _word(text: str) -> str:
     """Refuse what no XML file can hold, escaped or not."""
     if not _XML.fullmatch(text):
-        raise InvalidValueError(f"words in XML must be printable and not empty, got {text!r:.60}")
+        raise InvalidValueError("words in XML must be printable and not empty, got {word!r:.60}", word=text)
     return text

@@ -191,9 +191,10 @@ def check_repeatable(law: ImpactLaw) -> None:
     """Refuse a restitution that is another one whenever a motion is repeated."""
     if law.kind == RANDOM or law.per_history:
         raise InvalidValueError(
-            f"restitution must be the same whenever a motion is repeated, got {type(law).__name__}: no level starts "
-            'the overturning if the coefficients are drawn anew; analysis="stripes" takes it'
-        )
+            "{parameter} must be the same whenever a motion is repeated, got {law}: no level starts the overturning "
+            "if the coefficients are drawn anew", parameter="restitution", law=type(law).__name__,
+            hint='analysis="stripes" takes it',
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)

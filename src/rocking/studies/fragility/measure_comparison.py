@@ -142,7 +142,7 @@ def compare_measures(
         else:
             scores.append(_score(other, columns))
     if not scores:
-        raise InvalidValueError(f"no measure can be ranked: {'; '.join(left_out.values())}")
+        raise InvalidValueError("no measure can be ranked: {reasons}", reasons="; ".join(left_out.values()))
     return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.least)
 
 
@@ -177,6 +177,7 @@ def _column(name: str, column: Any, analysis: CloudAnalysis) -> FloatArray:
     count = len(analysis.subject.motions)
     if values.shape != (count,) or not np.isfinite(values).all():
         raise InvalidValueError(
-            f"metadata[{name!r:.40}] must be {count} finite numbers, one a motion, got shape {values.shape}"
-        )
+            "metadata[{name!r:.40}] must be {count} finite numbers, one a motion, got shape {shape}", name=name,
+            count=count, shape=values.shape,
+        )  # fmt: skip
     return values

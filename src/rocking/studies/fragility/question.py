@@ -48,7 +48,9 @@ class FragilityQuestion:
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
         odd = [name for name, value in (("factor", factor), ("least", least)) if value is not None]
         if odd and kind != "cloud":
-            raise InvalidValueError(f'{odd[0]} is for analysis="cloud" only, this is "{kind}"')
+            raise InvalidValueError(
+                '{parameter} is for analysis="cloud" only, this is "{kind}"', parameter=odd[0], kind=kind
+            )
         least = checked_least(LEAST if least is None else least)
         tolerance = checks.within("tolerance", 1e-8 if tolerance is None else tolerance, 0.0, 0.1)
         if kind == "cloud":
@@ -88,16 +90,19 @@ def _check_factors(subject: Subject, factors: FloatArray) -> None:
     if (most := int(least.argmax())) >= 0 and not least[most] <= _MOST_FACTOR:
         value, unit = float(subject.intensities[most]), subject.measure.unit
         raise InvalidValueError(
-            f"motion {subject.motions[most].name!r:.80} has {subject.measure.name} = {value:.3g} {unit}; a factor of "
-            f"{least[most]:.3g} brings it to the lowest level, and up to {_MOST_FACTOR:g} are allowed; is its channel "
-            "dead? Leave it out"
-        )
+            "motion {motion!r:.80} has {measure} = {amount:.3g} {unit}; a factor of {factor:.3g} brings it to the "
+            "lowest level, and up to {limit:g} are allowed", motion=subject.motions[most].name,
+            measure=subject.measure.name, amount=value, unit=unit, factor=least[most], limit=_MOST_FACTOR,
+            hint="is its channel dead? Leave it out",
+        )  # fmt: skip
 
 
 def default_levels(subject: Subject) -> FloatArray:
     """Return levels around those that lift the body, for a measure that says which these are [its unit]."""
     if subject.measure.uplift is None:
-        raise InvalidValueError(f"which levels of {subject.measure.name}? Give levels in {subject.measure.unit}")
+        raise InvalidValueError(
+            "which levels of {measure}? Give levels in {unit}", measure=subject.measure.name, unit=subject.measure.unit
+        )
     low, high, count = _REACH
     lifts = subject.measure.uplift(subject.scale)
     return np.geomspace(low * lifts, high * lifts, count)

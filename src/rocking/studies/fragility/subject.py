@@ -187,7 +187,7 @@ def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
     """Return levels of a measure [its unit] if they are above zero and increase."""
     levels = np.atleast_1d(checks.positive_array(name, values, unit)).copy()
     if levels.ndim != 1 or not levels.size:
-        raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got {values!r:.60}")
+        raise InvalidValueError(parameter=name, allowed=f"a row of numbers [{unit}]", value=values)
     checks.increasing(name, levels, unit)
     return levels
 
@@ -211,9 +211,13 @@ def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ..
     given: Any = [levels] if isinstance(levels, str) else levels
     names = [level for level in given if isinstance(level, str)] if isinstance(given, list | tuple) else []
     if unknown := [name for name in names if name not in NAMED]:
-        raise InvalidValueError(f"states must be rotations over alpha, {' or '.join(NAMED)}, got {unknown[0]!r:.60}")
+        raise InvalidValueError(
+            parameter="states", allowed=f"rotations over alpha, {' or '.join(NAMED)}", value=unknown[0]
+        )
     if len(set(names)) < len(names):
-        raise InvalidValueError(f"states must contain each name at most once, got {levels!r:.60}")
+        raise InvalidValueError(
+            "{parameter} must contain each name at most once, got {value}", parameter="states", value=levels
+        )
     between = _rotations([level for level in given if not isinstance(level, str)] if names else given)
     chosen = names or NAMED
     return tuple(
@@ -226,7 +230,7 @@ def _rotations(levels: Any) -> tuple[LimitState, ...]:
     rotations = np.atleast_1d(np.asarray(levels))
     rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
     if rotations.ndim != 1:
-        raise InvalidValueError(f"states must be a row of rotations over alpha, got {levels!r:.60}")
+        raise InvalidValueError(parameter="states", allowed="a row of rotations over alpha", value=levels)
     checks.increasing("states", rotations)
     return tuple(LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations)
 
@@ -249,9 +253,10 @@ class Responses:
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
         if missing or sizes != {math.prod(shape)}:
             raise InvalidValueError(
-                f"results must be outcome and peak_rotation of {math.prod(shape)} histories, got {sorted(arrays)} of "
-                f"{sorted(sizes)}; of another study?"
-            )
+                "{parameter} must be outcome and peak_rotation of {count} histories, got {names} of {sizes}",
+                parameter="results", count=math.prod(shape), names=sorted(arrays), sizes=sorted(sizes),
+                hint="of another study?",
+            )  # fmt: skip
         outcome = np.asarray(arrays["outcome"], dtype=np.int8).reshape(shape)
         peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
         right, left = parameters.right.slenderness_angle, parameters.left.slenderness_angle

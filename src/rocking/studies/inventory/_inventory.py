@@ -133,7 +133,7 @@ def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | Non
         return Hazard.of_family(motions, level, count=number, seed=start)
     odd = [name for name, value in (("count", count), ("seed", seed)) if value is not None]
     if odd:
-        raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside records")
+        raise InvalidValueError("{names} is for synthetic motions: leave it out beside records", names=", ".join(odd))
     if isinstance(motions, Hazard):
         if level is not None:
             raise InvalidValueError("a hazard is scaled already: leave pga and pgv out")

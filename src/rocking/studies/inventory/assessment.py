@@ -408,7 +408,9 @@ class _Assessor:
         """Refuse an inventory of which no object can be assessed."""
         if not items:
             first = min([*self.inventory.not_assessed, *refused], key=lambda each: each.row)
-            raise InvalidValueError(f"no object can be assessed; line {first.row}: {first.reason}")
+            raise InvalidValueError(
+                "no object can be assessed; line {line}: {reason}", line=first.row, reason=first.reason
+            )
 
     def _verdict(
         self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,

@@ -421,13 +421,15 @@ def check_header(header: Header, titles: Titles, source: str, dismissed: Collect
     fields = [field for each in header.columns if each and each.stem != "size" for field in each.fields]
     for each in fields:
         if fields.count(each) > 1:
-            raise InvalidValueError(f"{source}: two columns give the {each.replace('_', ' ')}; leave one")
+            raise InvalidValueError("two columns give the {field}", field=each.replace("_", " "), hint="leave one").at(
+                source
+            )
     if "length" in fields:
         length = next(each.title for each in header.columns if each and "length" in each.fields)
         raise InvalidValueError(
-            f"{source}: column {length!r:.60} is not known but looks like a measure, beside width and depth; "
-            f"{_remedy(length)}"
-        )
+            "column {column!r:.60} is not known but looks like a measure, beside width and depth", column=length,
+            hint=_remedy(length),
+        ).at(source)  # fmt: skip
     passed = {plain(title) for title in dismissed}
     for title, column in zip(titles, header.columns, strict=True):
         levels = levels_of(title)
@@ -458,14 +460,17 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
         return
     if (known := _stem(stem, language)[0]) in LENGTHS:
         units = ", ".join(f"{known}_{each}" for each in LENGTH_UNITS)
-        raise InvalidValueError(f"{source}: column {title!r:.60} must name its unit: {units}")
+        raise InvalidValueError("column {column!r:.60} must name its unit: {units}", column=title, units=units).at(
+            source
+        )
     own = (stem or words).replace(" ", "_")
     near = difflib.get_close_matches(own, _MEASURES, n=1, cutoff=0.8)
     near = near or difflib.get_close_matches(own, _MEASURES, n=3, cutoff=0.5) or list(_MEASURES)
     names = ", ".join(f"{each}_{'kg' if each == 'weight' else 'cm'}" for each in near)
     raise InvalidValueError(
-        f"{source}: column {title!r:.60} is not known but looks like a measure; {names}? {_remedy(title)}"
-    )
+        "column {column!r:.60} is not known but looks like a measure; {names}? {remedy}", column=title, names=names,
+        remedy=_remedy(title),
+    ).at(source)  # fmt: skip
 
 
 def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
@@ -483,14 +488,16 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
         parts = [part.rpartition("=") for part in fields if part.strip()]
         if odd := next((ours for _, mark, ours in parts if not mark), ""):
             raise InvalidValueError(
-                f'columns must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {odd.strip()!r:.60}'
-            )
+                '{parameter} must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {value}',
+                parameter="columns", value=odd.strip(),
+            )  # fmt: skip
         text = {own: ours for own, _, ours in parts}
     found = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
     for own, ours in found.items():
         if not own or (ours and _column(own, (ours,), "en") is None):
             raise InvalidValueError(
-                f"columns: {own!r:.60} cannot be {ours!r:.60}; ours are {', '.join((*TEXTS, 'count', 'friction'))}, "
-                f"and with a unit, as in width_cm: {', '.join(_MEASURES)}, or an order: height x width x depth cm"
-            )
+                "{parameter}: {own!r:.60} cannot be {value}; ours are {texts}, and with a unit, as in width_cm: "
+                "{measures}, or an order: height x width x depth cm", parameter="columns", own=own, value=ours,
+                texts=", ".join((*TEXTS, "count", "friction")), measures=", ".join(_MEASURES),
+            )  # fmt: skip
     return found

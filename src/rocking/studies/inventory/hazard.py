@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, located
 from rocking.language import language
 from rocking.messages import Message
 from rocking.motions import peak_ground_acceleration, peak_ground_velocity
@@ -39,7 +39,7 @@ class IntensityLevel:
 
     def __post_init__(self) -> None:
         if self.kind not in {"PGA", "PGV"}:
-            raise InvalidValueError(f"a level is a PGA or a PGV, got {self.kind!r:.40}")
+            raise InvalidValueError("a level is a PGA or a PGV, got {value}", parameter="kind", value=self.kind)
         unit, most = ("m/s2", 1000.0) if self.kind == "PGA" else ("m/s", 100.0)
         value = checks.within(self.kind, self.value, 0.0, most, unit=unit, open_low=True, hint="wrong unit?")
         object.__setattr__(self, "value", value)
@@ -62,20 +62,22 @@ class IntensityLevel:
     def of(cls, kind: str, words: str) -> "IntensityLevel":
         """Return a level from a number with its unit, such as ``0.3g``, ``0,3g`` or ``25cm/s``: it is never guessed."""
         if kind not in {"PGA", "PGV"}:
-            raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
+            raise InvalidValueError("a level is a PGA or a PGV, got {value}", parameter="kind", value=kind)
         units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
         text: object = words
         match = _LEVEL.fullmatch(text.strip()) if isinstance(text, str) else None
         if match is None or match[2] not in units:
+            example = "0.3g" if kind == "PGA" else "25cm/s"
             raise InvalidValueError(
-                f"{kind} must be a number with its unit, one of {', '.join(units)}, "
-                f"such as {'0.3g' if kind == 'PGA' else '25cm/s'}, got {words!r:.40}"
-            )
+                parameter=kind, value=words,
+                allowed=f"a number with its unit, one of {', '.join(units)}, such as {example}",
+            )  # fmt: skip
         if _THOUSANDS.fullmatch(match[1]):
             decimal, whole = match[1].replace(",", "."), match[1].replace(",", "")
             raise InvalidValueError(
-                f"{kind} is ambiguous: {words!r:.40} could be {decimal} or {whole} {match[2]}; write one of them"
-            )
+                "{parameter} is ambiguous: {value} could be {decimal} or {whole} {unit}", parameter=kind, value=words,
+                decimal=decimal, whole=whole, unit=match[2], hint="write one of them",
+            )  # fmt: skip
         return cls(kind, float(match[1].replace(",", ".")) * units[match[2]])
 
 
@@ -122,7 +124,7 @@ class Hazard:
         pairs = [_apart(record) for record in records]
         checked = [checked_motion(record, f"records[{k}]") for k, (record, _) in enumerate(pairs)]
         if not 1 <= len(checked) <= MOST_MOTIONS:
-            raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(checked)}")
+            raise InvalidValueError(parameter="records", allowed=f"1 to {MOST_MOTIONS} motions", value=len(checked))
         scaled = [_scaled(record, level) for record in checked]
         across = tuple(
             other if other is None or new is old else other.scaled(new.peak / old.peak)
@@ -180,7 +182,5 @@ def _apart(record: Any) -> tuple[Any, GroundMotion | None]:
 def _scaled(record: GroundMotion, level: IntensityLevel | None) -> GroundMotion:
     if level is None:
         return record
-    try:
+    with located(f"{record.name!r:.80}", "file"):
         return scaled_to(record, level.kind.lower(), level.value)
-    except InvalidValueError as error:
-        raise InvalidValueError(f"{record.name!r:.80}: {error}") from error

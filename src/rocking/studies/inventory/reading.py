@@ -119,8 +119,8 @@ def read_inventory(
     path = Path(path)
     if path.stat().st_size > MOST_BYTES:
         raise InvalidValueError(
-            f"{path.name}: an inventory must be below {MOST_BYTES >> 20} MiB; another kind of file?"
-        )
+            "an inventory must be below {limit} MiB", limit=MOST_BYTES >> 20, hint="another kind of file?"
+        ).at(path.name)
     content, mapped = path.read_bytes(), mapping_of(columns)
     find = find or (lambda name: path.parent / name)
     sheets = sheets_in(content, path.name)
@@ -132,8 +132,8 @@ def read_inventory(
     if len(whole) > 1:
         names = ", ".join(sheet.source for _, sheet in whole)
         raise InvalidValueError(
-            f"{path.name}: more than one table is a list: {names}; keep one, or make a file of each"
-        )
+            "more than one table is a list: {names}", names=names, hint="keep one, or make a file of each"
+        ).at(path.name)
     if not whole:
         raise _no_header(path.name, [(found, sheet.rows) for found, sheet in lists])
     found, sheet = whole[0]
@@ -235,8 +235,9 @@ class _Reader:
         names = {*itertools.chain.from_iterable(names_of(self.found.titles))}
         if odd := [own for own in self.mapped if plain(own) not in names]:
             raise InvalidValueError(
-                f"{source}: columns: no {odd[0]!r:.60} among {', '.join(filter(None, titles))[:300]}"
-            )
+                "{parameter}: no {value} among {titles}", parameter="columns", value=odd[0],
+                titles=", ".join(filter(None, titles))[:300],
+            ).at(source)  # fmt: skip
         below = self.sheet.rows[self.found.end :]
         kinds = RowKinds(self.sheet, self.found, below)
         reasons = [kinds.reason(*row) for row in below]
@@ -261,7 +262,7 @@ class _Reader:
                 number, name, note = (self._text(row, stem) for stem in ("number", "name", "note"))
                 refused.append(NotAssessed(line, name or number, error.sentence, number, note))
         if not objects and not refused:
-            raise InvalidValueError(f"{source}: an inventory needs at least one row below its header")
+            raise InvalidValueError("an inventory needs at least one row below its header").at(source)
         ignored = tuple(title for title, column in zip(titles, columns, strict=True) if column is None and title)
         lines = tuple(line for line, _ in self.sheet.rows[self.found.first : self.found.end])
         language = self.language or self.header.language
@@ -311,7 +312,9 @@ class _Reader:
             if cells and all(cell.replace(".", "").replace(",", "").isdigit() for cell in cells):
                 if column.stem not in {"weight", "pedestal"}:
                     known = ", ".join(f"{column.stem}_{each}" for each in LENGTH_UNITS)
-                    raise InvalidValueError(f"{self.sheet.source}: column {column.title!r} must name its unit: {known}")
+                    raise InvalidValueError(
+                        "column {column!r} must name its unit: {units}", column=column.title, units=known
+                    ).at(self.sheet.source)
                 columns[k] = None
         self.header = replace(self.header, columns=tuple(columns))
 

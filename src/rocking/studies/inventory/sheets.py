@@ -47,7 +47,9 @@ class Sheet:
 def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
     """Return the tables of a workbook; None for a file that is none."""
     if content.startswith(b"\xd0\xcf\x11\xe0"):
-        raise InvalidValueError(f"{source}: an old .xls, or locked by a password; save it as .xlsx, .ods or CSV UTF-8")
+        raise InvalidValueError("an old .xls, or locked by a password", hint="save it as .xlsx, .ods or CSV UTF-8").at(
+            source
+        )
     if not content.startswith(b"PK\x03\x04"):
         return None
     try:
@@ -55,19 +57,24 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
             warnings.simplefilter("ignore")  # of what openpyxl leaves aside: styles, lists to choose from
             names, size = archive.namelist(), sum(each.file_size for each in archive.infolist())
             if size > MOST_BYTES:
-                raise InvalidValueError(f"{source}: unpacked it is larger than {MOST_BYTES >> 20} MiB; save it as CSV")
+                raise InvalidValueError(
+                    "unpacked it is larger than {limit} MiB", limit=MOST_BYTES >> 20, hint="save it as CSV"
+                ).at(source)
             if "xl/workbook.xml" in names:
                 found = list(_of_excel(archive, content))
             elif "content.xml" in names:
                 found = _of_open_document(archive.read("content.xml"))
             else:
-                raise InvalidValueError(f"{source}: neither .xlsx nor .ods; save it as one of them, or as CSV UTF-8")
+                raise InvalidValueError("neither .xlsx nor .ods", hint="save it as one of them, or as CSV UTF-8").at(
+                    source
+                )
     except (RockingError, ModuleNotFoundError):
         raise
     except Exception as error:  # damaged files raise whatever their readers trip over
         raise InvalidValueError(
-            f"{source}: a damaged workbook ({type(error).__name__}); open it in a spreadsheet and save it again"
-        ) from error
+            "a damaged workbook ({error})", error=type(error).__name__,
+            hint="open it in a spreadsheet and save it again",
+        ).at(source) from error  # fmt: skip
     several = len(found) > 1
     return (
         Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source), spans=_spans(merged))
@@ -238,7 +245,7 @@ def _spans(merged: _Merged) -> dict[tuple[int, int], int]:
 
 def _check_number(rows: list[Row], source: str) -> None:
     if len(rows) > MOST_ROWS:
-        raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
+        raise InvalidValueError("a list must have at most {limit} rows", limit=MOST_ROWS).at(source)
 
 
 ENCODINGS = ("cp1252", "cp1253", "cp1254", "gb18030", "mac_roman")
@@ -260,9 +267,9 @@ def texts_in(content: bytes, source: str, encoding: str | None) -> Iterator[tupl
                 return
     if not found:
         raise InvalidValueError(
-            f"{source} is not text in {told or 'any encoding of spreadsheets'}: "
-            'save it as "CSV UTF-8", or name its encoding, such as cp1252'
-        )
+            '{file} is not text in {encodings}: save it as "CSV UTF-8", or name its encoding, such as cp1252',
+            file=source, encodings=told or "any encoding of spreadsheets",
+        )  # fmt: skip
 
 
 _DELIMITERS = (",", ";", "\t")
@@ -294,7 +301,9 @@ def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]
                 rows.append((line, cells))
             line = reader.line_num + 1
             if len(rows) > MOST_ROWS:
-                raise InvalidValueError(f"{source}: a list must have at most {MOST_ROWS} rows")
+                raise InvalidValueError("a list must have at most {limit} rows", limit=MOST_ROWS).at(source)
     except csv.Error as error:
-        raise InvalidValueError(f"{source}: not a table, line {line}: {error}; a quotation mark left open?") from error
+        raise InvalidValueError(
+            "not a table, line {line}: {reason}", line=line, reason=str(error), hint="a quotation mark left open?"
+        ).at(source) from error
     return rows

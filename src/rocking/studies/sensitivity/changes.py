@@ -55,7 +55,9 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = Fals
     known = sign != UNKNOWN
     compared = int(known.sum())
     if not compared:
-        raise InvalidValueError(f"no verdicts to compare: all {sign.size} histories failed in one of the two results")
+        raise InvalidValueError(
+            "no verdicts to compare: all {count} histories failed in one of the two results", count=sign.size
+        )
     flipped = np.abs(sign[known])
     count, only_second = int(flipped.sum()), int((sign == 1).sum())
     groups = None if motions is None else np.broadcast_to(np.asarray(motions), sign.shape)[known]
@@ -68,7 +70,9 @@ def flip_map(first: Any, second: Any) -> np.ndarray:
     """Return 0 the same verdict, 1 overturned in the second only, -1 in the first only, 2 no verdict in one of them."""
     a, b = _codes(first), _codes(second)
     if a.shape != b.shape:
-        raise InvalidValueError(f"results to compare must be of one shape, got {a.shape} and {b.shape}")
+        raise InvalidValueError(
+            "results to compare must be of one shape, got {first} and {second}", first=a.shape, second=b.shape
+        )
     over, failed = Outcome.OVERTURNED.code, Outcome.FAILED.code
     sign = (b == over).astype(np.int8) - (a == over).astype(np.int8)
     return np.where((a == failed) | (b == failed), np.int8(UNKNOWN), sign)
@@ -82,7 +86,7 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
         return flips.rename("verdict").assign_attrs(units="1", long_name=flag)
     names = sorted(str(k) for k, v in first.data_vars.items() if v.dtype.kind in "if" and k in second)
     if name not in names:
-        raise InvalidValueError(f"name must be verdict or one of {', '.join(names)}, got {name!r}")
+        raise InvalidValueError(parameter="name", allowed=f"verdict or one of {', '.join(names)}", value=name)
     stood = [~result["outcome"].isin([Outcome.OVERTURNED.code, Outcome.FAILED.code]) for result in (first, second)]
     before, after = (result[name].astype(np.float64) for result in (first, second))
     words = name
@@ -97,7 +101,9 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
 def _codes(values: Any) -> np.ndarray:
     codes = np.asarray(values)
     if codes.dtype.kind not in "iu" or (codes.size and not 0 <= codes.min() <= codes.max() < len(Outcome)):
-        raise InvalidValueError(f"verdicts must be codes of outcomes in [0, {len(Outcome) - 1}], got {values!r:.60}")
+        raise InvalidValueError(
+            parameter="verdicts", allowed=f"codes of outcomes in [0, {len(Outcome) - 1}]", value=values
+        )
     return codes
 
 
@@ -183,11 +189,14 @@ def curve_change(
     # motions, so that what the motions have in common cancels.
     at = checks.positive_array("levels", levels)
     if at.ndim != 1 or at.size < 2:
-        raise InvalidValueError(f"levels must be two or more numbers, got {levels!r:.60}")
+        raise InvalidValueError(parameter="levels", allowed="two or more numbers", value=levels)
     checks.increasing("levels", at)
     hits = [_indicators(name, values, at.size) for name, values in (("first", first), ("second", second))]
     if hits[0].shape != hits[1].shape:
-        raise InvalidValueError(f"both results must be of the same motions, got {hits[0].shape} and {hits[1].shape}")
+        raise InvalidValueError(
+            "both results must be of the same motions, got {first} and {second}", first=hits[0].shape,
+            second=hits[1].shape,
+        )  # fmt: skip
     values = [checks.positive("median or dispersion", value) for curve in curves for value in curve]
     log_median, dispersion = np.log(values[::2]), np.array(values[1::2])
     drawn = _drawn(at, hits, int(checks.within("repetitions", repetitions, 0, 1_000_000)), seed)
@@ -245,7 +254,10 @@ def _drawn(levels: FloatArray, hits: list[FloatArray], repetitions: int, seed: i
 def _indicators(name: str, values: Any, levels: int) -> FloatArray:
     indicators = np.asarray(values, dtype=np.float64)
     if indicators.ndim != 2 or indicators.shape[1] != levels or not len(indicators):
-        raise InvalidValueError(f"{name} must be of shape (motions, {levels} levels), got {indicators.shape}")
+        raise InvalidValueError(
+            "{parameter} must be of shape (motions, {levels} levels), got {shape}", parameter=name, levels=levels,
+            shape=indicators.shape,
+        )  # fmt: skip
     if not np.isin(indicators[np.isfinite(indicators)], (0.0, 1.0)).all():
-        raise InvalidValueError(f"{name} must be 0 or 1 (NaN for a history that failed)")
+        raise InvalidValueError("{parameter} must be 0 or 1 (NaN for a history that failed)", parameter=name)
     return indicators

@@ -65,9 +65,10 @@ class Sensitivity:
         odd = next((label for label, shape in shapes.items() if shape != shapes[self.baseline]), None)
         if odd is not None:
             raise InvalidValueError(
-                f"results must be of one shape, got {shapes[odd]} with {odd}, {shapes[self.baseline]} "
-                f"with {self.baseline}; are they of the same study?"
-            )
+                "{parameter} must be of one shape, got {shape} with {choice}, {expected} with {baseline}",
+                parameter="results", shape=shapes[odd], choice=odd, expected=shapes[self.baseline],
+                baseline=self.baseline, hint="are they of the same study?",
+            )  # fmt: skip
 
     def __repr__(self) -> str:
         """Which choices are compared; `verdict` says how they differ."""
@@ -179,7 +180,10 @@ class Sensitivity:
         pair = [self.results[checks.one_of("choice", each, self.labels)] for each in both]
         if state not in self.states:
             known = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
-            raise InvalidValueError(f"state must be one of the study's, {known}; got {state!r:.60}")
+            raise InvalidValueError(
+                "{parameter} must be one of the study's, {names}; got {value}", parameter="state", names=known,
+                value=state,
+            )  # fmt: skip
         first, second = (_curve(result.fits[state]) for result in pair)
         reached = [one.responses.exceed(next(s for s in one.states if s.name == state)) for one in pair]
         return curve_change((first, second), pair[0].levels, *reached, repetitions=self.repetitions, seed=self.seed)
@@ -271,8 +275,9 @@ def _dataset(label: str, result: Any) -> "xr.Dataset":
     data = getattr(result, "dataset", result)
     if not hasattr(data, "data_vars") or "outcome" not in data:
         raise InvalidValueError(
-            f"the study must return a dataset with an outcome, or an analysis with one, got {data!r:.60} with {label}"
-        )
+            "the study must return a dataset with an outcome, or an analysis with one, got {value} with {choice}",
+            parameter="study", value=data, choice=label,
+        )  # fmt: skip
     if data.sizes.get("restitution", 1) > 1:
         raise InvalidValueError("the study varies the restitution itself: give one of its axes to the study instead")
     squeezed: xr.Dataset = data.squeeze("restitution", drop=True) if "restitution" in data.dims else data
@@ -286,7 +291,7 @@ def _known(value: float) -> float | None:
 def _curve(fit: Any) -> tuple[float, float]:
     """Return median and dispersion, or refuse with the fit's own words why there is no curve."""
     if fit.median is None or fit.dispersion is None:
-        raise InvalidValueError(f"no curve to compare: {fit.verdict}".rstrip("."))
+        raise InvalidValueError("no curve to compare: {reason}", reason=fit.verdict.rstrip("."))
     return float(fit.median), float(fit.dispersion)
 
 
@@ -343,7 +348,7 @@ def sensitivity(
     [[9, 9], [9, 9]]
     """
     if not callable(study):
-        raise InvalidValueError(f"study must be a function that takes restitution=, got {study!r:.60}")
+        raise InvalidValueError(parameter="study", allowed="a function that takes restitution=", value=study)
     choices = named_restitutions(restitutions)
     first = next(iter(choices)) if baseline is None else checks.one_of("baseline", baseline, choices)
     results = {label: study(restitution=choice) for label, choice in choices.items()}

@@ -28,13 +28,15 @@ def named_restitutions(restitutions: Any) -> dict[str, Any]:
     elif isinstance(restitutions, Sequence) and not isinstance(restitutions, str):
         pairs = [(label_of(choice), choice) for choice in restitutions]
     else:
-        raise InvalidValueError(f"restitutions must be a list or a dict of choices, got {restitutions!r:.60}")
+        raise InvalidValueError(parameter="restitutions", allowed="a list or a dict of choices", value=restitutions)
     if len(pairs) < 2:
-        raise InvalidValueError(f"restitutions must be at least two, to be compared with one another, got {len(pairs)}")
+        raise InvalidValueError(
+            parameter="restitutions", allowed="at least two, to be compared with one another", value=len(pairs)
+        )
     names = [name for name, _ in pairs]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise InvalidValueError(f"two restitutions have the name {twice!r}: give them as {{name: choice}}")
+        raise InvalidValueError("two restitutions have the name {name!r}: give them as {{name: choice}}", name=twice)
     return dict(pairs)
 
 
@@ -50,7 +52,9 @@ def label_of(choice: Any) -> str:
         return type(choice).__name__ + _times(getattr(choice, "times", 1.0))
     if isinstance(choice, Mapping):
         if set(choice) != set(FEET):
-            raise InvalidValueError(f'restitution by side is {{"left": r, "right": r}}, got {choice!r:.60}')
+            raise InvalidValueError(
+                'restitution by side is {{"left": r, "right": r}}, got {value}', parameter="restitution", value=choice
+            )
         return ", ".join(f"{foot} {checks.number(f'restitution[{foot!r}]', choice[foot]):.6g}" for foot in FEET)
     return f"{checks.number('restitution', choice):.6g}"
 
@@ -161,7 +165,10 @@ class SampledHistories(Histories):
         """Return histories with the draws, which multiply the coefficients of the base."""
         given: object = base
         if not isinstance(given, Histories) or not isinstance(draw, SampledRestitution):
-            raise InvalidValueError(f"give Histories and a SampledRestitution, got {base!r:.40} and {draw!r:.40}")
+            raise InvalidValueError(
+                "give Histories and a SampledRestitution, got {histories!r:.40} and {sample!r:.40}", histories=base,
+                sample=draw,
+            )  # fmt: skip
         if isinstance(given, SampledHistories):
             raise InvalidValueError("these histories draw their coefficients already; give the ones they are made from")
         law = ConstantRestitution() if isinstance(base.law, SampledRestitution) else base.law
@@ -195,7 +202,10 @@ def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
     """Return numbers in [0, 1) by seed, history and impact: `impact_laws.uniform` of many, to the last bit."""
     keys = np.atleast_1d(np.asarray(numbers))
     if keys.dtype.kind not in "iu":
-        raise InvalidValueError(f"numbers must be whole numbers of histories, got {keys.dtype} {numbers!r:.40}")
+        raise InvalidValueError(
+            "{parameter} must be whole numbers of histories, got {dtype} {numbers!r:.40}", parameter="numbers",
+            dtype=keys.dtype, numbers=numbers,
+        )  # fmt: skip
     place = np.uint64(int(checks.within("impact", impact, 0, 2**53)))
     words = _mixed(_mixed(_mixed(np.full(1, seed, np.uint64)) + keys.astype(np.uint64)) + place)  # Eq. 43
     return np.asarray((words >> np.uint64(11)).astype(np.float64) * 2.0**-53)
