@@ -119,9 +119,11 @@ def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
     if falls.size:
         before, after = values[falls[0] : falls[0] + 2].tolist()
         descending = values.size > 1 and bool((np.diff(values) < 0.0).all())
-        what = "these decrease: reverse them" if descending else f"{after:g} follows {before:g} at index {falls[0] + 1}"
+        hint = "these decrease: reverse them" if descending else f"{after:g} follows {before:g} at index {falls[0] + 1}"
         shown = "" if unit in {"-", "1", ""} else f" [{unit}]"
-        raise InvalidValueError(f"{{parameter}} must increase{shown} from value to value", parameter=name, hint=what)
+        raise InvalidValueError(
+            "{parameter} must increase{unit} from value to value", parameter=name, hint=hint, unit=shown
+        )
 
 
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:

@@ -91,7 +91,10 @@ def motion(name: str, seed: int | None = None) -> Any:
     example = _of(name, "motion")
     if example.seed is None:
         if seed is not None:
-            raise InvalidValueError(f"{example.name} is the same every time and takes no seed, got {seed!r:.60}")
+            raise InvalidValueError(
+                "{example} is the same every time and takes no seed, got {value}", parameter="seed", value=seed,
+                example=example.name,
+            )  # fmt: skip
         return _described(example, _made(example), None)
     seed = example.seed if seed is None else checks.whole("seed", seed, high=2**60)
     made = _made(example, seed)
@@ -126,8 +129,9 @@ def path(name: str) -> Path:
     example = _of(name)
     if not example.files:
         raise InvalidValueError(
-            f"{example.name} is computed and has no file: motion({example.name!r}) makes it, write(...) its record"
-        )
+            "{example} is computed and has no file: motion({example!r}) makes it, write(...) its record",
+            example=example.name,
+        )  # fmt: skip
     return table.HERE / example.files[0]
 
 

@@ -318,14 +318,18 @@ def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Pa
     """Write files into a folder and return them; a file that holds something else is refused, before any is written."""
     paths = {folder / name: content for name, content in files.items()}
     if not folder.is_dir():
-        raise InvalidValueError(f"no folder {str(folder)!r} to write {', '.join(files)} into")
+        raise InvalidValueError(
+            "no folder {folder!r} to write {files} into", folder=str(folder), files=", ".join(files)
+        )
     if folders := [str(path) for path in paths if path.is_dir()]:
-        raise InvalidValueError(f"{', '.join(folders)}: a folder of that name is there already; take another folder")
+        raise InvalidValueError(
+            "{folders}: a folder of that name is there already", folders=", ".join(folders), hint="take another folder"
+        )
     if not force and (odd := [path for path, content in paths.items() if holds_another(path, content)]):
         raise InvalidValueError(
-            f"{', '.join(map(str, odd))}: there already, with something else in it; take another folder, or write over "
-            "it with force"
-        )
+            "{files}: there already, with something else in it", files=", ".join(map(str, odd)),
+            hint="take another folder, or write over it with force",
+        )  # fmt: skip
     for path, content in paths.items():
         path.write_bytes(content)
     return list(paths)

@@ -207,9 +207,10 @@ def animate_gif(
     count = int(np.ceil(end / (lasts * speed))) + 1
     if count > MOST_FRAMES:
         raise InvalidValueError(
-            f"a GIF has at most {MOST_FRAMES} frames, got {count}: {end:.3g} s of response at fps = {fps:g}; "
-            f"speed = {slowest_speed(response, fps):.3g} would do, or a web page"
-        )
+            "a GIF has at most {limit} frames, got {count}: {end:.3g} s of response at fps = {fps:g}",
+            limit=MOST_FRAMES, count=count, end=end, fps=fps,
+            hint=f"speed = {slowest_speed(response, fps):.3g} would do, or a web page",
+        )  # fmt: skip
     with writing(target):
         _film(response, target, lasts, lasts * speed, progress)
     return target
@@ -234,7 +235,7 @@ def target_of(path: str | Path, suffix: str) -> Path:
     """Return where an animation is written, if its name ends as it must."""
     target = Path(path)
     if target.suffix.lower() != suffix:
-        raise RockingError(f"this animation is a {suffix} file, got {target.name!r}")
+        raise RockingError("this animation is a {suffix} file, got {file!r}", suffix=suffix, file=target.name)
     return target
 
 

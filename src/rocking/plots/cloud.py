@@ -59,7 +59,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     """
     checks.of_kind("analysis", analysis, CloudAnalysis, "of a cloud")
     if not (fit := analysis.fit_of("overturning")).exists:
-        raise InvalidValueError(f"there is no curve of overturning to draw: {fit.verdict}")
+        raise InvalidValueError("there is no curve of overturning to draw: {reason}", reason=fit.verdict)
     figure, (upper, lower) = new_figure(SINGLE, 4.0, rows=2, sharex=True, height_ratios=[1.5, 1.0])
     levels = analysis.motion_levels
     acted = (analysis.responses.overturned == 1.0) | clearly_lifted(analysis.responses, analysis.least)

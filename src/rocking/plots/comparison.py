@@ -78,7 +78,9 @@ def animate_comparison(
     """
     target = target_of(path, ".gif")
     if not 2 <= len(responses) <= _MOST_PANELS:
-        raise InvalidValueError(f"responses must be 2 to {_MOST_PANELS} to stand side by side, got {len(responses)}")
+        raise InvalidValueError(
+            parameter="responses", allowed=f"2 to {_MOST_PANELS} to stand side by side", value=len(responses)
+        )
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     step = lasts * checks.within("speed", speed, 0.01, 100.0)
     scenes = [scene_of(response, step) for response in responses.values()]
@@ -87,9 +89,10 @@ def animate_comparison(
     count = int(np.ceil(end / step)) + 1
     if count > MOST_FRAMES:
         raise InvalidValueError(
-            f"a GIF has at most {MOST_FRAMES} frames, got {count}: {end:.3g} s of response at fps = {fps:g}; "
-            f"until, or a higher speed than {speed:g}, makes it shorter"
-        )
+            "a GIF has at most {limit} frames, got {count}: {end:.3g} s of response at fps = {fps:g}",
+            limit=MOST_FRAMES, count=count, end=end, fps=fps,
+            hint=f"until, or a higher speed than {speed:g}, makes it shorter",
+        )  # fmt: skip
     with writing(target):
         _save(_frames(responses, scenes, title, count, end), target, lasts)
     return target

@@ -58,9 +58,10 @@ def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "
     counts = tuple(results.sizes.get(name, 0) for name in _DIMENSIONS)
     if counts[0] != 1 or counts[4] != 1 or counts[3] != 2 or angles.shape != (counts[1],) or counts[1] < 2:
         raise InvalidValueError(
-            f"results must have one body and start, two restitutions and a motion for each of {angles.size} "
-            f"azimuths, got ({', '.join(_DIMENSIONS)}) = {counts}"
-        )
+            "{parameter} must have one body and start, two restitutions and a motion for each of {size} azimuths, got "
+            "({dimensions}) = {counts}", parameter="results", size=angles.size, dimensions=", ".join(_DIMENSIONS),
+            counts=counts,
+        )  # fmt: skip
     figure, panels = new_figure(DOUBLE, 3.1)
     panels[0].remove()
     grid = figure.add_gridspec(1, 3, width_ratios=[1.0, 1.0, 1.25])

@@ -86,7 +86,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityM
     """
     level = checks.within("level", level, 0.5, 0.999)
     if not all(hasattr(analysis, name) for name in ("fits", "counts", "trials", "levels", "subject")):
-        raise InvalidValueError(f"analysis must be of stripes, cloud or incremental, got {analysis!r:.60}")
+        raise InvalidValueError(parameter="analysis", allowed="of stripes, cloud or incremental", value=analysis)
     figure, (upper, lower) = new_figure(SINGLE, 4.4, rows=2, sharex=True, height_ratios=[2.0, 1.0])
     levels = np.asarray(analysis.levels)
     fine = _fine(levels)

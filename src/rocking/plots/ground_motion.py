@@ -293,13 +293,16 @@ def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> 
     'period [s]'
     """
     if not 1 <= len(sets) <= len(MARKS):
-        raise InvalidValueError(f"sets must be 1 to {len(MARKS)}, got {len(sets)}")
+        raise InvalidValueError(parameter="sets", allowed=f"1 to {len(MARKS)}", value=len(sets))
     places = checks.positive_array("periods", periods, "s")
     figure, (left, right) = new_figure(DOUBLE, 2.9, columns=2)
     for number, (name, motions) in enumerate(sets.items()):
         records = [motions[k] for k in range(len(motions))]
         if len(records) < 2 or not all(isinstance(each, GroundMotion) for each in records):
-            raise InvalidValueError(f"set {name!r:.60} must have two ground motions or more, got {records!r:.60}")
+            raise InvalidValueError(
+                "set {name!r:.60} must have two ground motions or more, got {value}", parameter="sets", name=name,
+                value=records,
+            )  # fmt: skip
         pga = [peak_ground_acceleration(each) for each in records]
         pgv = [peak_ground_velocity(each) for each in records]
         mark: dict[str, Any] = {"marker": MARKS[number], "markersize": 3.0, "alpha": 0.7, "markeredgewidth": 0}

@@ -86,7 +86,10 @@ def overturning_map_picture(
     names = _axes_of(found)
     odd = next((line.axes for line in boundary if line.axes != names), None)
     if odd is not None:
-        raise InvalidValueError(f"boundary must be along {' and '.join(names)}, got {' and '.join(odd)}")
+        raise InvalidValueError(
+            "{parameter} must be along {axes}, got {others}", parameter="boundary", axes=" and ".join(names),
+            others=" and ".join(odd),
+        )  # fmt: skip
     figure, (axes,) = new_figure(SINGLE, _HEIGHT)
     kinds = classes_of(found)
     draw_map(axes, found, kinds)
@@ -100,10 +103,10 @@ def overturning_map_picture(
 
 def _axes_of(found: Any) -> tuple[str, str]:
     if not hasattr(found, "data_vars") or "mode" not in found or found["mode"].ndim != 2:
-        raise InvalidValueError(f"found must be a map, a dataset with a mode over two axes, got {found!r:.60}")
+        raise InvalidValueError(parameter="found", allowed="a map, a dataset with a mode over two axes", value=found)
     y, x = (str(name) for name in found["mode"].dims)
     if min(found.sizes[x], found.sizes[y]) < 2:
-        raise InvalidValueError(f"a map must have two values or more along {x} and {y} to be drawn")
+        raise InvalidValueError("a map must have two values or more along {x} and {y} to be drawn", x=x, y=y)
     return x, y
 
 
@@ -238,7 +241,7 @@ def refined_map_picture(
     if not boundary:
         raise InvalidValueError("boundary must have at least one polyline; nothing changes over this map")
     if window is not None and not all(low < high for low, high in window):
-        raise InvalidValueError(f"window must be two increasing pairs, got {window!r:.80}")
+        raise InvalidValueError(parameter="window", allowed="two increasing pairs", value=window)
     figure, axes = new_figure(SINGLE if window is None else DOUBLE, 3.2, columns=1 if window is None else 2)
     whole = [(float(v[points.base].min()), float(v[points.base].max())) for v in (points.x, points.y)]
     _panel(axes[0], points, boundary, (whole[0], whole[1]), dots=False)

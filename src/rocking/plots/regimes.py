@@ -72,7 +72,9 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     cells = checks.whole("cells", cells, 2, 400)
     slender = body.side("left").half_width / body.side("left").centre_height
     if not slender < largest:
-        raise InvalidValueError(f"largest must be above b / h = {slender:g}, where the body is lifted, got {largest:g}")
+        raise InvalidValueError(
+            parameter="largest", allowed=f"above b / h = {slender:g}, where the body is lifted", value=largest
+        )
     figure, (axes,) = new_figure(SINGLE, 0.95 * SINGLE)
     middles = (np.arange(cells) + 0.5) * largest / cells
     _cells(axes, regime_map(body, middles, middles), largest)

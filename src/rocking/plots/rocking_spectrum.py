@@ -51,7 +51,7 @@ def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
     '$2\\pi\\,/\\,p$ [s]'
     """
     if not hasattr(found, "data_vars") or set(found.sizes) < {"motion", "slenderness_angle", "period"}:
-        raise InvalidValueError(f"found must be of rocking_spectrum, got {found!r:.60}")
+        raise InvalidValueError(parameter="found", allowed="of rocking_spectrum", value=found)
     figure, (upper, lower) = new_figure(SINGLE, 3.4, rows=2, sharex=True, height_ratios=[3.2, 1.0])
     for place, alpha in enumerate(found["slenderness_angle"].values.tolist()):
         _curve(upper, found, place, float(alpha))

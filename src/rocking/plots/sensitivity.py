@@ -66,7 +66,9 @@ def sensitivity_picture(found: Sensitivity, *, unit: tuple[str, float] | None = 
     """
     checks.of_kind("found", found, Sensitivity, "a Sensitivity")
     if not 2 <= len(found.labels) <= _MOST:
-        raise InvalidValueError(f"a picture holds 2 to {_MOST} choices, got {len(found.labels)}")
+        raise InvalidValueError(
+            "a picture holds 2 to {limit} choices, got {count}", limit=_MOST, count=len(found.labels)
+        )
     if found.states:
         return _of_fragility(found, unit)
     base = found.datasets[found.baseline]
@@ -74,7 +76,7 @@ def sensitivity_picture(found: Sensitivity, *, unit: tuple[str, float] | None = 
         return _of_maps(found)
     if {"slenderness_angle", "period"} <= set(base.sizes):
         return _of_spectra(found)
-    raise InvalidValueError(f"there is a picture of maps, spectra and fragility, not of {dict(base.sizes)}")
+    raise InvalidValueError("there is a picture of maps, spectra and fragility, not of {sizes}", sizes=dict(base.sizes))
 
 
 def _of_maps(found: Sensitivity) -> "Figure":
@@ -231,11 +233,11 @@ def difference_map_picture(found: Sensitivity, choice: str | None = None) -> "Fi
     """
     known: object = found
     if not isinstance(known, Sensitivity) or found.datasets[found.baseline].get("mode", np.empty(0)).ndim != 2:
-        raise InvalidValueError(f"found must be a Sensitivity of maps, got {found!r:.60}")
+        raise InvalidValueError(parameter="found", allowed="a Sensitivity of maps", value=found)
     others = found.labels[1:]
     choice = others[0] if choice is None and others else choice
     if choice not in others:
-        raise InvalidValueError(f"choice must be one of {', '.join(others)}, got {choice!r:.60}")
+        raise InvalidValueError(parameter="choice", allowed=f"one of {', '.join(others)}", value=choice)
     figure, axes = new_figure(DOUBLE, 3.0, columns=3, sharex=True, sharey=True)
     kinds = {label: classes_of(found.datasets[label]) for label in (found.baseline, choice)}
     for letter, panel, (label, each) in zip("ab", axes, kinds.items(), strict=False):

@@ -120,7 +120,7 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
     for height in np.atleast_1d(heights).tolist():
         field, extent = _level(impact, height, 4 * divisions)
         if np.isnan(field).all():
-            raise InvalidValueError(f"the slice at a height of {height:g} m misses the body")
+            raise InvalidValueError("the slice at a height of {height:g} m misses the body", height=height)
         fields.append((height, field, extent))
     figure, axes = new_figure(DOUBLE, 2.6, columns=len(fields))
     top = max(float(np.nanmax(field)) for _, field, _ in fields)

@@ -245,7 +245,7 @@ def write(figure: "Figure", path: str | Path) -> Path:
         ".pdf": {"CreationDate": None},
     }
     if path.suffix not in metadata:
-        raise RockingError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
+        raise RockingError("a picture is .png, .svg or .pdf, got {file!r}", file=path.name)
     with writing(path), journal_style():
         figure.savefig(path, metadata=metadata[path.suffix])
     return path

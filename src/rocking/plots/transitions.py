@@ -113,7 +113,10 @@ def transitions_picture(
     'peak ground acceleration [g]'
     """
     if not isinstance(found, Transitions):
-        raise InvalidValueError(f"found must be of minimum_overturning_acceleration, got {type(found).__name__}")
+        raise InvalidValueError(
+            "{parameter} must be of minimum_overturning_acceleration, got {kind}", parameter="found",
+            kind=type(found).__name__,
+        )  # fmt: skip
     count = int(checks.within("points", points, 2, _MOST_POINTS))
     threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
     question = Question(body, motion, restitution, study_settings(body, settings, gravity), threads, engine)
@@ -252,12 +255,15 @@ def transitions_of_many_picture(
     lanes = [*found.values()]
     if not 1 <= len(lanes) <= _MOST_PANELS or not 1 <= len(names) <= _MOST_LANES:
         raise InvalidValueError(
-            f"a picture holds 1 to {_MOST_PANELS} restitutions and 1 to {_MOST_LANES} lanes, got {len(lanes)} and "
-            f"{len(names)}"
-        )
+            "a picture holds 1 to {panels} restitutions and 1 to {limit} lanes, got {lanes} and {restitutions}",
+            panels=_MOST_PANELS, limit=_MOST_LANES, lanes=len(lanes), restitutions=len(names),
+        )  # fmt: skip
     for each in lanes:
         if len(each) != len(names) or not all(isinstance(one, Transitions) for one in each):
-            raise InvalidValueError(f"found must have {len(names)} Transitions for each restitution, got {each!r:.60}")
+            raise InvalidValueError(
+                "{parameter} must have {count} Transitions for each restitution, got {value}", parameter="found",
+                count=len(names), value=each,
+            )  # fmt: skip
     order = np.argsort([one.acceleration[0] if len(one) else np.inf for one in lanes[0]], kind="stable").tolist()
     width = SINGLE if len(lanes) == 1 else DOUBLE
     figure, axes = new_figure(width, _MARGIN + _LANE * len(names), columns=len(lanes), sharex=True, sharey=True)

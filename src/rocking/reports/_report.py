@@ -76,15 +76,16 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     made = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
     if made is None:
         kinds = ", ".join(kind.__name__ for kind in _CONTENTS)
-        raise InvalidValueError(f"found must be one of {kinds}, got {found!r:.60}")
+        raise InvalidValueError(parameter="found", allowed=f"one of {kinds}", value=found)
     target = target_of(path)
     known = [each for each in signature(made).parameters.values() if each.kind is Parameter.KEYWORD_ONLY]
     names = [each.name for each in known]
     if odd := next((each for each in options if each not in names), None):
         of = type(found).__name__
         raise InvalidValueError(
-            f"a report of {of} takes no {odd}; it takes {', '.join(names)}", hint=checks.nearest(odd, names)
-        )
+            "a report of {subject} takes no {option}; it takes {names}", subject=of, option=odd, names=", ".join(names),
+            hint=checks.nearest(odd, names),
+        )  # fmt: skip
     day = f"{datetime.now(UTC):%d %B %Y}" if date is None else date
     document, pictures = made(found, name=name, date=day, **options)
     write_report(document, pictures, target)

@@ -74,7 +74,7 @@ class ImpactAnswer:
     ) -> "ImpactAnswer":
         """Compute the tables under a gravity [m/s2]."""
         if onto not in (*FEET, "both"):
-            raise InvalidValueError(f'onto must be "left", "right" or "both", got {onto!r}')
+            raise InvalidValueError(parameter="onto", allowed='"left", "right" or "both"', value=onto)
         gravity = checks.positive("gravity", gravity, "m/s2")
         tables = {foot: coefficient_table(body, models, onto=foot) for foot in FEET if onto in (foot, "both")}
         if len(tables) == 2 and _same(tables["left"], tables["right"]):

@@ -267,7 +267,7 @@ def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], 
     from rocking.plots.style import write
 
     if path.suffix.lower() not in {".pdf", ".html"}:
-        raise InvalidValueError(f"a report is .pdf or .html, got {path.name!r}")
+        raise InvalidValueError("a report is .pdf or .html, got {file!r}", file=path.name)
     with TemporaryDirectory(prefix="rocking-report-") as folder:
         drawn = {stem: write(draw(), Path(folder) / f"{stem}.svg") for stem, draw in pictures.items()}
         if path.suffix.lower() == ".html":

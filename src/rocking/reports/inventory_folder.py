@@ -95,7 +95,9 @@ def check_form(path: Path) -> None:
     """Refuse the name of a file in whose form no inventory can be written."""
     if _form(path) not in _WRITERS:
         forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
-        raise InvalidValueError(f"an inventory can be written as {forms}, got {path.suffix!r:.40}")
+        raise InvalidValueError(
+            "an inventory can be written as {endings}, got {ending!r:.40}", endings=forms, ending=path.suffix
+        )
 
 
 def _form(path: Path) -> str:

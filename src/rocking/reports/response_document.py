@@ -259,7 +259,7 @@ def _signed(value: float) -> str:
 def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:
     """Return the report of a response: the body, what an impact costs it, the ground, the response, with pictures."""
     if response.outcome is Outcome.FAILED:
-        raise InvalidValueError(f"a report needs a result: {response.summary}")
+        raise InvalidValueError("a report needs a result: {reason}", reason=response.summary)
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
     gravity = response.settings.gravity
     impact = ImpactAnswer.of(response.body, None, onto="both", gravity=gravity, identities=False)

@@ -66,11 +66,15 @@ _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density"
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
     if odd := sorted(set(options) - set(_BESIDE_FILE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60} beside file", hint=suggestion(odd[0], _BESIDE_FILE))
+        raise InvalidValueError(
+            "unknown key {key!r:.60} beside file", key=odd[0], hint=suggestion(odd[0], _BESIDE_FILE)
+        )
     if not isinstance(table["file"], str):
-        raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
+        raise InvalidValueError(parameter="file", allowed="text", value=table["file"])
     if inputs is None:
-        raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
+        raise InvalidValueError(
+            "names the file {value}, but a body cannot name files here", parameter="file", value=table["file"]
+        )
     path = inputs.file(table["file"])
     _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
     length = length_unit(options.get("units") or "m")
@@ -85,9 +89,11 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
 def _from_angle(table: dict[str, Any]) -> Body:
     """Return a block by its slenderness angle [rad] and its semi-diagonal."""
     if odd := sorted(set(table) - set(_OF_ANGLE)):
-        raise InvalidValueError(f"unknown key {odd[0]!r:.60}", hint=suggestion(odd[0], sorted(_OF_ANGLE)))
+        raise InvalidValueError("unknown key {key!r:.60}", key=odd[0], hint=suggestion(odd[0], sorted(_OF_ANGLE)))
     if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
-        raise InvalidValueError(f"{missing[0]} is missing: a block has slenderness_angle, semi_diagonal and units")
+        raise InvalidValueError(
+            "{parameter} is missing: a block has slenderness_angle, semi_diagonal and units", parameter=missing[0]
+        )
     scale = length_unit(table["units"])
     sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
     options: dict[str, Any] = {key: table[key] for key in ("density", "mass", "moment_of_inertia") if key in table}

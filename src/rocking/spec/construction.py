@@ -66,7 +66,7 @@ def restitutions_of(
             pairs.append(_drawn(table.distribution, seed, bodies, inputs))
         labels = [label for label, _ in pairs]
         if twice := next((label for label in labels if labels.count(label) > 1), None):
-            raise InvalidValueError(f"{twice} is given twice")
+            raise InvalidValueError("{names} is given twice", names=twice)
         return dict(pairs)
 
 
@@ -107,7 +107,10 @@ def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[
 
     if len(bodies) != 1:
         many = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
-        raise InvalidValueError(f"distribution.posterior is of one body, and the job has {many}")
+        raise InvalidValueError(
+            "distribution.posterior is of one body, and the job has {count}", parameter="distribution.posterior",
+            count=many,
+        )  # fmt: skip
     distribution = restitution_distribution(bodies[0])
     label = "posterior of the measurements"
     if distribution.extrapolated:
@@ -132,7 +135,10 @@ def motions_of(
         return sets[0]
     count = sum(len(each) for each in sets)
     if count > MOST_IN_MEMORY:
-        raise InvalidValueError(f"motions: a set of several sources may have up to {MOST_IN_MEMORY}, got {count}")
+        raise InvalidValueError(
+            "motions: a set of several sources may have up to {limit}, got {count}", parameter="motions",
+            limit=MOST_IN_MEMORY, count=count,
+        )  # fmt: skip
     if not count:
         raise InvalidValueError("motions: no record of any source has a horizontal component that moves")
     with located("motions"):
@@ -166,7 +172,7 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     names = [name for pattern in table.records or [] for name in inputs.named(pattern)]
     twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
     if twice:
-        raise InvalidValueError(f"records: {twice[0]} is named twice")
+        raise InvalidValueError("records: {name} is named twice", parameter="records", name=twice[0])
     motions: list[Motion] = []
     own = by_path(table.file_options, [inputs.folder / name for name in names])
     for name in names:
@@ -217,9 +223,9 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw:
             raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
-                f"{table.record} is a folder, and one record is wanted; "
-                "assess, codes, fragility, inventory, motions, predict and simulate take sets"
-            )
+                "{folder} is a folder, and one record is wanted", folder=table.record,
+                hint="assess, codes, fragility, inventory, motions, predict and simulate take sets",
+            )  # fmt: skip
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0
     return _family(table, member + 1)[member]

@@ -53,8 +53,9 @@ class JobTable(StrictTable):
         stated = [name for name in names if getattr(self, name) is not None]
         if len(stated) != 1:
             raise InvalidValueError(
-                f"exactly one of {', '.join(names)} is needed, got {' and '.join(stated) or 'none'}"
-            )
+                "exactly one of {names} is needed, got {keys}", names=", ".join(names),
+                keys=" and ".join(stated) or "none",
+            )  # fmt: skip
         return stated[0]
 
 
@@ -72,21 +73,23 @@ class Values(JobTable):
         ends = {"from": self.start, "to": self.stop, "count": self.count}
         stated = [name for name, value in ends.items() if value is not None]
         if self.values is not None and (stated or "spacing" in self.model_fields_set):
-            raise InvalidValueError(f"values stand alone, without {', '.join(stated) or 'spacing'}")
+            raise InvalidValueError(
+                "values stand alone, without {keys}", parameter="values", keys=", ".join(stated) or "spacing"
+            )
         if self.values is None and len(stated) < len(ends):
             raise InvalidValueError(
-                f"give values = [...], or from, to and count; got {', '.join(stated) or 'none of them'}"
+                "give values = [...], or from, to and count; got {keys}", keys=", ".join(stated) or "none of them"
             )
         if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
             raise InvalidValueError(
-                "from and to must be > 0 where the spacing is log, got {start} and {stop}",
-                start=f"{self.start!r}",
-                stop=f"{self.stop!r}",
-            )
+                "from and to must be > 0 where the spacing is log, got {start!r} and {stop!r}", start=self.start,
+                stop=self.stop,
+            )  # fmt: skip
         if self.count == 1 and self.start != self.stop:
             raise InvalidValueError(
-                f"count must be >= 2 where from and to differ, got 1 from {self.start!r} to {self.stop!r}"
-            )
+                "{parameter} must be >= 2 where from and to differ, got 1 from {start!r} to {stop!r}",
+                parameter="count", start=self.start, stop=self.stop,
+            )  # fmt: skip
         return self
 
     @property

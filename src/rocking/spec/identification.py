@@ -100,7 +100,7 @@ class IdentificationProblem:
         try:
             there = sorted(self.path.iterdir())
         except OSError as error:
-            raise InvalidValueError(f"{self.path}: {error.strerror or error}") from error
+            raise InvalidValueError(error.strerror or str(error)).at(str(self.path)) from error
         trials, others = [], {}
         for path in there:
             if path.name[:1] == "." or (path.suffix.lower() in FORMATS and path.is_file()):
@@ -113,8 +113,9 @@ class IdentificationProblem:
         if not trials:
             found = f"; passed over: {passed_over_words(others)}" if others else ""
             raise InvalidValueError(
-                f"{self.path}: no trials; their names end in {', '.join(ENDINGS)}, and tables hold numbers{found}"
-            )
+                "no trials; their names end in {endings}, and tables hold numbers{files}", endings=", ".join(ENDINGS),
+                files=found,
+            ).at(str(self.path))  # fmt: skip
         return trials, others
 
     def answer(self, path: Path | None = None) -> Identification:

@@ -40,8 +40,9 @@ class MotionKeys(FileKeys):
         odd = sorted(stated & set().union(*keys.values()) - keys[source])
         if odd:
             raise InvalidValueError(
-                f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(keys[source]))}"
-            )
+                "{source} takes no {keys}; allowed beside it: {names}", source=source, keys=", ".join(odd),
+                names=", ".join(sorted(keys[source])),
+            )  # fmt: skip
         if self.scale == 0.0:
             raise InvalidValueError("scale must not be 0: nothing would move")
         return source
@@ -82,7 +83,7 @@ class _Along(JobTable):
     def _check_components(self) -> None:
         """Refuse what does not go with components."""
         if odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
-            raise InvalidValueError(f"{', '.join(odd)} stands with each of the motions along x, y and z")
+            raise InvalidValueError("{keys} stands with each of the motions along x, y and z", keys=", ".join(odd))
         if self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
             raise InvalidValueError("the vertical motion is given twice: beside the one along x, and along z")
 
@@ -125,7 +126,9 @@ class MotionTable(_Along, MotionKeys):
         if source == "synthetic" and self.count is None:
             raise InvalidValueError("count is missing: how many synthetic motions?")
         if source == "records" and self.target is None and (odd := sorted(chosen & self.model_fields_set)):
-            raise InvalidValueError(f"{odd[0]} of records goes with target, the spectrum that they are chosen for")
+            raise InvalidValueError(
+                "{parameter} of records goes with target, the spectrum that they are chosen for", parameter=odd[0]
+            )
         return self
 
     @property

@@ -49,7 +49,10 @@ class PredictionProblem:
 
         options = {name: value for name, value in self.options.items() if name not in {"bounce", "bounce_law"}}
         if odd := sorted(set(self.options) - set(options)):
-            raise InvalidValueError(f"settings.{odd[0]} does not go with an assessment, whose histories do not bounce")
+            raise InvalidValueError(
+                "{parameter} does not go with an assessment, whose histories do not bounce",
+                parameter=f"settings.{odd[0]}",
+            )  # fmt: skip
         predicted, given = options.pop("restitution", None), table.restitutions
         if given is not None:
             given = [

@@ -137,7 +137,9 @@ class StudyQuestion(JobTable):
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
         """Draw a finished campaign with one restitution; without a name, with the first or with all."""
-        raise InvalidValueError(f'a campaign of kind "{self.kind}" has no picture; take its table (.csv, .xlsx, .nc)')
+        raise InvalidValueError(
+            'a campaign of kind "{kind}" has no picture', kind=self.kind, hint="take its table (.csv, .xlsx, .nc)"
+        )
 
 
 class BodyQuestion(StudyQuestion):
@@ -152,7 +154,10 @@ class BodyQuestion(StudyQuestion):
         if self.body is None:
             raise InvalidValueError("[body] is missing")
         if len(self.body) > 1 and not self.several_bodies:
-            raise InvalidValueError(f'[[body]] can be given once only with kind = "{self.kind}", got {len(self.body)}')
+            raise InvalidValueError(
+                '[[body]] can be given once only with kind = "{kind}", got {count}', kind=self.kind,
+                count=len(self.body),
+            )  # fmt: skip
         return self
 
     @property

@@ -41,8 +41,10 @@ class InputFiles:
                     digest.update(piece)
                     size += len(piece)
         except (OSError, ValueError) as error:
-            why = getattr(error, "strerror", None) or error
-            raise InvalidValueError(f"{name}: {why}; files are relative to the job file, here {self.folder}") from error
+            raise InvalidValueError(
+                "{name}: {fault}; files are relative to the job file, here {folder}", name=name,
+                fault=str(getattr(error, "strerror", None) or error), folder=self.folder,
+            ) from error  # fmt: skip
         self.files[name] = {"path": name, "sha256": digest.hexdigest(), "bytes": size}
         return path
 
@@ -56,9 +58,11 @@ class InputFiles:
         try:
             paths = sorted(path for path in root.glob("/".join(rest)) if path.is_file())
         except (ValueError, OSError, NotImplementedError) as error:
-            raise InvalidValueError(f"{pattern!r:.80} is no pattern of files ({error})") from error
+            raise InvalidValueError(
+                "{pattern!r:.80} is no pattern of files ({reason})", pattern=pattern, reason=str(error)
+            ) from error
         if not paths:
-            raise InvalidValueError(f"{pattern!r:.80} finds no file in {self.folder}")
+            raise InvalidValueError("{pattern!r:.80} finds no file in {folder}", pattern=pattern, folder=self.folder)
         return [(path if Path(pattern).is_absolute() else path.relative_to(self.folder)).as_posix() for path in paths]
 
     def facts(self) -> list[dict[str, Any]]:
@@ -84,33 +88,39 @@ def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> N
     advice = "restore it, or begin a new campaign in another folder"
     for path, item in was.items():
         if path not in here:
-            raise InvalidValueError(f"{path}: was there when the campaign began and is missing now; {advice}")
+            raise InvalidValueError("was there when the campaign began and is missing now", hint=advice).at(str(path))
         if here[path]["sha256"] != item["sha256"]:
             raise InvalidValueError(
-                f"{path}: has changed since the campaign began (SHA-256 {item['sha256'][:12]}... then, "
-                f"{here[path]['sha256'][:12]}... now); {advice}"
-            )
+                "has changed since the campaign began (SHA-256 {expected}... then, {hash}... now)",
+                expected=item["sha256"][:12], hash=here[path]["sha256"][:12], hint=advice,
+            ).at(str(path))  # fmt: skip
     added = sorted(set(here) - set(was))
     if added:
-        raise InvalidValueError(f"{added[0]}: was not there when the campaign began; remove it, or begin a new one")
+        raise InvalidValueError("was not there when the campaign began; remove it, or begin a new one").at(added[0])
 
 
 def read_text(path: Path) -> str:
     """Return the text of a job file."""
     try:
         if path.is_dir():
-            raise InvalidValueError(f"{path} is a folder; give a job file, or take status, resume and export for it")
+            raise InvalidValueError(
+                "{folder} is a folder", folder=path, hint="give a job file, or take status, resume and export for it"
+            )
         data = path.read_bytes()
     except FileNotFoundError as error:
-        raise InvalidValueError(f"{path}: there is no such job file") from error
+        raise InvalidValueError("there is no such job file").at(str(path)) from error
     except (OSError, ValueError) as error:
-        raise InvalidValueError(f"{path}: cannot be opened ({getattr(error, 'strerror', None) or error})") from error
+        raise InvalidValueError(
+            "cannot be opened ({reason})", reason=str(getattr(error, "strerror", None) or error)
+        ).at(str(path)) from error
     if len(data) > LARGEST_JOB:
-        raise InvalidValueError(f"{path}: has {len(data) / 2**20:.1f} MiB; job files may have up to 16 MiB")
+        raise InvalidValueError("has {size:.1f} MiB; job files may have up to 16 MiB", size=len(data) / 2**20).at(
+            str(path)
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InvalidValueError(f"{path}: is not UTF-8 text (byte {error.start})") from error
+        raise InvalidValueError("is not UTF-8 text (byte {byte})", byte=error.start).at(str(path)) from error
 
 
 def tables_of(text: str) -> dict[str, Any]:
@@ -118,9 +128,11 @@ def tables_of(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InvalidValueError(f"is not TOML: {error}") from error
+        raise InvalidValueError("is not TOML: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:
-        raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+        raise InvalidValueError(
+            "is not TOML that can be read: {reason}", reason=str(error).partition(";")[0]
+        ) from error
 
 
 def migrated(tables: dict[str, Any]) -> dict[str, Any]:

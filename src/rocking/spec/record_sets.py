@@ -45,7 +45,7 @@ def record_set(
     records: list[Components] = []
     left_out: list[tuple[str, Reason]] = []
     if odd := sorted({"component", "vertical", "vertical_file"} & table.model_fields_set):
-        raise InvalidValueError(f"a set takes no {', '.join(odd)}: all components of its records are read")
+        raise InvalidValueError("a set takes no {keys}: all components of its records are read", keys=", ".join(odd))
     steps = with_files(table, inputs)
     how: dict[str, Any] = {"format": table.format, "units": table.units, "time_step": table.time_step}
     how |= {"stations": stations_of(steps), "skip": table.skip or 0, "workers": workers, "progress": progress}
@@ -81,7 +81,7 @@ def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
     files: list[str] = []
     for name in names:
         if name in files:
-            raise InvalidValueError(f"records: {name} is named twice")
+            raise InvalidValueError("records: {name} is named twice", parameter="records", name=name)
         alone = is_set(name, inputs)
         if alone or not files:
             groups.append([name] if alone else files)
@@ -135,7 +135,9 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
         plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
     if not motions and alone:
         still = any(why == STILL for _, why in left_out)
-        raise InvalidValueError(f"every record is {STILL}" if still else "no record has a horizontal component")
+        raise InvalidValueError(
+            "every record is {reason}" if still else "no record has a horizontal component", reason=STILL
+        )
     return motions
 
 

@@ -51,9 +51,9 @@ class ResponseProblem:
             )
         if self.start_velocity and len(self.start_velocity) != len(self.axes):
             raise InvalidValueError(
-                f"start_velocity must be {len(self.axes)} numbers, {', '.join(self.axes)} [m/s], got "
-                f"{list(self.start_velocity)!r:.60}"
-            )
+                parameter="start_velocity", allowed=f"{len(self.axes)} numbers, {', '.join(self.axes)} [m/s]",
+                value=list(self.start_velocity),
+            )  # fmt: skip
 
     @property
     def mechanics(self) -> Mechanics:
@@ -132,7 +132,10 @@ def problem_of(
     restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)
     if not mechanics.is_compared and len(restitutions) > 1:
         names = ", ".join(restitutions)
-        raise InvalidValueError(f"restitution: {mechanics.title} is computed with one, got {names}")
+        raise InvalidValueError(
+            "restitution: {mechanics} is computed with one, got {names}", parameter="restitution",
+            mechanics=mechanics.title, names=names,
+        )  # fmt: skip
     return ResponseProblem(
         body,
         motion,
@@ -150,7 +153,7 @@ def problem_of(
 def _refuse(reason: str, table: Any, keys: set[str]) -> None:
     stated = [name for name in type(table).model_fields if name in keys & table.model_fields_set]
     if any(getattr(table, name) not in {None, False} for name in stated):
-        raise InvalidValueError(f"{reason}, so it takes no {', '.join(stated)}")
+        raise InvalidValueError("{reason}, so it takes no {keys}", reason=reason, keys=", ".join(stated))
 
 
 def response_problem(document: "ResponseDocument", files: InputFiles, *, in_space: bool = False) -> ResponseProblem:

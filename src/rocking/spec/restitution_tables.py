@@ -26,7 +26,9 @@ class RandomTable(JobTable):
         stated = [name for name in ways if getattr(self, name) is not None]
         if stated not in (["mean", "deviation"], ["values"], ["posterior"]):
             names = " and ".join(stated) or "none"
-            raise InvalidValueError(f"give mean and deviation, or values alone, or posterior alone; got {names}")
+            raise InvalidValueError(
+                "give mean and deviation, or values alone, or posterior alone; got {keys}", keys=names
+            )
         if self.posterior is None and self.count is not None:
             raise InvalidValueError("count goes with posterior: how many values are drawn from it")
         if self.posterior and "times" in self.model_fields_set:

@@ -44,7 +44,9 @@ class StudyProblem:
             stated |= friction_beside(axes, stated.get("friction"))
         turned = any(table.y is not None for table in document.motions) or any(axis.name == "azimuth" for axis in axes)
         if turned and document.plane:
-            raise InvalidValueError(f"motions: its blocks move along x and z, not along y; {document.without_body}")
+            raise InvalidValueError(
+                "motions: its blocks move along x and z, not along y", parameter="motions", hint=document.without_body
+            )
         bodies = []
         for k, table in enumerate(document.bodies):
             with located("body" if len(document.bodies) == 1 else f"body[{k}]"):
@@ -88,8 +90,10 @@ class StudyProblem:
         """Return the one body, motion or restitution of a study that takes no more."""
         held: Any = getattr(self, things)
         if len(held) != 1:
-            raise InvalidValueError(f"{things}: in memory this is computed with one, got {len(held)}; "
-                                    "rocking campaign takes several")  # fmt: skip
+            raise InvalidValueError(
+                "{name}: in memory this is computed with one, got {count}", parameter=things, name=things,
+                count=len(held), hint="rocking campaign takes several",
+            )  # fmt: skip
         return self.restitution if things == "restitutions" else held[0]
 
     def product(self, bodies: Sequence[Body], scales: FloatArray) -> "tuple[Product, dict[str, Any]]":

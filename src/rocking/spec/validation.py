@@ -32,7 +32,7 @@ _HOW = "a folder holds one body file, record files, and one table of outcomes"
 def files_of(folder: Path) -> tuple[Path, Path]:
     """Return the one body file of a folder and its one table of outcomes, which names the records."""
     if not folder.is_dir():
-        raise InvalidValueError(f"{folder}: no such folder; {_HOW}")
+        raise InvalidValueError("no such folder", hint=_HOW).at(str(folder))
     files = sorted(path for path in folder.iterdir() if path.is_file())
     seen = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
     bodies = [path for path in files if path.suffix.lower() in FORMATS]
@@ -50,7 +50,9 @@ def is_question(path: Path) -> bool:
 def _one(paths: Sequence[Path], folder: Path, what: str) -> Path:
     if len(paths) != 1:
         got = ", ".join(path.name for path in paths) or "none"
-        raise InvalidValueError(f"{folder}: there must be one {what}, got {got:.200}; {_HOW}")
+        raise InvalidValueError("there must be one {content}, got {files:.200}", content=what, files=got, hint=_HOW).at(
+            str(folder)
+        )
     return paths[0]
 
 
@@ -134,8 +136,8 @@ class ValidationProblem:
                 refused.append(UntakenRow(trial.line, error.spelt(by_key)))
         refused.sort(key=lambda each: each.line)
         if not trials:
-            why = f"; line {refused[0].line}: {refused[0].reason}" if refused else "; it has no rows"
-            raise InvalidValueError(f"{outcomes.source}: no row could be taken{why}")
+            why = f"line {refused[0].line}: {refused[0].reason}" if refused else "it has no rows"
+            raise InvalidValueError("no row could be taken", hint=why).at(outcomes.source)
         options = {**options_of(document, body, inputs), "shares": False}
         name = files[0].stem
         clusters = tuple(" ".join(records.place(word)["record"] for _, word in trial.files) for trial in trials)
@@ -191,11 +193,13 @@ class _Records:
 
         own = self.place(word)
         if not (self._inputs.folder / own["record"]).is_file():
-            raise InvalidValueError(f"{own['record']}: no such record file in {self._inputs.folder}")
+            raise InvalidValueError(
+                "{record}: no such record file in {folder}", record=own["record"], folder=self._inputs.folder
+            )
         record = motion_of(checked(OneMotionTable, {**self._keys, **own}), self._inputs)
         assert isinstance(record, GroundMotion)
         if record.peak == 0.0:
-            raise InvalidValueError(f"{word} is zero throughout: nothing moves")
+            raise InvalidValueError("{motion} is zero throughout: nothing moves", motion=word)
         return record
 
     def place(self, word: str) -> dict[str, str]:

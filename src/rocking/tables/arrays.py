@@ -143,8 +143,9 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
     columns = table.columns.values()
     if sum(_TEXT * c.values.size if c.is_text else c.values.nbytes for c in columns) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
-            f"MATLAB files take tables up to 2 GiB, this one has {len(table)} rows; take .nc, which MATLAB reads"
-        )
+            "MATLAB files take tables up to 2 GiB, this one has {count} rows", count=len(table),
+            hint="take .nc, which MATLAB reads",
+        )  # fmt: skip
     named = {each.variable or name: each for name, each in table.columns.items()}
     values = {name: each.values for name, each in named.items()}
     units = {name: each.unit for name, each in named.items()}
@@ -171,8 +172,9 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
 def _structure_of_grid(grid: Grid) -> dict[str, Any]:
     if 8 * len(grid) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
-            f"MATLAB files take arrays up to 2 GiB, these are {len(grid)} {grid.row}; take .nc, which MATLAB reads"
-        )
+            "MATLAB files take arrays up to 2 GiB, these are {count} {rows}", count=len(grid), rows=grid.row,
+            hint="take .nc, which MATLAB reads",
+        )  # fmt: skip
     whole = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
     for name, place, values in grid.blocks():
         whole[name][place] = values

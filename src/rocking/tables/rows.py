@@ -79,8 +79,9 @@ def to_excel(
         if len(table) > MOST_ROWS_OF_EXCEL:
             kind = f" {table.row}" if isinstance(table, Grid) else ""
             raise InvalidValueError(
-                f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {len(table)}{kind}; take {others}"
-            )
+                "a sheet of Excel has {limit} rows, these are {count}{rows}", limit=MOST_ROWS_OF_EXCEL,
+                count=len(table), rows=kind, hint=f"take {others}",
+            )  # fmt: skip
     book: Any = extra("openpyxl", "Excel").Workbook(write_only=True)
     titles: list[str] = []
     for name, table in sheets:

@@ -114,7 +114,7 @@ class Table:
     def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":
         """Return a table of cells whose headings say the units already."""
         if len(set(header)) < len(header):
-            raise InvalidValueError(f"headings of a table must differ, got {', '.join(header)}")
+            raise InvalidValueError("headings of a table must differ, got {headings}", headings=", ".join(header))
         cells = [list(map(_checked, each)) for each in rows]
         columns = {name: text_array([each[k] for each in cells]) for k, name in enumerate(header)}
         return cls(row, {name: Column(values, "") for name, values in columns.items()})
@@ -228,7 +228,7 @@ def safe_cell(cell: Cell) -> Cell:
 
 def _checked(cell: Cell) -> Cell:
     if isinstance(cell, float) and not math.isfinite(cell):
-        raise InvalidValueError(f"cells of a table must be finite, got {cell}")
+        raise InvalidValueError("cells of a table must be finite, got {cell}", cell=cell)
     return cell
 
 
@@ -245,12 +245,14 @@ def target_of(path: str | os.PathLike[str]) -> Path:
     """Return the path of a file that can be written."""
     other: object = path
     if not isinstance(other, (str, os.PathLike)):
-        raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
+        raise InvalidValueError(parameter="path", allowed="the path of a file", value=path)
     target = Path(path)
     if target.is_dir():
-        raise InvalidValueError(f"path must be the path of a file, got the folder {target}")
+        raise InvalidValueError(
+            "{parameter} must be the path of a file, got the folder {folder}", parameter="path", folder=target
+        )
     if not target.parent.is_dir():
-        raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
+        raise InvalidValueError("no folder {folder} to write {file} into", folder=target.parent, file=target.name)
     return target
 
 
@@ -260,7 +262,7 @@ def writing(path: Path | str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
+        raise RockingError("cannot write {path}: {fault}", path=path, fault=error.strerror or str(error)) from error
 
 
 @contextmanager

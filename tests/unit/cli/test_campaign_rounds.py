@@ -115,7 +115,7 @@ def test_thresholds_are_named_with_their_table(run, tmp_path, key):
     (tmp_path / "bad.toml").write_text(f"{INVENTORY}[inventory.thresholds]\n{key} = 7.0\n")
     code, _, err = run("campaign", "check", "bad.toml")
     assert code == 2
-    assert f"inventory.thresholds.{key} must be" in err.replace("\n", " ")
+    assert f"inventory.thresholds: {key} must be" in err.replace("\n", " ")
 
 
 def test_inventory_is_that_of_the_other_command(run, tmp_path):

@@ -59,8 +59,9 @@ class IdentificationDocument(JobTable):
             pair = given if isinstance(given := known[name], list) else [given, 0.0]
             if len(pair) != 2 or not all(type(each) in {int, float} and abs(each) < math.inf for each in pair):
                 raise InvalidValueError(
-                    f"identify.{name} is one number, or a value and its deviation, got {given!r:.60}"
-                )
+                    "{parameter} is one number, or a value and its deviation, got {value}",
+                    parameter=f"identify.{name}", value=given,
+                )  # fmt: skip
         return stated
 
     @model_validator(mode="after")

@@ -37,7 +37,9 @@ class PredictedBody(JobTable):
     def _one_engine(self) -> "PredictedBody":
         odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
         if odd:
-            raise InvalidValueError(f"settings.{odd[0]} does not go with a prediction, which has one engine")
+            raise InvalidValueError(
+                "{parameter} does not go with a prediction, which has one engine", parameter=f"settings.{odd[0]}"
+            )
         if "friction" in self.settings.model_fields_set & self.predict.model_fields_set:
             raise InvalidValueError("predict.friction and settings.friction say the same: leave one out")
         return self

@@ -17,6 +17,7 @@ class ValidationDocument(PredictedBody):
         known = OF_FILES - {"vertical_file"}
         if odd := sorted(self.motion.model_fields_set - known):
             raise InvalidValueError(
-                f"[motion] takes {', '.join(sorted(known))} here, got {odd[0]}; outcomes name the rest"
-            )
+                "[motion] takes {names} here, got {key}", names=", ".join(sorted(known)), key=odd[0],
+                hint="outcomes name the rest",
+            )  # fmt: skip
         return self

@@ -52,7 +52,7 @@ def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
     except ValidationError as error:
         if isinstance(value, str):
             raise InvalidValueError(
-                f"must be a rotation over the slenderness angle, rocking or overturning, got {value!r:.60}"
+                "must be a rotation over the slenderness angle, rocking or overturning, got {entry!r:.60}", entry=value
             ) from error
         raise PydanticKnownError("greater_than", {"gt": 0}) from error
 
@@ -83,12 +83,16 @@ class AnalysisQuestion(BodyQuestion):
     @model_validator(mode="after")
     def _keys_of_its_kind(self) -> "AnalysisQuestion":
         if (self.fragility.levels is None) != (self.kind == "cloud"):
-            reason = "makes no sense: a cloud takes the motions as they are"
-            raise InvalidValueError(f"fragility.levels {'is missing' if self.fragility.levels is None else reason}")
+            senseless = "{parameter} makes no sense: a cloud takes the motions as they are"
+            text = "{parameter} is missing" if self.fragility.levels is None else senseless
+            raise InvalidValueError(text, parameter="fragility.levels")
         for path, kind in _OF_ONE_KIND.items():
             table, _, name = path.partition(".")
             if getattr(getattr(self, table), name) is not None and kind != self.kind:
-                raise InvalidValueError(f'{path} goes with kind = "{kind}" only, this is "{self.kind}"')
+                raise InvalidValueError(
+                    '{parameter} goes with kind = "{expected}" only, this is "{kind}"', parameter=path, expected=kind,
+                    kind=self.kind,
+                )  # fmt: skip
         return self
 
     @property
@@ -229,7 +233,7 @@ class CloudQuestion(AnalysisQuestion):
         known = [measure(name).name for name in named or [*DEFAULT_MEASURES, self.fragility.measure]]
         twice = [name for name in known if known.count(name) > 1]
         if named is not None and twice:
-            raise InvalidValueError(f"measures: {twice[0]} is named twice")
+            raise InvalidValueError("measures: {name} is named twice", parameter="measures", name=twice[0])
         return list(dict.fromkeys(known))
 
     def columns(self, motions: "MotionSet") -> dict[str, FloatArray]:
@@ -241,7 +245,9 @@ class CloudQuestion(AnalysisQuestion):
         wanted = _USUAL_COLUMNS if named is None else named
         columns: dict[str, list[float]] = {name: [] for name in wanted}
         if len(columns) < len(wanted):
-            raise InvalidValueError(f"columns: one of {', '.join(wanted)} is named twice")
+            raise InvalidValueError(
+                "columns: one of {names} is named twice", parameter="columns", names=", ".join(wanted)
+            )
         for k in range(len(motions)):
             motion = motions[k]
             metadata = getattr(motion, "metadata", {})
@@ -251,9 +257,10 @@ class CloudQuestion(AnalysisQuestion):
                 except ValueError as error:
                     if named is not None:
                         raise InvalidValueError(
-                            f"columns: {name!r:.60} must be a number of every motion, {error} of motion {k}, "
-                            f"{motion.name!r:.60}, which knows {', '.join(metadata) or 'nothing'}"
-                        ) from error
+                            "columns: {value} must be a number of every motion, {reason} of motion {index}, "
+                            "{motion!r:.60}, which knows {names}", parameter="columns", value=name, reason=str(error),
+                            index=k, motion=motion.name, names=", ".join(metadata) or "nothing",
+                        ) from error  # fmt: skip
                     del columns[name]
             if not columns:
                 break

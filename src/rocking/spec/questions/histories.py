@@ -43,7 +43,10 @@ class HistoriesQuestion(BodyQuestion):
         scales, motions = self.histories.scales.numbers(), problem.motions
         bad = np.flatnonzero(np.abs(scales) > 1e6)
         if bad.size:
-            raise InvalidValueError(f"histories.scales must be within 1e6, got {scales[bad[0]]:g} at index {bad[0]}")
+            raise InvalidValueError(
+                "{parameter} must be within 1e6, got {value} at index {index}", parameter="histories.scales",
+                value=float(scales[bad[0]]), index=bad[0],
+            )  # fmt: skip
         with located("body"):
             product, attributes = problem.product(problem.bodies, scales)
         angle, frequency = product.sides["alpha_right"][:, 0], product.sides["p_right"][:, 0]

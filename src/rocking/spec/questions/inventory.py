@@ -66,16 +66,18 @@ class InventoryQuestion(StudyQuestion):
     def _shaken_as_a_list_is(self) -> "InventoryQuestion":
         if odd := sorted(self.settings.model_fields_set - {"gravity", "friction"}):
             raise InvalidValueError(
-                f"settings.{odd[0]} does not go with an inventory, which takes gravity and friction only"
-            )
+                "{parameter} does not go with an inventory, which takes gravity and friction only",
+                parameter=f"settings.{odd[0]}",
+            )  # fmt: skip
         families = [table for table in self.motions if table.synthetic is not None]
         if any(table.pulse is not None for table in self.motions) or (families and len(self.motions) > 1):
             raise InvalidValueError("the motions of an inventory are records, or one family of synthetic ones alone")
         for table in families:
             if odd := sorted({"pga", "pgv", "time_step"} & table.model_fields_set):
                 raise InvalidValueError(
-                    f"motions.{odd[0]} does not go with an inventory; how strong it is stands in [inventory]"
-                )
+                    "{parameter} does not go with an inventory", parameter=f"motions.{odd[0]}",
+                    hint="how strong it is stands in [inventory]",
+                )  # fmt: skip
         if families and self.inventory.pga is None and self.inventory.pgv is None:
             raise InvalidValueError('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
         return self
@@ -92,10 +94,8 @@ class InventoryQuestion(StudyQuestion):
         if len(problem.restitutions) > 1:
             raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
         stated = problem.restitution if "restitution" in self.model_fields_set else None
-        try:
+        with located("inventory.thresholds"):
             limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
-        except InvalidValueError as error:  # which begins with the key
-            raise InvalidValueError(f"inventory.thresholds.{error}") from error
         with located("inventory"):
             folder = Path(table.objects).parent
             objects = read_inventory(

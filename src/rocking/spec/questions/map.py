@@ -38,7 +38,7 @@ class MapTable(JobTable):
         odd = sorted({"boundary", "tolerance"} & self.model_fields_set)
         if odd and self.refine is None:
             raise InvalidValueError(
-                f"{' and '.join(odd)} goes with refine, how often cells along boundaries are halved: give it"
+                "{keys} goes with refine, how often cells along boundaries are halved: give it", keys=" and ".join(odd)
             )
         return self
 
@@ -103,7 +103,9 @@ class MapQuestion(BodyQuestion):
         from rocking.studies.study_plan import Study, along, labels_along
 
         if len(problem.motions) != 1:
-            raise InvalidValueError(f"motions: a map is of one motion, got {len(problem.motions)}")
+            raise InvalidValueError(
+                "motions: a map is of one motion, got {count}", parameter="motions", count=len(problem.motions)
+            )
         subject, (x, y) = (problem.bodies[0], problem.motions[0]), self.axes
         with located("map"):
             questions = [

@@ -65,7 +65,10 @@ class MinimumQuestion(BodyQuestion):
 
         table, settings = self.minimum, problem.settings
         if len(problem.motions) > MOST_IN_MEMORY:
-            raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(problem.motions)}")
+            raise InvalidValueError(
+                "motions: there may be up to {limit}, got {count}", parameter="motions", limit=MOST_IN_MEMORY,
+                count=len(problem.motions),
+            )  # fmt: skip
         motions = problem.kept_motions
         with located("body"):
             make, laws = mechanics_of(settings).parameters, problem.restitutions.values()
@@ -116,6 +119,7 @@ class MinimumQuestion(BodyQuestion):
         for label, row in rows.items():
             if None in row:
                 raise InvalidValueError(
-                    f"there is no picture: no history of {lanes[row.index(None)]} with restitution {label} has a result"
-                )
+                    "there is no picture: no history of {lane} with restitution {restitution} has a result",
+                    lane=lanes[row.index(None)], restitution=label,
+                )  # fmt: skip
         return transitions_of_many_picture(rows, lanes, words="motion and body" if several else "motion")

@@ -71,10 +71,12 @@ class SpectrumQuestion(StudyQuestion):
         times = checks.positive_array("spectrum.periods", table.periods.numbers(), "s")
         for name, row in (("slenderness_angles", angles), ("periods", times)):
             if np.any(np.diff(row) <= 0.0):
-                raise InvalidValueError(f"spectrum.{name} must increase from value to value")
+                raise InvalidValueError("{parameter} must increase from value to value", parameter=f"spectrum.{name}")
         scale = checks.within("spectrum.scale", table.scale, -1e6, 1e6)
         if times.max() > _LONGEST:
-            raise InvalidValueError(f"spectrum.periods must be up to {_LONGEST:g} s, got {times.max():g}")
+            raise InvalidValueError(
+                parameter="spectrum.periods", allowed=f"up to {_LONGEST:g} s", value=float(times.max())
+            )
         sizes = 0.75 * problem.settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
         with located("spectrum"):
             blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
