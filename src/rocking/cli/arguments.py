@@ -67,14 +67,18 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
         path, equals, value = text.partition("=")
         table, dot, key = path.strip().partition(".")
         if not (equals and dot and key):
-            raise InvalidValueError(f"--set must be table.key=value, such as settings.gravity=9.81, got {text!r:.60}")
+            raise InvalidValueError(
+                "{parameter} must be table.key=value, such as settings.gravity=9.81, got {value}", parameter="--set",
+                value=text,
+            )  # fmt: skip
         if table not in known:
             near = checks.nearest(table, list(known))
             raise InvalidValueError(
-                f"--set: no table named {table!r:.60} here; there are {', '.join(known)}", hint=near
-            )
+                "{parameter}: no table named {table!r:.60} here; there are {names}", parameter="--set", table=table,
+                names=", ".join(known), hint=near,
+            )  # fmt: skip
         if key in tables.setdefault(table, {}):
-            raise InvalidValueError(f"--set {table}.{key} is given twice")
+            raise InvalidValueError("{parameter} {key} is given twice", parameter="--set", key=f"{table}.{key}")
         try:
             tables[table][key] = tomllib.loads(f"value = {value.strip()}")["value"]
         except (tomllib.TOMLDecodeError, ValueError, RecursionError):
@@ -93,7 +97,10 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
             (stated,) = stated
         if not isinstance(stated, dict):
             why = f"it has several [[{name}]]" if isinstance(stated, list) else f"its {name} is no table"
-            raise InvalidValueError(f"--set {table}.{next(iter(keys))}: {why}; change the file")
+            raise InvalidValueError(
+                "{parameter} {key}: {reason}", parameter="--set", key=f"{table}.{next(iter(keys))}", reason=why,
+                hint="change the file",
+            )  # fmt: skip
         changed[name] = {**stated, **keys}
     return changed
 
@@ -107,8 +114,9 @@ def document_file(
     taken = {"body", "objects", "motions", "threads", "out", "as_json", "sets", "details", *beside}
     if stated := typed(context, *(name for name in context.params if name not in taken)):
         raise InvalidValueError(
-            f"{word} {has}says everything itself, so it takes no {', '.join(stated)}; --set changes a key"
-        )
+            "{file} {content}says everything itself, so it takes no {options}", file=word, content=has,
+            options=", ".join(stated), hint="--set changes a key",
+        )  # fmt: skip
     return Path(word)
 
 
@@ -144,7 +152,10 @@ class Arguments:
         for key in sets:
             option = (spelt or {}).get(key, self.spelt(key))
             if option and values.get(key) is not None:
-                raise InvalidValueError(f"{option[:100]} and --set {name}.{key} say the same: leave one out")
+                raise InvalidValueError(
+                    "{parameter} and --set {key} say the same: leave one out", parameter=option[:100],
+                    key=f"{name}.{key}",
+                )  # fmt: skip
         return {**{key: value for key, value in values.items() if value is not None}, **sets}
 
     def values(self, table: "type[BaseModel]") -> Tables:
@@ -169,8 +180,9 @@ class Arguments:
         for word in positional:
             if body is not None and is_body(word) and not is_body(body):
                 raise InvalidValueError(
-                    f"the body comes first, then the motion: {word[:100]} {body[:100]}, not the reverse"
-                )
+                    "the body comes first, then the motion: {motion} {body}, not the reverse", motion=word[:100],
+                    body=body[:100],
+                )  # fmt: skip
         return body, [*positional, *(motions or ())]
 
     @property
@@ -193,7 +205,10 @@ class Arguments:
         """Return the table [restitution]: what `--set` says, or the usual one, which has the model of the option."""
         keys: Tables = self.sets.get("restitution", {})
         if keys and (option := self.spelt("restitution")):
-            raise InvalidValueError(f"{option} and --set restitution.{next(iter(keys))} say the same: leave one out")
+            raise InvalidValueError(
+                "{parameter} and --set {key} say the same: leave one out", parameter=option,
+                key=f"restitution.{next(iter(keys))}",
+            )  # fmt: skip
         return keys or ({"model": self.options["restitution"]} if usual is None else usual)
 
     def body_table(self, file: str | None) -> Tables:
@@ -209,8 +224,8 @@ class Arguments:
         if set(self.sizes) not in map(set, _SIZES):
             raise InvalidValueError(
                 "a body is a file, or --width and --height, or --set body.slenderness_angle and body.semi_diagonal; "
-                f"got {' '.join(self.sizes.values()) or 'none of them'}"
-            )
+                "got {options}", options=" ".join(self.sizes.values()) or "none of them",
+            )  # fmt: skip
         return {"units": "m", **self.table("body", {"units": self.length, **values})}
 
     def motion_table(self, word: str, keys: Collection[str] | None = None) -> Tables:
@@ -220,7 +235,10 @@ class Arguments:
         table = self.table("motion", {**place, "units": units}, dict.fromkeys(place, word), keys)
         spelt = ["--units" if key == "units" and units is not None else f"motion.{key}" for key in table]
         if "pulse" in place and (odd := [how for key, how in zip(table, spelt, strict=True) if key in OF_FILES]):
-            raise InvalidValueError(f"a pulse takes no {', '.join(odd)}: these are for files; got {word[:200]!r}")
+            raise InvalidValueError(
+                "a pulse takes no {options}: these are for files; got {pulse!r}", options=", ".join(odd),
+                pulse=word[:200],
+            )  # fmt: skip
         return table
 
     def one_motion(self, motions: Sequence[str]) -> Tables:
@@ -237,7 +255,9 @@ class Arguments:
         if "record" not in table or "record" not in upright:
             raise InvalidValueError("the vertical motion of a plane body stands in a record file, as the one along x")
         if odd := sorted({"vertical", "vertical_file"} & set(table)):
-            raise InvalidValueError(f"z={along['z'][:100]} and --set motion.{odd[0]} say the same: leave one out")
+            raise InvalidValueError(
+                "z={file} and --set {key} say the same: leave one out", file=along["z"][:100], key=f"motion.{odd[0]}"
+            )
         component = {"vertical": upright["component"]} if "component" in upright else {}
         same = Path(upright["record"]) == Path(table["record"]) and component
         return {**table, **component, **({} if same else {"vertical_file": upright["record"]})}
@@ -247,7 +267,7 @@ class Arguments:
         # what `--set` says of format, unit and step is for every file, the rest for the one along x, or the first
         along = _along(motions)
         if not along:
-            raise InvalidValueError(f"{NO_MOTION}, along y and z with --motion y=FILE and --motion z=FILE")
+            raise InvalidValueError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")
         if list(along) == ["x"]:
             return self.motion_table(along["x"])
         records = [axis for axis, word in along.items() if "record" in _place(word)]
@@ -283,9 +303,9 @@ def _place(word: str) -> Tables:
     name, colon, _ = word.partition(":")
     if (not colon and name not in catalogue()) or "/" in name or "\\" in word:
         raise RecordError(
-            f"{word[:200]}: no such file; a pulse is written as sine:amplitude=3,period=0.8, "
-            f"with one of {', '.join(sorted(catalogue()))}"
-        )
+            "{file}: no such file; a pulse is written as sine:amplitude=3,period=0.8, with one of {names}",
+            file=word[:200], names=", ".join(sorted(catalogue())),
+        )  # fmt: skip
     return {"pulse": word}
 
 
@@ -295,7 +315,10 @@ def _along(motions: Sequence[str]) -> dict[str, str]:
         axis, equals, rest = word.partition("=")
         axis, rest = (axis, rest) if equals and axis in {"x", "y", "z"} else ("x", word)
         if axis in along:
-            raise InvalidValueError(f"one motion along {axis}, please: got {along[axis][:100]!r} and {rest[:100]!r}")
+            raise InvalidValueError(
+                "one motion along {axis}, please: got {first!r} and {second!r}", axis=axis, first=along[axis][:100],
+                second=rest[:100],
+            )  # fmt: skip
         along[axis] = rest
     return along
 

@@ -28,7 +28,9 @@ def write(
     targets = [_target(text, opened) for text in out]
     paths = [path.resolve() for path, _ in targets]
     if twice := next((path for path in paths if paths.count(path) > 1), None):
-        raise InvalidValueError(f"--out names {twice.name} twice: the second would replace the first")
+        raise InvalidValueError(
+            "{parameter} names {file} twice: the second would replace the first", parameter="--out", file=twice.name
+        )
     for path, what in targets:
         _check(opened, path, what, restitution, crossing)
     facts: list[dict[str, Any]] = []
@@ -77,19 +79,23 @@ def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, cros
         if to.suffix:
             check_form(to)
             if not to.parent.is_dir():
-                raise InvalidValueError(f"cannot write {to}: there is no folder {to.parent}")
+                raise InvalidValueError("cannot write {file}: there is no folder {folder}", file=to, folder=to.parent)
     elif what == PICTURE:
         from rocking.plots.campaign import check_picture
 
         target_of(to)
         if to.suffix.lower() not in PICTURES:
-            raise InvalidValueError(f"a picture is {', '.join(PICTURES)}, got {to.suffix or 'no ending'!r}")
+            raise InvalidValueError(
+                "a picture is {endings}, got {ending!r}", endings=", ".join(PICTURES), ending=to.suffix or "no ending"
+            )
         if crossing is not None:
             raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves that are written")
         check_picture(folder, restitution)
         extra("matplotlib", "a picture")
     elif what not in ENDINGS:
-        raise InvalidValueError(f"what must be one of {', '.join((*ENDINGS, REPORT, PICTURE))}, got {what!r:.60}")
+        raise InvalidValueError(
+            parameter="what", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=what
+        )
     else:
         checked(folder, to, what, restitution, crossing)
 
@@ -144,8 +150,9 @@ def _stored(to: Path) -> Iterator[None]:
         except RockingError as error:
             if not isinstance(error.__cause__, OSError):
                 raise
-            advice = "make room or allow writing, then export again"
-            raise CampaignStorageError(f"{error}; {_SAFE}; {advice}") from error
+            refusal = error.copied(CampaignStorageError)
+            refusal.add_hint(f"{_SAFE}; make room or allow writing, then export again")
+            raise refusal from error
 
 
 def _facts(folder: JobFolder, path: Path, what: str) -> dict[str, Any]:

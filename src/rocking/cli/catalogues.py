@@ -34,7 +34,10 @@ def models(
     name = checks.spelling(name, known)
     if name is not None and name not in known:
         near = checks.nearest(name, known)
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(known)}", hint=near)
+        raise UnknownModelError(
+            "no restitution model named {value}; there are {names}", parameter="restitution", value=name,
+            names=", ".join(known), hint=near,
+        )  # fmt: skip
     deliver(_Models({key: kind for key, kind in known.items() if name in {None, key}}), as_json=as_json)
 
 

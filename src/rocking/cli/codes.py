@@ -120,11 +120,16 @@ def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
         if widths is not None or heights is None:
             raise InvalidValueError("--slenderness goes with --height, in place of --width")
         if min(ratios) <= 0.0:
-            raise InvalidValueError(f"--slenderness must be above 0, got {min(ratios):g}; height over width")
+            raise InvalidValueError(
+                parameter="--slenderness", allowed="above 0", value=min(ratios), hint="height over width"
+            )
         heights, widths = zip(*[(h, h / ratio) for h in heights for ratio in ratios], strict=True)
     widths, heights = widths or [None], heights or [None]
     if len(widths) != len(heights) and 1 not in {len(widths), len(heights)}:
-        raise InvalidValueError(f"--width and --height must be as many, or one, got {len(widths)} and {len(heights)}")
+        raise InvalidValueError(
+            "--width and --height must be as many, or one, got {widths} and {heights}", widths=len(widths),
+            heights=len(heights),
+        )  # fmt: skip
     most = max(len(widths), len(heights))
     tables = []
     for k in range(most):

@@ -101,7 +101,7 @@ def convert(
         exports.spare(*(word.removeprefix(f"{word[:1]}=") for word in record), *named)
         pairs = _pairs(table, files)
     if not all(isinstance(each, GroundMotion) for pair in pairs.values() for each in pair):
-        raise InvalidValueError(f"a record file is converted, got the pulse {record[0]!r:.80}")
+        raise InvalidValueError("a record file is converted, got the pulse {pulse!r:.80}", pulse=record[0])
     # a format without a unit of its own keeps that of the file
     unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)

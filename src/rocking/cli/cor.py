@@ -77,7 +77,9 @@ def cor(
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
-        raise InvalidValueError(f"--set settings.{odd[0]}: an impact takes gravity only")
+        raise InvalidValueError(
+            "{parameter} {key}: an impact takes gravity only", parameter="--set", key=f"settings.{odd[0]}"
+        )
     subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
     if isinstance(subject, Body):
@@ -93,8 +95,9 @@ def cor(
         plane["--out stages=FILE"] = "stages" in exports.names
         if stated := [name for name, there in plane.items() if there]:
             raise InvalidValueError(
-                f"a body in space rocks about every edge of its base, so it takes no {', '.join(stated)}"
-            )
+                "a body in space rocks about every edge of its base, so it takes no {options}",
+                options=", ".join(stated),
+            )  # fmt: skip
         found = _recommended(subject, restitution) if recommend else None
         answer = SolidAnswer.of(subject, restitution, gravity, length, found)
     deliver(answer, exports, as_json=as_json)

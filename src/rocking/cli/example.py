@@ -65,9 +65,11 @@ def _run(chosen: examples.Example, run: Callable[[list[str]], None], *, force: b
     page = Page()
     there = [name for name in chosen.outputs if Path(name).exists()]
     if folder := next((name for name in there if Path(name).is_dir()), None):
-        raise InvalidValueError(f"{folder}: a folder of that name is there already; take another folder")
+        raise InvalidValueError("a folder of that name is there already", hint="take another folder").at(str(folder))
     if there and not force:
-        raise InvalidValueError(f"{', '.join(there)}: there already; take another folder, or --force")
+        raise InvalidValueError(
+            "{files}: there already", files=", ".join(there), hint="take another folder, or --force"
+        )
     written = examples.write(chosen.name, force=force)
     page.line(f"{chosen.name}: {chosen.title}\n")
     for path in written:

@@ -32,10 +32,12 @@ class Exports:
         files = tuple(_file(text, kinds) for text in texts or ())
         paths = [path for _, path in files]
         if twice := next((path for path in paths if paths.count(path) > 1), None):
-            raise InvalidValueError(f"--out {twice} is given twice")
+            raise InvalidValueError("{parameter} {file} is given twice", parameter="--out", file=twice)
         for name, path in files:
             if not path.parent.is_dir():
-                raise InvalidValueError(f"no folder {str(path.parent)!r} to write {path.name!r} into")
+                raise InvalidValueError(
+                    "no folder {folder!r} to write {file!r} into", folder=str(path.parent), file=path.name
+                )
             if kinds[name].needs:
                 from rocking.errors import extra
 
@@ -52,7 +54,10 @@ class Exports:
         names = [name for word in map(str, words) for name in (word, word.partition("=")[2])]
         read = {Path(part).resolve() for name in names for part in (name, name.rpartition("#")[0]) if part}
         if over := next((path for _, path in self.files if path.resolve() in read), None):
-            raise InvalidValueError(f"--out {over} is what is read, and would be written over; take another name")
+            raise InvalidValueError(
+                "{parameter} {file} is what is read, and would be written over", parameter="--out", file=over,
+                hint="take another name",
+            )  # fmt: skip
 
     def write(self, answer: Any) -> list[Path]:
         """Write every file; return them."""
@@ -62,7 +67,7 @@ class Exports:
             except MissingExtraError:
                 raise
             except ImportError as error:  # some libraries only notice when they write that one of theirs is not there
-                raise MissingExtraError(f"cannot write {path}: {error}") from error
+                raise MissingExtraError("cannot write {path}: {reason}", path=path, reason=str(error)) from error
         return [path for _, path in self.files]
 
 
@@ -71,12 +76,18 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     if equals and name in kinds:
         path = Path(rest)
         if path.suffix.lower() not in kinds[name].endings:
-            raise InvalidValueError(f"{name} is {_or(kinds[name].endings)}, got {path.name!r:.60}")
+            raise InvalidValueError(
+                "{content} is {endings}, got {file!r:.60}", content=name, endings=_or(kinds[name].endings),
+                file=path.name,
+            )  # fmt: skip
         return name, path
     path = Path(text)
     chosen = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
     if chosen is None:
-        raise InvalidValueError(f"--out {path.name!r:.60}: by its ending a file is {_possible(kinds)}")
+        raise InvalidValueError(
+            "{parameter} {file!r:.60}: by its ending a file is {contents}", parameter="--out", file=path.name,
+            contents=_possible(kinds),
+        )  # fmt: skip
     return chosen, path
 
 

@@ -10,6 +10,7 @@ from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.spec.questions.fragility import ExportTable, FragilityTable
 
 if TYPE_CHECKING:
@@ -145,8 +146,9 @@ def _histories(problem: "StudyProblem") -> int:
     total = len(problem.motions) * (1 if levels is None else levels.size) * len(problem.restitutions)
     if total > MOST_HISTORIES:
         raise InvalidValueError(
-            f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
-        )
+            "there must be at most {limit} histories, got {count}", limit=MOST_HISTORIES, count=total,
+            hint="rocking campaign computes more",
+        )  # fmt: skip
     return total
 
 
@@ -161,28 +163,37 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     sets = arguments.sets.get("fragility", {})
     measure = arguments.table("fragility", {"measure": arguments.options["measure"]}, keys={"measure"})
     if not isinstance(measure["measure"], str):
-        raise InvalidValueError(f"fragility.measure must be text, got {measure['measure']!r:.60}")
+        raise InvalidValueError(parameter="fragility.measure", allowed="text", value=measure["measure"])
     wanted = measure_of(measure["measure"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
-        raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
+        raise InvalidValueError(
+            "several --restitution are compared by --analysis stripes, not by {analysis}", analysis=kind
+        )
     own: dict[str, Any] = {**measure, "states": _states(states)}
     limit_states(tuple(own["states"]))
     if factor is not None:
         if kind != "cloud":
-            raise InvalidValueError(f"--factor is for --analysis cloud: {kind} brings every motion to the levels")
+            raise InvalidValueError(
+                "{parameter} is for --analysis cloud: {analysis} brings every motion to the levels",
+                parameter="--factor", analysis=kind,
+            )  # fmt: skip
         own["factor"] = factor
     written = "g" if wanted.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:
             raise InvalidValueError("--levels is not for --analysis cloud, which takes the motions as they are")
     elif wanted.power == 0:
-        raise InvalidValueError(f"no factor on a motion changes {wanted.name}: take it with --analysis cloud")
+        raise InvalidValueError(
+            "no factor on a motion changes {measure}: take it with --analysis cloud", measure=wanted.name
+        )
     elif levels is not None:
         unit = "1" if wanted.unit == "-" else wanted.unit
         own["levels"], written = values_table("--levels", levels, unit)
         checked_levels("--levels", row("--levels", levels, unit)[0], wanted.unit)
     elif wanted.uplift is None and "levels" not in sets:
-        raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
+        raise InvalidValueError(
+            "which levels of {measure}? Give --levels FIRST:LAST:COUNT in {unit}", measure=wanted.name, unit=wanted.unit
+        )
     return arguments.table("fragility", own), written
 
 
@@ -203,7 +214,9 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
     count = motions[0].get("count")
     if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
-        raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {count}; rocking campaign takes more")
+        raise InvalidValueError(
+            parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="rocking campaign takes more"
+        )
     if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
         bare = {key: own[key] for key in ("measure", "states")}
         own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
@@ -222,10 +235,13 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     several = len(problem.restitutions)
     if (curves := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
         raise InvalidValueError(
-            f"--out {', '.join(curves)} holds the curves of one --restitution; csv=FILE holds several"
-        )
+            "{parameter} {files} holds the curves of one --restitution", parameter="--out", files=", ".join(curves),
+            hint="csv=FILE holds several",
+        )  # fmt: skip
     if "picture" in exports.names and several > MOST_IN_PICTURE:
-        raise InvalidValueError(f"a picture holds {MOST_IN_PICTURE} --restitution at most, got {several}")
+        raise InvalidValueError(
+            "a picture holds {limit} --restitution at most, got {count}", limit=MOST_IN_PICTURE, count=several
+        )
     if "nrml" in exports.names:
         from rocking.studies.fragility.export import intensity_type
 

@@ -72,8 +72,9 @@ def command_of(kind: str) -> Callable[..., None]:
                 problem = problem_of(kind, arguments, motions, restitution={"models": laws}, **{own: stated})
         if (total := math.prod(problem.document.sizes)) > _MOST:
             raise InvalidValueError(
-                f"there must be at most {_MOST} histories, got {total}; rocking campaign has no limit"
-            )
+                "there must be at most {limit} histories, got {count}", limit=_MOST, count=total,
+                hint="rocking campaign has no limit",
+            )  # fmt: skip
         with bar("histories", total, quiet=as_json) as progress:
             dataset = problem.answer(progress, threads)
         deliver(HistoriesAnswer(problem, dataset, length or "m"), files, as_json=as_json)

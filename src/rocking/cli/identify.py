@@ -90,11 +90,13 @@ def _question(context: typer.Context, words: list[str]) -> "tuple[Identification
     arguments = Arguments(context, *TABLES)
     bodies, measured = [w for w in words if is_body(w)], [w for w in words if not is_body(w)]
     if len(bodies) > 1 or len(measured) > 1:
-        raise InvalidValueError(f"one body and one measurement, please: got {' and '.join(words)}")
+        raise InvalidValueError("one body and one measurement, please: got {arguments}", arguments=" and ".join(words))
     if measured and Path(measured[0]).is_dir() and not bodies and not arguments.sizes:
         bodies = [str(path) for path in bodies_in(Path(measured[0]))]
         if len(bodies) > 1:
-            raise InvalidValueError(f"{measured[0]}: several body files, {', '.join(bodies)}; name one before it")
+            raise InvalidValueError(
+                "several body files, {bodies}", bodies=", ".join(bodies), hint="name one before it"
+            ).at(measured[0])
     file = document_file(context, bodies[0] if bodies else None, ("measurement", "identify"), ("record", "workers"))
     if file is not None:
         tables = with_sets(dict(tables_in(file) or {}), arguments.sets)

@@ -105,7 +105,9 @@ def _check(targets: list[Path]) -> None:
         if target.suffix and not target.is_dir():
             check_form(target)
             if not target.parent.is_dir():
-                raise InvalidValueError(f"no folder {str(target.parent)!r} to write {target.name!r} into")
+                raise InvalidValueError(
+                    "no folder {folder!r} to write {file!r} into", folder=str(target.parent), file=target.name
+                )
 
 
 def _write(assessment: "Assessment", targets: list[Path]) -> tuple[list[Path], list[str]]:
@@ -139,7 +141,9 @@ def _problem(context: typer.Context) -> "StudyProblem":
         raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
     motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
     if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
-        raise InvalidValueError(f"--motion takes record files here, got the pulse {pulse[:80]!r}")
+        raise InvalidValueError(
+            "{parameter} takes record files here, got the pulse {pulse!r}", parameter="--motion", pulse=pulse[:80]
+        )
     tables: dict[str, Any] = {"inventory": table}
     if options["restitution"] is not None:
         tables["restitution"] = {"model": options["restitution"]}

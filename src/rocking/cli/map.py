@@ -85,8 +85,9 @@ def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, pi
     sizes = [axis.values.size for axis in axes]
     if math.prod(sizes) > MOST_CELLS:
         raise InvalidValueError(
-            f"a map must have at most {MOST_CELLS} cells, got {sizes[0]} x {sizes[1]}; rocking campaign computes more"
-        )
+            "a map must have at most {limit} cells, got {x} x {y}", limit=MOST_CELLS, x=sizes[0], y=sizes[1],
+            hint="rocking campaign computes more",
+        )  # fmt: skip
     if picture and min(sizes) < 2:
         raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
     result = problem.answer(progress, threads)
@@ -128,10 +129,13 @@ def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
     if name not in known:
         near = checks.nearest(name, known)
         raise InvalidValueError(
-            f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}", hint=near
-        )
+            "{parameter}: no axis named {axis!r:.60}; there are {names}", parameter=option, axis=name,
+            names=", ".join(sorted(known)), hint=near,
+        )  # fmt: skip
     if not equals or not values.strip():
-        raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
+        raise InvalidValueError(
+            "{parameter} must be {axis}=FIRST:LAST:COUNT or {axis}=A,B,C, got no values", parameter=option, axis=name
+        )
     table, written = values_table(name, values, known[name].unit)
     return {"axis": name, **table}, written
 

@@ -106,11 +106,15 @@ def parsed_periods(text: str) -> list[float]:
     """
     texts = [part.strip() for part in text.split(",") if part.strip()]
     if not 1 <= len(texts) <= _MOST_PERIODS:
-        raise InvalidValueError(f"periods must be 1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1, got {text[:60]!r}")
+        raise InvalidValueError(
+            parameter="periods", allowed=f"1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1", value=text[:60]
+        )
     try:
         numbers = [float(part) for part in texts]
     except ValueError as error:
-        raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {text[:60]!r}") from error
+        raise InvalidValueError(
+            parameter="periods", allowed="numbers such as 0.1,0.5,1 [s]", value=text[:60]
+        ) from error
     hint = checks.number_hint(text)
     return [checks.positive("periods", number, "s", hint) for number in numbers]
 

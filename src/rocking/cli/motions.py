@@ -90,7 +90,7 @@ def motions(
     file = document_file(context, record[0], ("motions",), beside) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
-        raise InvalidValueError(f"{missing[0]:.200}: no such file or folder")
+        raise InvalidValueError("{file:.200}: no such file or folder", file=missing[0])
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     wanted = PERIODS if periods is None else parsed_periods(periods)
     workers = min(processors(), _MOST_PROCESSES) if threads is None else checks.whole("--threads", threads, 1, 256)

@@ -32,13 +32,16 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
         values, written = _quantities(name, text.split(","), unit)
         return {"values": values}, written
     if len(pieces) not in {3, 4} or (len(pieces) == 4 and pieces[3].strip() not in {"linear", "log"}):
-        raise InvalidValueError(f"{name} must be FIRST:LAST:COUNT, or that with :log, or A,B,C, got {text!r:.60}")
+        raise InvalidValueError(parameter=name, allowed="FIRST:LAST:COUNT, or that with :log, or A,B,C", value=text)
     (first, last), written = _quantities(name, pieces[:2], unit)
     if not re.fullmatch(r"\s*[0-9]{1,9}\s*", pieces[2]) or not 2 <= int(pieces[2]) <= MOST_VALUES:
-        raise InvalidValueError(f"{name} must have a COUNT from 2 to {MOST_VALUES}, got {pieces[2]!r:.60}")
+        raise InvalidValueError(
+            "{parameter} must have a COUNT from 2 to {limit}, got {value}", parameter=name, limit=MOST_VALUES,
+            value=pieces[2],
+        )  # fmt: skip
     spacing = pieces[3].strip() if len(pieces) == 4 else spacing
     if spacing == "log" and min(first, last) <= 0.0:
-        raise InvalidValueError(f"{name} must be above 0 to be spaced by equal ratios, got {text!r:.60}")
+        raise InvalidValueError(parameter=name, allowed="above 0 to be spaced by equal ratios", value=text)
     return {"from": first, "to": last, "count": int(pieces[2]), "spacing": spacing}, written
 
 
@@ -54,7 +57,7 @@ def numbers_in(name: str, text: str) -> list[float]:
         return [float(word) for word in text.split(",")]
     except ValueError as error:
         raise InvalidValueError(
-            f"{name} must be numbers with commas between, such as 0.42,0.7, got {text!r:.60}"
+            parameter=name, allowed="numbers with commas between, such as 0.42,0.7", value=text
         ) from error
 
 
@@ -72,14 +75,18 @@ def value_of(field: "FieldInfo", option: str, typed: Any) -> Any:
 
 def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:
     if len(texts) > MOST_VALUES:
-        raise InvalidValueError(f"{name} must have at most {MOST_VALUES} values, got {len(texts)}")
+        raise InvalidValueError(
+            "{parameter} must have at most {limit} values, got {count}", parameter=name, limit=MOST_VALUES,
+            count=len(texts),
+        )  # fmt: skip
     pairs = [checks.quantity(name, text, unit) for text in texts]
     written = [one for _, one in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
         why = checks.number_hint(",".join(texts))
         raise InvalidValueError(
-            f"{name} must have a unit at every number or at none, got {':'.join(texts)!r:.60}", hint=why
-        )
+            "{parameter} must have a unit at every number or at none, got {value}", parameter=name,
+            value=":".join(texts), hint=why,
+        )  # fmt: skip
     return [value for value, _ in pairs], written[0]
 
 
@@ -95,7 +102,10 @@ def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None,
         name = checks.one_of("--units", part.strip(), [each for kind in kinds for each in kind])
         place = next(k for k, kind in enumerate(kinds) if name in kind)
         if units[place] is not None:
-            raise InvalidValueError(f"--units must have one unit of a kind, got {units[place]} and {name}")
+            raise InvalidValueError(
+                "{parameter} must have one unit of a kind, got {first} and {second}", parameter="--units",
+                first=units[place], second=name,
+            )  # fmt: skip
         units[place] = name
     return tuple(units)
 

@@ -47,7 +47,7 @@ def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, detai
     """Return the response to a problem, and with the models that it lists beside the first, or all without a value."""
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
-        raise RockingError(f"there is no response: {response.status.value}")
+        raise RockingError("there is no response: {reason}", reason=response.status.value)
     if not problem.mechanics.is_compared:
         return ResponseAnswer(problem, response, display, details=details)
     rivals = dict(list(problem.restitutions.items())[1:])

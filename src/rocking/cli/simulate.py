@@ -109,8 +109,9 @@ def simulate(
         if words := arguments.several:
             if out:
                 raise InvalidValueError(
-                    f"--out is of one record, and {words[0][:100]} is of several: --json has them all"
-                )
+                    "{parameter} is of one record, and {set} is of several: --json has them all", parameter="--out",
+                    set=words[0][:100],
+                )  # fmt: skip
             deliver(_each(arguments, words, display, quiet=as_json), as_json=as_json)
             return
         problem = _problem(arguments, in_space)
@@ -129,12 +130,14 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     free = "free" in response
     dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
-        raise InvalidValueError(f"give a motion or --free, not both; got {motions[0][:100]!r}")
+        raise InvalidValueError("give a motion or --free, not both; got {motion!r}", motion=motions[0][:100])
     stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
     if stated and not motions and (free or dropped):
         name = "--free" if free else "a drop"
-        raise InvalidValueError(f"{name} has no motion, so it takes no {', '.join(stated)}")
+        raise InvalidValueError(
+            "{option} has no motion, so it takes no {options}", option=name, options=", ".join(stated)
+        )
     if not free and not dropped and not motions and not arguments.solid:
         raise InvalidValueError(
             "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
@@ -159,7 +162,7 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
 
     body, _ = arguments.body_and_motions()
     if arguments.options["free"] is not None:
-        raise InvalidValueError(f"give a motion or --free, not both; got {words[0][:100]!r}")
+        raise InvalidValueError("give a motion or --free, not both; got {motion!r}", motion=words[0][:100])
     files = CommandFiles(Path())
     with arguments.hinted():
         tables = {
@@ -237,9 +240,10 @@ def _check_share(alpha: float, free: float, option: str) -> None:
     """Refuse, or doubt, what looks like an angle in degrees in place of a share of the slenderness angle [rad]."""
     if abs(free) * alpha >= 0.5 * math.pi:
         raise InvalidValueError(
-            f"{option} is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "
-            f"body balances; got {free:g}. An angle of {free:g} degrees is {option} {math.radians(free) / alpha:.3g}"
-        )
+            "{parameter} is a share of the slenderness angle, here {slenderness_angle:.3g} degrees, and 1 is where "
+            "the body balances; got {free:g}. An angle of {free:g} degrees is {parameter} {share:.3g}",
+            parameter=option, slenderness_angle=math.degrees(alpha), free=free, share=math.radians(free) / alpha,
+        )  # fmt: skip
     if abs(free) > 1.0:
         plausibility.warn([
             f"let go at {free:g} slenderness angles, beyond where the body balances: it can only fall. An angle of "

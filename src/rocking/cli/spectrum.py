@@ -12,6 +12,7 @@ from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
+from rocking.messages import Amount
 from rocking.spec.questions.spectrum import SpectrumQuestion, SpectrumTable
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def spectrum(
         own = {**arguments.values(SpectrumTable), "slenderness_angles": angles, "periods": periods}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
-            raise InvalidValueError(f"{body} is a body, and {SpectrumQuestion.without_body}")
+            raise InvalidValueError("{file} is a body, and {reason}", file=body, reason=SpectrumQuestion.without_body)
         with hinted(None, named[0]):
             each = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
@@ -69,7 +70,10 @@ def spectrum(
     blocks = problem.document.spectrum
     total = len(problem.motions) * blocks.slenderness_angles.size * blocks.periods.size
     if total > _MOST:
-        raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
+        raise InvalidValueError(
+            "spectra must take at most {limit} histories, got {count}", limit=_MOST, count=total,
+            hint="rocking campaign does more",
+        )  # fmt: skip
     with bar("histories", quiet=as_json) as progress:
         answer = SpectrumAnswer(problem.answer(progress, threads), problem.settings)
     deliver(answer, exports, as_json=as_json)
@@ -83,7 +87,10 @@ def _angles(text: str) -> list[float]:
     highest, allowed = (0.5 * math.pi, "in (0, 90) deg") if unit else (1e9, "h/b, above 0")
     bad = values[~((values > 0.0) & (values < highest))]
     if bad.size:
-        raise InvalidValueError(f"--slenderness must be {allowed}, got {bad[0]:g}{' rad' if unit else ''}; wrong unit?")
+        raise InvalidValueError(
+            "{parameter} must be {allowed}, got {slenderness}", parameter="--slenderness", allowed=allowed,
+            value=bad[0], slenderness=Amount(bad[0], "rad" if unit else ""), hint="wrong unit?",
+        )  # fmt: skip
     angles: list[float] = (values if unit else np.arctan(1.0 / values)).tolist()
     return angles
 
@@ -94,7 +101,7 @@ def _periods(text: str) -> dict[str, Any]:
 
     values, _ = row("--periods", text, "s", "log")
     if np.any(values <= 0.0) or np.any(np.diff(values) <= 0.0):
-        raise InvalidValueError(f"--periods must be above 0 s and increase, got {text!r:.60}")
+        raise InvalidValueError(parameter="--periods", allowed="above 0 s and increase", value=text)
     return values_table("--periods", text, "s", "log")[0]
 
 

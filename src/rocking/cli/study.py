@@ -38,7 +38,7 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *beside
             with_sets(tables, parsed_sets(context.params.get("sets"), (*TABLES, command)), lists=True)
         )
         if document.kind not in kinds:
-            raise InvalidValueError(f'it is of kind "{document.kind}": rocking campaign run computes it')
+            raise InvalidValueError('it is of kind "{kind}": rocking campaign run computes it', kind=document.kind)
         return _in_memory(document, InputFiles(file.parent))
 
 
@@ -61,8 +61,9 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
     for name, keys in document.of_files.items():
         if odd := sorted(keys & getattr(document, name).model_fields_set):
             raise InvalidValueError(
-                f"{name}.{odd[0]} is for files of rocking campaign: leave it out, or compute this with it"
-            )
+                "{parameter} is for files of rocking campaign: leave it out, or compute this with it",
+                parameter=f"{name}.{odd[0]}",
+            )  # fmt: skip
     return StudyProblem.of(document, files)
 
 
@@ -73,9 +74,10 @@ def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restit
         raise InvalidValueError(NO_MOTION)
     if several := arguments.several:
         raise InvalidValueError(
-            f"this is of one motion, and {' '.join(several)[:100]} is of several: rocking fragility says in which "
-            "share of them a body overturns, rocking predict how likely it is, rocking simulate under which it does"
-        )
+            "this is of one motion, and {set} is of several: rocking fragility says in which share of them a body "
+            "overturns, rocking predict how likely it is, rocking simulate under which it does",
+            set=" ".join(several)[:100],
+        )  # fmt: skip
     return of_body(arguments, kind, own, restitution, in_lists([arguments.of_body(named)]))
 
 
@@ -84,7 +86,7 @@ def of_body(
 ) -> StudyProblem:
     """Return the problem of a study of one body under motions; own: the study's own table."""
     if twice := next((text for text in restitution if restitution.count(text) > 1), None):
-        raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
+        raise InvalidValueError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])
     with arguments.hinted():
         body, _ = arguments.body_and_motions()
         tables = {
@@ -118,12 +120,14 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     options = {name: arguments.options[name] for name in ("synthetic", "count", "seed")}
     if arguments.body_and_motions()[1]:
         if odd := [f"--{name}" for name, value in options.items() if value is not None]:
-            raise InvalidValueError(f"{', '.join(odd)} is for synthetic motions: leave it out beside --motion")
+            raise InvalidValueError(
+                "{options} is for synthetic motions: leave it out beside --motion", options=", ".join(odd)
+            )
         return None
     odd = ["--units"] if arguments.acceleration is not None else []
     of_files = OF_FILES - {"time_step"}
     if odd := [*odd, *(f"motion.{key}" for key in arguments.sets.get("motion", {}) if key in of_files)]:
-        raise InvalidValueError(f"{', '.join(odd)} is for record files: leave it out, or give --motion")
+        raise InvalidValueError("{options} is for record files: leave it out, or give --motion", options=", ".join(odd))
     return {**usual, **arguments.table("motion", options)}
 
 
@@ -134,7 +138,7 @@ def motions_of(
     if (synthetic := family(arguments, usual)) is None:
         return in_lists(arguments.each(arguments.body_and_motions()[1], table))
     if "synthetic" not in synthetic:
-        raise InvalidValueError(f"{NO_MOTION}, or --synthetic firm-ground")
+        raise InvalidValueError(NO_MOTION + ", or --synthetic firm-ground")
     return [synthetic]
 
 
