@@ -98,10 +98,10 @@ def room_on_disk() -> Iterator[None]:
     try:
         yield
     except OSError as error:  # its own words name files of the server
-        why = error.strerror or "it cannot be written"
         raise NoRoom(
-            f"the disk of the server does not take the file: {why}; make room there, then send it again"
-        ) from error
+            "the disk of the server does not take the file: {reason}", reason=error.strerror or "it cannot be written",
+            hint="make room there, then send it again",
+        ) from error  # fmt: skip
 
 
 def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
@@ -114,6 +114,6 @@ def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
     room = min(shutil.disk_usage(folder).free, limit - used)
     if wanted > room:
         raise TooLarge(
-            f"the results need about {wanted / 1e6:.1f} MB, and there is room for {max(room, 0) / 1e6:.1f} MB; "
-            f"delete {what} that are no longer needed"
-        )
+            "the results need about {needed:.1f} MB, and there is room for {free:.1f} MB; delete {items} that are no "
+            "longer needed", needed=wanted / 1e6, free=max(room, 0) / 1e6, items=what,
+        )  # fmt: skip

@@ -70,7 +70,7 @@ class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made
     @classmethod
     def _names_no_file(cls, table: Any) -> Any:
         if isinstance(table, dict) and "file" in table:
-            raise InvalidValueError(f"file: {_UPLOAD}")
+            raise InvalidValueError("{parameter}: " + _UPLOAD, parameter="file")
         return table
 
     @model_validator(mode="after")
@@ -79,16 +79,20 @@ class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made
         present = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
         if len(present) != 1:
             choice = ", ".join(("width and height", *BODIES))
-            raise InvalidValueError(f"a body has exactly one of {choice}, got {' and '.join(present) or 'none'}")
+            raise InvalidValueError(
+                "a body has exactly one of {names}, got {keys}", names=choice, keys=" and ".join(present) or "none"
+            )
         if sized and (self.width is None or self.height is None):
-            raise InvalidValueError(f"{'width' if self.width is None else 'height'} is missing")
+            raise InvalidValueError("{parameter} is missing", parameter="width" if self.width is None else "height")
         own = ("depth", "density", *KnownTable.model_fields)
         if not sized and (odd := [key for key in own if getattr(self, key) is not None]):
-            raise InvalidValueError(f"{' and '.join(odd)} of a {present[0]} stand in its own table")
+            raise InvalidValueError(
+                "{keys} of a {table} stand in its own table", keys=" and ".join(odd), table=present[0]
+            )
         for k, region in enumerate(self.section.region if self.section else ()):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:
-                    raise InvalidValueError(f"section.region[{k}].{key}: {_UPLOAD}")
+                    raise InvalidValueError("{parameter}: " + _UPLOAD, parameter=f"section.region[{k}].{key}")
         check_size(self)
         _refuse_subnormal(self.table())
         return self
@@ -104,8 +108,9 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
         case float() if 0.0 < abs(value) < sys.float_info.min:
             least = f"{sys.float_info.min:.3g}"
             raise InvalidValueError(
-                f"{key} is {value!r}, too small for a number with all its digits ({least}); a wrong unit?"
-            )
+                "{parameter} is {number!r}, too small for a number with all its digits ({limit})", parameter=key,
+                number=value, limit=least, hint="a wrong unit?",
+            )  # fmt: skip
         case dict():
             for name, each in value.items():
                 _refuse_subnormal(each, f"{key}.{name}" if key else name)
@@ -117,7 +122,7 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
 def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
     """Refuse more of something than one answer takes."""
     if count > most:
-        raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
+        raise TooLarge(what + ", got {count}", most=most, count=count, hint=way_out)
 
 
 def check_size(table: BodyFile) -> None:
@@ -232,8 +237,9 @@ class MotionInput(OneMotionTable):
         other = self.model_fields_set - MOTION_KEYS - {"record", "file_name"}
         if odd := sorted(key for key in other if getattr(self, key) is not None):
             raise InvalidValueError(
-                f"{odd[0]}: the application reads no file by its name; upload one with both components"
-            )
+                "{parameter}: the application reads no file by its name", parameter=odd[0],
+                hint="upload one with both components",
+            )  # fmt: skip
         return self
 
 
@@ -311,19 +317,25 @@ class MotionRequest(JobTable):
 def parsed_toml(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text that somebody sent; every whole number in it fits into 64 bits."""
     if len(text) > LONGEST:
-        raise Refused(f"a TOML file may have up to {LONGEST >> 20} MiB, this has {len(text) / 2**20:.1f}")
+        raise Refused(
+            "a TOML file may have up to {limit} MiB, this has {size:.1f}", limit=LONGEST >> 20, size=len(text) / 2**20
+        )
     try:
         tables = tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as error:
-        raise Refused(f"this is not TOML that can be read: {' '.join(str(error).split())[:200]}") from error
+        raise Refused(
+            "this is not TOML that can be read: {reason}", reason=" ".join(str(error).split())[:200]
+        ) from error
     except (ValueError, RecursionError) as error:
         raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
     for depth, level in enumerate(levels(tables)):
         if depth >= _DEEPEST:
-            raise Refused(f"the TOML is nested deeper than {_DEEPEST}")
+            raise Refused("the TOML is nested deeper than {limit}", limit=_DEEPEST)
         for value in level:
             if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
-                raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
+                raise Refused(
+                    "a whole number of {count} bits in the TOML does not fit into 64 bits", count=value.bit_length()
+                )
             texts = [each for each in (value if isinstance(value, dict) else [value]) if isinstance(each, str)]
             if any("\0" in text for text in texts):
                 raise Refused("a text in the TOML holds a NUL")
@@ -379,7 +391,8 @@ def _body(table: BodyInput) -> Body:
         mass, inertia = body.mass, body.moment_of_inertia
         if min(mass, inertia or mass) < _LIGHTEST:
             raise InvalidValueError(
-                f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below "
-                "which digits are lost; is a density or a mass in a wrong unit?"
-            )
+                "mass {mass:.3g} kg and moment of inertia {moment_of_inertia:.3g} kg m2 must be > {limit:g}, below "
+                "which digits are lost", mass=mass, moment_of_inertia=inertia, limit=_LIGHTEST,
+                hint="is a density or a mass in a wrong unit?",
+            )  # fmt: skip
         return body

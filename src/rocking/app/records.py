@@ -189,7 +189,9 @@ class RecordStore:
             raise TooLarge("up to {most} records are kept; delete some that are no longer needed", most=MOST_RECORDS)
         if not self._fits(others, record):
             room = self._limits.records_bytes >> 20
-            raise TooLarge(f"records may take up to {room} MiB together; delete some that are no longer needed")
+            raise TooLarge(
+                "records may take up to {limit} MiB together", limit=room, hint="delete some that are no longer needed"
+            )
 
     def _fits(self, others: list[StoredRecord], record: StoredRecord) -> bool:
         room = self._limits.records_bytes - sum(other.bytes for other in others)

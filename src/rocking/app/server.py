@@ -46,36 +46,43 @@ def check_host(host: str, *, allow_remote: bool) -> None:
     """Refuse an address that others reach, unless that is wanted."""
     if host in _EVERYWHERE:
         raise InvalidValueError(
-            f"--host {host or repr(host)} is every address at once: name the one under which others open the page"
-        )
+            "{parameter} {host} is every address at once: name the one under which others open the page",
+            parameter="--host", host=host or repr(host),
+        )  # fmt: skip
     if host not in LOOPBACK and not allow_remote:
         raise InvalidValueError(
-            f"--host {host} can be reached from other machines, over a connection that is not encrypted: "
-            "add --allow-remote if that is meant; without it the server listens on 127.0.0.1 only"
-        )
+            "{parameter} {host} can be reached from other machines, over a connection that is not encrypted: add "
+            "--allow-remote if that is meant; without it the server listens on 127.0.0.1 only", parameter="--host",
+            host=host,
+        )  # fmt: skip
 
 
 def listen(host: str, port: int, *, search: bool) -> socket.socket:
     """Return a socket that listens."""
     if not 0 <= port <= 65535:
-        raise InvalidValueError(f"--port must be in 0 ... 65535, got {port}")
+        raise InvalidValueError(parameter="--port", allowed="in 0 ... 65535", value=port)
     for candidate in range(port, min(port + _TRIED, 65536)) if search and port else (port,):
         try:
             return _bound(host, candidate)
         except PermissionError as error:
             raise InvalidValueError(
-                f"port {candidate} is not free to use: choose one above 1023 with --port"
+                "port {port} is not free to use: choose one above 1023 with --port", port=candidate
             ) from error
         except socket.gaierror as error:
-            raise InvalidValueError(f"--host {host} is not an address ({error.strerror})") from error
+            raise InvalidValueError(
+                "{parameter} {host} is not an address ({reason})", parameter="--host", host=host, reason=error.strerror
+            ) from error
         except OSError as error:
             if error.errno != errno.EADDRINUSE:
-                raise InvalidValueError(f"cannot listen on {host}: {error.strerror}") from error
+                raise InvalidValueError(
+                    "cannot listen on {host}: {reason}", host=host, reason=error.strerror
+                ) from error
     raise InvalidValueError(
-        f"ports {port} to {port + _TRIED - 1} are taken: choose another with --port"
+        "ports {port} to {last} are taken: choose another with --port"
         if search and port
-        else f"port {port} is taken, perhaps by another rocking serve: choose another with --port"
-    )
+        else "port {port} is taken, perhaps by another rocking serve: choose another with --port",
+        port=port, last=port + _TRIED - 1,
+    )  # fmt: skip
 
 
 def _bound(host: str, port: int) -> socket.socket:
@@ -146,15 +153,16 @@ class DataFolder:
             self.path.chmod(0o700)
         except OSError as error:
             raise InvalidValueError(
-                f"the data folder {str(self.path)!r} cannot be used ({error.strerror}): choose another with --data"
-            ) from error
+                "the data folder {folder!r} cannot be used ({reason}): choose another with --data",
+                folder=str(self.path), reason=error.strerror,
+            ) from error  # fmt: skip
         try:
             self._lock.__enter__()
         except CampaignBusyError as error:
             raise FolderInUseError(
-                f"another rocking serve runs with the data folder {str(self.path)!r}: stop it, "
-                "or choose another folder with --data"
-            ) from error
+                "another rocking serve runs with the data folder {folder!r}: stop it, or choose another folder with "
+                "--data", folder=str(self.path),
+            ) from error  # fmt: skip
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,5 +1,6 @@
 """POST /api/contact-bed: what a bed of springs and dashpots makes of an impact, as one thing of it changes."""
 
+import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -10,6 +11,7 @@ from rocking.app.answers import JsonAnswer, answered, shape
 from rocking.app.studies.results import plain
 from rocking.app.work import heavy
 from rocking.errors import InvalidValueError
+from rocking.messages import Range
 from rocking.spec.fields import JobTable, Positive, Seed, Values
 
 router = APIRouter(prefix="/api", tags=["impact"])
@@ -74,9 +76,11 @@ class ContactBedRequest(JobTable):
         may_vanish = self.varied in {"damping", "amplitude", "seed"}
         for each in ends:
             if each < 0.0 or (each == 0.0 and not may_vanish):
-                raise InvalidValueError(f"{self.varied} must be {'>=' if may_vanish else '>'} 0, got {each:g}")
+                raise InvalidValueError(
+                    parameter=self.varied, allowed=Range(0.0, math.inf, low_open=not may_vanish), value=each
+                )
             if self.varied == "points" and each > MOST_POINTS:
-                raise InvalidValueError(f"points must be at most {MOST_POINTS}, got {each:g}")
+                raise InvalidValueError(parameter="points", allowed=f"at most {MOST_POINTS}", value=each)
         return self
 
 

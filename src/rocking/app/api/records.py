@@ -214,4 +214,4 @@ def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
         try:
             GroundMotion(values, part.time_step)
         except InvalidValueError as error:
-            raise RecordError(f"{name}, {part.name}: {error}") from error
+            raise error.copied(RecordError).at(f"{name}, {part.name}") from error

@@ -169,10 +169,10 @@ def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
         samples += one.segments.count if isinstance(one, Response) else 0
         if samples > MOST_TOGETHER:
             raise TooLarge(
-                f"{len(answers)} of {len(problem.restitutions)} responses together take {samples} steps, more than "
-                f"the {MOST_TOGETHER} that are computed at once; fewer restitutions, a motion with longer steps, or "
-                "the command line"
-            )
+                "{answered} of {count} responses together take {steps} steps, more than the {limit} that are computed "
+                "at once", answered=len(answers), count=len(problem.restitutions), steps=samples, limit=MOST_TOGETHER,
+                hint="fewer restitutions, a motion with longer steps, or the command line",
+            )  # fmt: skip
     reasons = [reason for reason in answers.values() if isinstance(reason, str)]
     if len(reasons) == len(answers):
         raise InvalidValueError(reasons[0])

@@ -83,7 +83,7 @@ def inputs_from_file(data: bytes, records: RecordStore) -> Inputs:
 def _inputs_from_archive(archive: "Archive", records: RecordStore) -> Inputs:
     texts = [name for name in archive.names if name.lower().endswith(".toml")]
     if len(texts) != 1:
-        raise Refused(f"the archive must hold one TOML file of inputs, it has {len(texts)}")
+        raise Refused("the archive must hold one TOML file of inputs, it has {count}", count=len(texts))
     text = _text(archive.content(texts[0], LONGEST))
     name = _record_of(text)
     if name not in archive.names:
@@ -110,7 +110,7 @@ def _text(data: bytes) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise Refused(f"this is not a text file in UTF-8 (byte {error.start})") from error
+        raise Refused("this is not a text file in UTF-8 (byte {byte})", byte=error.start) from error
 
 
 def _finder(records: RecordStore) -> FindRecord:
@@ -132,14 +132,16 @@ class Archive:
     def __init__(self, data: bytes, most_files: int = MOST_FILES) -> None:
         # before all of them are read; a packed record may hold the four bytes by chance
         if data.count(_ENTRY) > _MOST_ENTRIES + most_files:
-            raise TooLarge(f"an archive may hold up to {most_files} files")
+            raise TooLarge("an archive may hold up to {limit} files", limit=most_files)
         try:
             self._archive = ZipFile(io.BytesIO(data))
         except (BadZipFile, ValueError, NotImplementedError, OSError) as error:
             raise Refused("this is no ZIP archive that can be read: is it damaged?") from error
         entries = self._archive.infolist()
         if len(entries) > most_files:
-            raise TooLarge(f"an archive may hold up to {most_files} files, this has {len(entries)}")
+            raise TooLarge(
+                "an archive may hold up to {limit} files, this has {count}", limit=most_files, count=len(entries)
+            )
         for entry in entries:
             _check_entry(entry)
         self._entries = {entry.filename: entry for entry in entries}
@@ -162,9 +164,9 @@ class Archive:
             with self._archive.open(self._entries[name]) as file:
                 content = file.read(most + 1)
         except (BadZipFile, zlib.error, EOFError, ValueError, NotImplementedError, RuntimeError, OSError) as error:
-            raise Refused(f"{plain_line(name, 60)} in the archive is damaged") from error
+            raise Refused("{name} in the archive is damaged", name=plain_line(name, 60)) from error
         if len(content) > most:
-            raise TooLarge(f"{plain_line(name, 60)} in the archive has more than {most} bytes")
+            raise TooLarge("{name} in the archive has more than {limit} bytes", name=plain_line(name, 60), limit=most)
         return content
 
 
@@ -176,8 +178,10 @@ def _check_entry(entry: ZipInfo) -> None:
         or set(entry.filename) & set("/\\:\0")
         or entry.filename in {"", ".", ".."}
     ):
-        raise Refused(f"the archive holds {name!r}: files must lie beside each other, without folders")
+        raise Refused("the archive holds {name!r}: files must lie beside each other, without folders", name=name)
     if entry.flag_bits & _ENCRYPTED:
-        raise Refused(f"{name} in the archive is encrypted")
+        raise Refused("{name} in the archive is encrypted", name=name)
     if entry.compress_type not in {ZIP_STORED, ZIP_DEFLATED}:
-        raise Refused(f"{name} in the archive is packed in a way that is not read here: pack it as usual (deflate)")
+        raise Refused(
+            "{name} in the archive is packed in a way that is not read here: pack it as usual (deflate)", name=name
+        )

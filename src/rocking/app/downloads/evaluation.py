@@ -93,7 +93,7 @@ class Evaluation:
             return next(iter(self.responses.values()))
         answers = list(self.answers.values())
         if not 0 <= index < len(answers):
-            raise InvalidValueError(f"restitution must be 0 to {len(answers) - 1}, got {index}")
+            raise InvalidValueError(parameter="restitution", allowed=f"0 to {len(answers) - 1}", value=index)
         one = answers[index]
         if isinstance(one, str):
             raise InvalidValueError(one)

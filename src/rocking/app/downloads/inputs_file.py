@@ -81,7 +81,10 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     if unknown and "body" not in document and _SHAPES & set(document):
         raise Refused("this is a file of a body alone: drop it in the step Body")
     if unknown:
-        raise Refused(f"[{plain_line(unknown[0], 60)}] is no table of inputs; there are {', '.join(_TABLES)}")
+        raise Refused(
+            "[{table}] is no table of inputs; there are {names}", table=plain_line(unknown[0], 60),
+            names=", ".join(_TABLES),
+        )  # fmt: skip
     motion = document.get("motion")
     if isinstance(motion, dict) and isinstance(motion.get("record"), str):
         document["motion"] = motion | _stored(motion["record"], text, find)
@@ -113,8 +116,9 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
     sha = find(word)
     if sha is None:
         raise Refused(
-            f"motion.record: {plain_line(word, 80)} was not uploaded here; drop the file first, then read this"
-        )
+            "{parameter}: {record} was not uploaded here", parameter="motion.record", record=plain_line(word, 80),
+            hint="drop the file first, then read this",
+        )  # fmt: skip
     return {"record": sha} if is_hash(word) else {"record": sha, "file_name": word}
 
 

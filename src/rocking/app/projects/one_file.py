@@ -92,7 +92,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         raise Refused("this is no project of rocking, which is one ZIP archive")
     archive = Archive(data, MOST_FILES)
     if _WHAT not in archive.names:
-        raise Refused(f"the archive is no project of rocking: it holds no {_WHAT}")
+        raise Refused("the archive is no project of rocking: it holds no {file}", file=_WHAT)
     with located(_WHAT, "file"):
         content = archive.content(_WHAT, 8 * LARGEST)
         check_json(content, _DEEPEST)
@@ -101,7 +101,9 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         except ValidationError as error:
             raise from_pydantic(error.errors(include_url=False), kind=Refused) from error
     if len(whole.studies) > MOST_STUDIES:
-        raise TooLarge(f"a file may bring {MOST_STUDIES} studies, this has {len(whole.studies)}")
+        raise TooLarge(
+            "a file may bring {limit} studies, this has {count}", limit=MOST_STUDIES, count=len(whole.studies)
+        )
     for study in whole.studies:
         JobDocument.of(study.job)  # before anything is kept
     _keep_files(state, archive, whole)
@@ -123,13 +125,15 @@ def _keep_files(state: "AppState", archive: Archive, whole: _ProjectFile) -> Non
             if store is state.records:
                 record_facts(content, name, {"format": None, "units": None, "time_step": None})
             if store.add(content, name).record != sha:
-                raise RecordError(f"{record_file_name(name)} in the archive is not the file that was put into it")
+                raise RecordError(
+                    "{record} in the archive is not the file that was put into it", record=record_file_name(name)
+                )
 
 
 def _entry(archive: Archive, sha: str) -> str:
     entry = next((name for name in archive.names if is_hash(sha) and name.startswith(f"{sha[:12]}-")), None)
     if entry is None:
-        raise Refused(f"the archive does not hold the record {sha:.12} that it names")
+        raise Refused("the archive does not hold the record {record:.12} that it names", record=sha)
     return entry
 
 

@@ -88,7 +88,9 @@ class ProjectStore:
             self._database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORMAT}; COMMIT;")
         elif version > _FORMAT:
             self._database.close()
-            raise Refused(f"{path.name} was written by a later version of rocking: use that one, or another --data")
+            raise Refused(
+                "{file} was written by a later version of rocking: use that one, or another --data", file=path.name
+            )
         if fresh:
             sync_folder(path.parent)
         with self._changing() as database:
@@ -124,7 +126,9 @@ class ProjectStore:
                 "SELECT document FROM states WHERE project = ? AND number = ?", (project, number)
             ).fetchone()
         if row is None:
-            raise NotFound(f"the project has no state {number}; its oldest ones are not kept for ever")
+            raise NotFound(
+                "the project has no state {number}", number=number, hint="its oldest ones are not kept for ever"
+            )
         document: dict[str, Any] = json.loads(zlib.decompress(row[0]))
         return document
 
@@ -144,7 +148,9 @@ class ProjectStore:
         with self._changing() as database:
             (count,) = database.execute("SELECT count(*) FROM projects WHERE deleted IS NULL").fetchone()
             if count >= MOST_PROJECTS:
-                raise TooLarge(f"up to {MOST_PROJECTS} projects are kept; delete some that are no longer needed")
+                raise TooLarge(
+                    "up to {limit} projects are kept", limit=MOST_PROJECTS, hint="delete some that are no longer needed"
+                )
             database.execute("INSERT INTO projects VALUES (?, ?, ?, ?, 1, 1, NULL)", (project, _name(name), now, now))
             database.execute("INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, words, now, packed))
         return self.get(project)
@@ -255,9 +261,9 @@ class ProjectStore:
                     raise
             except sqlite3.OperationalError as error:
                 raise NoRoom(
-                    f"the project cannot be saved: {error}; is the disk of the server full, or its folder read-only, "
-                    "or are there too many projects?"
-                ) from error
+                    "the project cannot be saved: {reason}", reason=str(error),
+                    hint="is the disk of the server full, or its folder read-only, or are there too many projects?",
+                ) from error  # fmt: skip
 
 
 _PROJECT = """
@@ -284,9 +290,9 @@ def _packed(document: dict[str, Any]) -> bytes:
     data = json.dumps(document, allow_nan=False, separators=(",", ":")).encode()
     if len(data) > LARGEST:
         raise TooLarge(
-            f"a project may hold {LARGEST >> 20} MiB beside its records, this has {len(data) / 2**20:.1f}: "
-            "simplify the outline, or take a body file"
-        )
+            "a project may hold {limit} MiB beside its records, this has {size:.1f}: simplify the outline, or take a "
+            "body file", limit=LARGEST >> 20, size=len(data) / 2**20,
+        )  # fmt: skip
     return zlib.compress(data)
 
 

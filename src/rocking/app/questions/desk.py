@@ -109,22 +109,27 @@ class QuestionDesk:
     ) -> HostedQuestion:
         """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
         if command not in OUTPUTS:
-            raise Refused(
-                "command must be one of {commands}, got {command}",
-                commands=", ".join(OUTPUTS),
-                command=f"{command!r:.40}",
-            )
+            raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
         if format and (command != "convert" or format not in formats()):
-            raise Refused(f"format is that of a record that convert writes, one of {', '.join(formats())}")
+            raise Refused(
+                "{parameter} is that of a record that convert writes, one of {names}", parameter="format",
+                names=", ".join(formats()),
+            )  # fmt: skip
         if command == WITHOUT_FILE and (tables or files):
-            raise Refused(f"{command} is recomputed from published measurements alone: it takes no tables and no files")
+            raise Refused(
+                "{command} is recomputed from published measurements alone: it takes no tables and no files",
+                command=command,
+            )  # fmt: skip
         refuse_outside(tables)
         known = self._paths(files)
         with self._changed:
             if len(self._line) >= MOST_WAITING:
                 raise Busy("{count} questions wait already; try again in a moment", count=len(self._line), seconds=5)
             if len(self._questions) >= MOST_QUESTIONS:
-                raise TooLarge(f"up to {MOST_QUESTIONS} questions are kept; delete some that are no longer needed")
+                raise TooLarge(
+                    "up to {limit} questions are kept", limit=MOST_QUESTIONS,
+                    hint="delete some that are no longer needed",
+                )  # fmt: skip
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
         question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked, format=format)
@@ -169,7 +174,10 @@ class QuestionDesk:
         """Return where a file of an answer is."""
         known = self.get(question)
         if name not in known.files:
-            raise NotFound(f"the question has no file {name!r:.40}; it has {', '.join(known.files) or 'none'}")
+            raise NotFound(
+                "the question has no file {name!r:.40}; it has {files}", name=name,
+                files=", ".join(known.files) or "none",
+            )  # fmt: skip
         return self.folder / known.id / name
 
     def stop(self, question: str) -> HostedQuestion:
@@ -223,14 +231,17 @@ class QuestionDesk:
 
     def _paths(self, files: Mapping[str, str]) -> dict[str, Path]:
         if len(files) > MOST_FILES:
-            raise TooLarge(f"a question takes up to {MOST_FILES} files, got {len(files)}")
+            raise TooLarge("a question takes up to {limit} files, got {count}", limit=MOST_FILES, count=len(files))
         paths = {}
         for word, sha in files.items():
             plain = word.removeprefix(f"{FOLDER}/")
             if plain != safe_name(plain, "file") or word.lower() in {*_OWN, FOLDER}:
-                raise Refused(f"the name of a file must be plain, as {safe_name(word, 'file')!r}, got {word!r:.60}")
+                raise Refused(
+                    "the name of a file must be plain, as {example!r}, got {name!r:.60}",
+                    example=safe_name(word, "file"), name=word,
+                )  # fmt: skip
             if word.startswith("record."):
-                raise Refused(f"{word!r:.60} is the name of what is written: give the file another")
+                raise Refused("{name!r:.60} is the name of what is written: give the file another", name=word)
             paths[word] = self._path(sha)
         return paths
 
@@ -238,7 +249,7 @@ class QuestionDesk:
         for store in self._stores:
             with suppress(NotFound):
                 return store.path(sha)
-        raise NotFound(f"no file {str(sha)[:12]}... is kept here: send it once more")
+        raise NotFound("no file {hash}... is kept here: send it once more", hash=str(sha)[:12])
 
     def _become(self, question: HostedQuestion) -> None:
         with self._changed:
@@ -368,9 +379,13 @@ def refuse_outside(tables: dict[str, Any]) -> None:
             if not isinstance(word, str):
                 continue
             if file_of(word.strip()):
-                raise Refused(f"{word!r:.60} names a file of code, which a page cannot run; see the command line")
+                raise Refused(
+                    "{name!r:.60} names a file of code, which a page cannot run", name=word, hint="see the command line"
+                )
             if word.startswith(("/", "\\", "~")) or ".." in word.replace("\\", "/").split("/") or word[1:3] == ":\\":
-                raise Refused(f"{word!r:.60} leads out of the question: send the file, and name it by its name alone")
+                raise Refused(
+                    "{name!r:.60} leads out of the question: send the file, and name it by its name alone", name=word
+                )
 
 
 def _refusal(place: Path, code: int | None) -> dict[str, Any]:

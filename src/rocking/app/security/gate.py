@@ -57,12 +57,15 @@ class RequestHead:
         """Return the head of an ASGI connection."""
         pairs = scope["headers"]
         if len(pairs) > _MOST_HEADERS or sum(len(name) + len(value) for name, value in pairs) > _MOST_BYTES:
-            raise Refused(f"the head has more than {_MOST_HEADERS} headers or {_MOST_BYTES} bytes", status=431)
+            raise Refused(
+                "the head has more than {headers} headers or {limit} bytes", headers=_MOST_HEADERS, limit=_MOST_BYTES,
+                status=431,
+            )  # fmt: skip
         headers: dict[str, str] = {}
         for raw, value in pairs:
             name = raw.decode("latin-1").lower()
             if name in headers and name in _ONCE:
-                raise Refused(f"the header {name} is there twice", status=400)
+                raise Refused("the header {name} is there twice", name=name, status=400)
             headers[name] = value.decode("latin-1").strip()
         target = (scope.get("raw_path") or scope["path"].encode()).decode("latin-1")
         return cls(
@@ -94,13 +97,13 @@ def check_method(head: RequestHead) -> None:
     if head.method not in _METHODS:
         raise Refused("the method must be GET, HEAD, POST or DELETE", status=405)
     if head.method in SAFE and head.has_body:
-        raise Refused(f"a {head.method} request has no body", status=400)
+        raise Refused("a {method} request has no body", method=head.method, status=400)
 
 
 def check_target(head: RequestHead, most: int) -> None:
     """Refuse paths of anything but letters, digits, dots, dashes and slashes; most: of path and query [bytes]."""
     if len(head.target) + len(head.query) > most:
-        raise Refused(f"path and query are longer than {most} bytes", status=414)
+        raise Refused("path and query are longer than {limit} bytes", limit=most, status=414)
     if not _PATH.fullmatch(head.target):
         raise NotFound("there is no such page: its path has characters that none here has")
 
@@ -127,7 +130,10 @@ def check_origin(head: RequestHead, own: frozenset[str]) -> None:
     if origin is None:
         if head.unsafe:
             name = head.headers.get("host", "127.0.0.1")
-            raise Refused(f"the Origin header is missing: a script sends Origin: {head.scheme}://{name}", status=403)
+            raise Refused(
+                "the Origin header is missing: a script sends Origin: {scheme}://{name}", scheme=head.scheme, name=name,
+                status=403,
+            )  # fmt: skip
     elif origin.lower() not in {f"{head.scheme}://{name}" for name in own}:
         raise Refused("the Origin header names another page than this server's own", status=403)
 
@@ -153,7 +159,10 @@ def check_content(head: RequestHead) -> None:
     if head.headers.get("content-encoding", "identity").lower() != "identity":
         raise Refused("the body must not be compressed", status=415)
     if (head.has_body or kind) and head.unsafe and kind not in {JSON, BYTES}:
-        raise Refused(f"Content-Type must be {JSON}, or {BYTES} for a file", status=415)
+        raise Refused(
+            "{parameter} must be {allowed}", parameter="Content-Type", allowed=f"{JSON}, or {BYTES} for a file",
+            status=415,
+        )  # fmt: skip
     parameters = head.headers.get("content-type", "").partition(";")[2].replace(" ", "").lower()
     if kind == JSON and parameters not in {"", "charset=utf-8", 'charset="utf-8"'}:
         raise Refused("JSON must be in UTF-8", status=415)

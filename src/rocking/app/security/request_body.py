@@ -55,7 +55,9 @@ class BodyLimits:
             async with asyncio.timeout(self._limits.body_seconds):
                 await self._fill(head, receive, body, most)
         except TimeoutError as error:
-            raise Refused(f"the body did not arrive within {self._limits.body_seconds:g} s", status=408) from error
+            raise Refused(
+                "the body did not arrive within {limit:g} s", limit=self._limits.body_seconds, status=408
+            ) from error
         if len(body) > _LONG_JSON and not is_file:
             await asyncio.to_thread(check_json, bytes(body), depth)
         elif not is_file:
@@ -115,7 +117,7 @@ def check_json(data: bytes, depth: int) -> None:
     for match in _BRACKETS.finditer(data):
         level += (match[0] in b"[{") - (match[0] in b"]}")
         if level > depth:
-            raise Refused(f"the JSON is nested deeper than {depth}")
+            raise Refused("the JSON is nested deeper than {limit}", limit=depth)
     try:
         text = data.decode("utf-8")
         value = json.loads(
@@ -128,25 +130,28 @@ def check_json(data: bytes, depth: int) -> None:
     except UnicodeEncodeError as error:
         raise Refused("a text in the JSON holds half a character (a lone surrogate)") from error
     except json.JSONDecodeError as error:
-        raise Refused(f"this is not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from error
+        raise Refused(
+            "this is not JSON: {reason} at line {line}, column {column}", reason=error.msg, line=error.lineno,
+            column=error.colno,
+        ) from error  # fmt: skip
     if "\\u0000" in text.lower() or "\0" in text:
         raise Refused("a text in the JSON holds a NUL")
 
 
 def _constant(word: str) -> NoReturn:
-    raise Refused(f"{word} is not a number that can be computed with")
+    raise Refused("{word} is not a number that can be computed with", word=word)
 
 
 def _float(word: str) -> float:
     value = float(word)
     if not math.isfinite(value):
-        raise Refused(f"the number {word[:40]} is larger than float64 holds")
+        raise Refused("the number {word} is larger than float64 holds", word=word[:40])
     return value
 
 
 def _int(word: str) -> int:
     if len(word) > 20 or not -_LARGEST <= int(word) < _LARGEST:
-        raise Refused(f"the whole number {word[:40]} does not fit into 64 bits")
+        raise Refused("the whole number {word} does not fit into 64 bits", word=word[:40])
     return int(word)
 
 
@@ -155,5 +160,5 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(content) != len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise Refused(f"the key {twice[:60]!r} is there twice")
+        raise Refused("the key {key!r} is there twice", key=twice[:60])
     return content

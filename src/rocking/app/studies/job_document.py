@@ -50,15 +50,15 @@ class JobDocument:
     def of(cls, tables: object) -> "JobDocument":
         """Return a job that names no file, opens nothing, and fits its own kind."""
         if not isinstance(tables, dict):
-            raise InvalidValueError(f"job must be an object of tables, as a job file has them, got {tables!r:.60}")
+            raise InvalidValueError(
+                parameter="job", allowed="an object of tables, as a job file has them", value=tables
+            )
         _check_extent(tables)
         _refuse_files(tables)
         campaign = tables.get("campaign")
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
         if isinstance(kind, str) and kind not in (known := launched_kinds()):
-            raise InvalidValueError(
-                "campaign.kind must be one of {kinds}, got {kind}", kinds=", ".join(known), kind=f"{kind!r:.60}"
-            )
+            raise InvalidValueError(parameter="campaign.kind", allowed=f"one of {', '.join(known)}", value=kind)
         with located("job"):
             job = cls(tables, question_in(tables))
         job._check_counts()
@@ -72,8 +72,10 @@ class JobDocument:
         most = {"regions of bodies": 1000} | dict.fromkeys(counts, 100_000) | _MOST
         for name, count in {"regions of bodies": sum(map(_checked_regions, document.bodies)), **counts}.items():
             if count > most[name]:
-                limit = f"a page takes up to {most[name]}, `rocking campaign` any number"
-                raise TooLarge(f"the job has {count} {name}; {limit}")
+                raise TooLarge(
+                    "the job has {count} {items}; a page takes up to {limit}, `rocking campaign` any number",
+                    count=count, items=name, limit=most[name],
+                )  # fmt: skip
 
     @property
     def needs_long(self) -> bool:
@@ -119,9 +121,15 @@ def _check_extent(tables: Any) -> None:
     for depth, level in enumerate(levels(tables)):
         count += len(level)
         if count > _MOST_VALUES:
-            raise InvalidValueError(f"job must have at most {_MOST_VALUES} values, got more; write ranges for lists")
+            raise InvalidValueError(
+                "{parameter} must have at most {limit} values, got more", parameter="job", limit=_MOST_VALUES,
+                hint="write ranges for lists",
+            )  # fmt: skip
         if depth >= _DEEPEST:
-            raise InvalidValueError(f"job must be nested at most {_DEEPEST} deep, got more; as job files are")
+            raise InvalidValueError(
+                "{parameter} must be nested at most {limit} deep, got more", parameter="job", limit=_DEEPEST,
+                hint="as job files are",
+            )  # fmt: skip
 
 
 def _refuse_files(tables: dict[str, Any]) -> None:
@@ -129,14 +137,17 @@ def _refuse_files(tables: dict[str, Any]) -> None:
     for each in chain.from_iterable(levels(tables.get("body"))):
         for key in each if isinstance(each, dict) else ():
             if key in _FILES:
-                raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
+                raise InvalidValueError(
+                    "body: {key} names a file, which a page cannot do", key=key, hint="upload the file instead"
+                )
             if key not in _BODY_KEYS:
-                raise InvalidValueError(f"body: a body on a page has no key {key!r:.60}")
+                raise InvalidValueError("body: a body on a page has no key {key!r:.60}", key=key)
     for word in chain.from_iterable(levels(tables.get("restitution"))):
         if isinstance(word, str) and file_of(word.strip()):  # it would be run
             raise InvalidValueError(
-                f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign"
-            )
+                "restitution: {model!r:.60} names a file, which a page cannot do", model=word,
+                hint="see rocking campaign",
+            )  # fmt: skip
     for table in _listed(tables.get("motions")):
         if isinstance(table, dict):
             _refuse_record_files(table)
@@ -150,14 +161,15 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
         )
     for key in sorted(MotionTable.model_fields.keys() & table.keys() - MOTION_KEYS - {"records"}):
         raise InvalidValueError(
-            f"motions.{key} names a file, which a page cannot do; upload one that has both components"
-        )
+            "{parameter} names a file, which a page cannot do", parameter=f"motions.{key}",
+            hint="upload one that has both components",
+        )  # fmt: skip
     for name in _listed(table.get("records")):
         if name is not None and not is_hash(name):
             raise InvalidValueError(
-                f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
-                f"got {name!r:.60}; upload the file first"
-            )
+                parameter="motions.records", allowed="SHA-256 hashes of uploaded records (64 hexadecimal digits)",
+                value=name, hint="upload the file first",
+            )  # fmt: skip
 
 
 def _checked_regions(table: dict[str, Any]) -> int:

@@ -60,9 +60,9 @@ class StudyManager:
         count = document.most
         if count > self._limits.histories:
             raise TooLarge(
-                f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
-                "or `rocking campaign` on the command line, which has no limit"
-            )
+                "the study has {count} histories; this server takes up to {limit}: fewer values, or `rocking "
+                "campaign` on the command line, which has no limit", count=count, limit=self._limits.histories,
+            )  # fmt: skip
         words = name or document.document.campaign.name
         return self.queue.enter(lambda: self._new_study(words, document, project), brought=brought).folder.id
 
@@ -85,8 +85,10 @@ class StudyManager:
         """Return the folder of a study that is done."""
         facts = self.get(study)
         if facts["state"] != DONE:
-            share = f"{facts['histories_done']} of {facts['histories']} histories are finished"
-            raise Refused(f"the study is {facts['state']}, not done: {share}; its results can be seen when all are")
+            raise Refused(
+                "the study is {state}, not done: {done} of {count} histories are finished", state=facts["state"],
+                done=facts["histories_done"], count=facts["histories"], hint="its results can be seen when all are",
+            )  # fmt: skip
         return self.queue.study(study).folder
 
     def open(self, folder: StudyFolder) -> OpenStudy:
@@ -98,7 +100,9 @@ class StudyManager:
         with self.queue.lock:
             hosted = self.queue.study(study)
             if hosted.meta.state not in {WAITING, RUNNING}:
-                raise Refused(f"the study is {hosted.meta.state}: only one that waits or runs can be cancelled")
+                raise Refused(
+                    "the study is {state}: only one that waits or runs can be cancelled", state=hosted.meta.state
+                )
             hosted.cancelled, process = True, hosted.process
             if process is None:
                 hosted.become(CANCELLED, "cancelled before it began")
@@ -116,7 +120,7 @@ class StudyManager:
                 if hosted.unreadable:
                     raise Refused(hosted.meta.message)
                 if hosted.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
-                    raise Refused(f"the study is {hosted.meta.state}: there is nothing to resume")
+                    raise Refused("the study is {state}: there is nothing to resume", state=hosted.meta.state)
                 hosted.cancelled = False
                 hosted.become(WAITING)
                 return hosted

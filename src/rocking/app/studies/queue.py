@@ -39,7 +39,7 @@ class StudyQueue:
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
             if waiting >= self._longest and not brought:
-                raise Busy(f"{waiting} studies wait already; try again when one is done", seconds=30)
+                raise Busy("{count} studies wait already", count=waiting, hint="try again when one is done", seconds=30)
             self._entering += 1
         try:
             study = make()

@@ -87,7 +87,9 @@ class StudyFolder:
                 with np.errstate(all="ignore"):  # what overflows is infinite, and refused by its name
                     count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
                 if count != meta.histories:
-                    raise InvalidValueError(f"job has {count} histories, not {meta.histories}")
+                    raise InvalidValueError(
+                        "job has {count} histories, not {expected}", count=count, expected=meta.histories
+                    )
             self.write(meta)
         except BaseException as error:
             shutil.rmtree(self.path, ignore_errors=True)
