@@ -414,7 +414,7 @@ REFUSED = {
         "SIZE --free 0.5 --out body.glb": "a body in space, of which .glb files are",
         "two.toml": "sliding and hopping is computed with one, got ked, housner",
         "prism.toml --start-height 0.1": "without friction a body neither slides nor flies",
-        "prism.toml --friction 0.5 --start-velocity 1,2": "start_velocity must be 3 numbers, x, y, up",
+        "prism.toml --friction 0.5 --start-velocity 1,2": "--start-velocity must be 3 numbers, x, y, up",
         "prism.toml --friction 0.5 --start-velocity a": "--start-velocity must be numbers with commas between",
         "prism.toml --friction 0.5 --start-height=-1": "--start-height must be a number >= 0",
         "prism.toml --friction 0.5 --start-height 1e9": "height must be in [0, 10000] m",
