@@ -11,14 +11,7 @@ type Point = [number, number];
 type Region = { outline: Point[]; holes?: Point[][] | null; density?: number | null };
 
 /** A refusal as a view sees it: app/api.js, app/main.js. */
-type Refusal = import("/app/api.js").ApiError & Partial<RefusalData> & { field?: string | null; place?: { x?: number, y?: number, regions: number[], hole?: number } | null };
-
-/** A refusal as the server gives it: RockingError.data(). */
-type RefusalData = {
-  message: string; parameter: string; value: string | number | boolean | null; unit: string; text: string; facts: { [name: string]: any };
-  allowed: { sentence: string, low?: number | null, high?: number | null, low_open?: boolean, high_open?: boolean } | null;
-  hint: { text: string, facts: { [name: string]: any } }; places: { name: string, kind: "table" | "key" | "file" | "step", number: number }[]; more: number;
-};
+type Refusal = import("/app/api.js").ApiError & Partial<Server.Refusal> & { field?: string | null; place?: { x?: number, y?: number, regions: number[], hole?: number } | null };
 
 /** How a model, or what else is drawn, looks. */
 type Look = { colour: string; dash?: number[] };

@@ -214,11 +214,23 @@ PlaceData: Any = shape(
     kind=Literal["table", "key", "file", "step"],
     number=(int, "of the line or step, from 1; 0 for none"),
 )
+AllowedData: Any = shape(
+    "AllowedData",
+    "The allowed values of a parameter; low and high are null where a range has no end.",
+    sentence=str,
+    low=(float | None, Field(None)),
+    high=(float | None, Field(None)),
+    low_open=(bool, False),
+    high_open=(bool, False),
+)
 Refusal: Any = shape(
     "Refusal",
     "Why something is refused; all beside the message where more than a sentence is known.",
     message=(str, "in one sentence"),
     parameter=(str, Field("", description="path of the refused parameter in the request, such as body.block.width")),
+    value=(Any, Field(None, description="the refused value, in the unit of the request; as text if it is no number")),
+    allowed=(AllowedData | None, Field(None, description="the allowed values")),
+    unit=(str, Field("", description="unit of the allowed values")),
     text=(str, Field("", description="the sentence without place and hint, with named fields")),
     facts=(dict[str, Any], Field({}, description="what fills the fields")),
     hint=(MessageData | None, Field(None, description="what to do about it, or the likely cause")),

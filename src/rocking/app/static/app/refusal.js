@@ -45,11 +45,11 @@ export const spelt = (message, units = "m") => {
   return way ? t(way) : told(message, (fact) => spelling(fact, units));
 };
 
-/** Files, with their lines, and steps in which something is refused. @param {RefusalData} refusal @returns {string[]} */
+/** Files, with their lines, and steps in which something is refused. @param {Required<Server.Refusal>} refusal @returns {string[]} */
 const outerPlaces = ({ places }) => places.filter(({ kind }) => kind === "file" || kind === "step")
   .map(({ name, kind, number: line }) => (kind === "file" && line ? `${name}, ${t("line {number}", { number: line })}` : name));
 
-/** A refusal of a question in words; what it tells to state stands in the form. @param {RefusalData} refusal */
+/** A refusal of a question in words; what it tells to state stands in the form. @param {Required<Server.Refusal>} refusal */
 export const refusalWords = (refusal) => {
   const places = outerPlaces(refusal);
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
@@ -58,13 +58,13 @@ export const refusalWords = (refusal) => {
   return hint && isWay ? t("{place}: {fault}", { place: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
 };
 
-/** The key of a form that a refusal is about. @param {RefusalData} refusal @returns {string | undefined} */
+/** The key of a form that a refusal is about. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
 export const keyOf = (refusal) => {
   const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the field is that of a key of one file
   return (ofOneFile ?? nameOf(refusal.parameter)).toLowerCase() || undefined;
 };
 
-/** @param {RefusalData} error @param {Server.BodyInput["units"]} units */
+/** @param {Required<Server.Refusal>} error @param {Server.BodyInput["units"]} units */
 const sentenceOf = (error, units) => {
   const region = regionOf(error);
   const places = outerPlaces(error);
@@ -84,7 +84,7 @@ const within = (places, fault) => places.reduceRight((text, place) => t("{place}
 
 // A number that is out of its range stands in the field: it is repeated in the unit of its range.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
-/** @param {RefusalData} refusal @returns {RefusalData} */
+/** @param {Required<Server.Refusal>} refusal @returns {Required<Server.Refusal>} */
 const inForm = (refusal) => {
   const { text, facts, value, unit } = refusal;
   if (!MUST.includes(text) || facts.allowed?.kind !== "range") return refusal;
@@ -126,7 +126,7 @@ const range = ({ low, high, low_open: lowOpen, high_open: highOpen, unit }, unit
 };
 
 /** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index.
- * @param {RefusalData} error */
+ * @param {Required<Server.Refusal>} error */
 const placeOf = (error) => {
   const { x, y, first, second, ring } = error.facts;
   const region = regionOf(error);
@@ -136,7 +136,7 @@ const placeOf = (error) => {
   return place.x === undefined && place.y === undefined && !regions.length ? null : place;
 };
 
-/** The region of a section in which something is refused. @param {RefusalData} error @returns {number | undefined} */
+/** The region of a section in which something is refused. @param {Required<Server.Refusal>} error @returns {number | undefined} */
 const regionOf = (error) => {
   const index = [...error.places.map(({ name }) => name), error.parameter].map(indexOf).find((one) => one !== undefined);
   return index;
