@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.errors import _EXTRAS, BodyFileError, InvalidValueError, RecordError, located
+from rocking.errors import _EXTRAS, BodyFileError, InvalidValueError, RecordError, RockingError, located
 from rocking.messages import Amount, Index, Message, Option, Range, by_key
 
 SOURCE = Path(rk.__file__).parent
@@ -158,6 +158,30 @@ def test_every_template_has_its_facts():
                 continue
             fields = set(re.findall(r"\{(\w+)[!:}]", str(call.args[0].value)))
             assert fields <= names | {"parameter", "value", "allowed"}, (path.name, call.lineno)
+
+
+ROOMS = ("bodies", "motions", "statistics", "identification", "evidence", "restitution", "dynamics")
+FAMILY = {name for name, kind in vars(rk.errors).items() if isinstance(kind, type) and issubclass(kind, RockingError)}
+
+
+def sentences(tree):
+    """Lines that make an error of ours with a finished sentence in place of a template and its facts."""
+    return [
+        call.lineno
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call)
+        and (getattr(call.func, "id", "") in FAMILY or getattr(call.func, "attr", "") == "error")
+        and any(isinstance(text, ast.JoinedStr) for text in call.args)
+    ]
+
+
+def test_errors_are_made_of_facts():
+    """A value is a fact of the error, or the refused value: no sentence has it alone."""
+    paths = [path for room in ROOMS for path in (SOURCE / room).rglob("*.py")]
+    made = {str(path.relative_to(SOURCE)): sentences(ast.parse(path.read_text(encoding="utf-8"))) for path in paths}
+    assert {name: lines for name, lines in made.items() if lines} == {}
+    # negative control
+    assert sentences(ast.parse('raise RecordError(f"{count} samples")')) == [1]
 
 
 ROOT = Path(__file__).parents[2]

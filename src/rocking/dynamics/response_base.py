@@ -285,6 +285,6 @@ def check_samples(count: float) -> None:
     """Refuse more samples than memory should hold."""
     if not count <= _MOST_SAMPLES:
         raise InvalidValueError(
-            "the response would have {samples:.3g} samples, more than {limit:.0e}", samples=count, limit=_MOST_SAMPLES,
+            "the response would have {samples:.3g} samples, more than {limit:g}", samples=count, limit=_MOST_SAMPLES,
             hint="a shorter duration, please",
         )  # fmt: skip

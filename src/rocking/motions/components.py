@@ -107,11 +107,7 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
     if len(parts) > 3:
         raise InvalidValueError("a motion has at most three components, x, y and z, got {count}", count=len(parts))
     for part in parts:
-        if not isinstance(part, (GroundMotion, Pulse)) and part is not None:
-            raise InvalidValueError(
-                "{parameter} must be {allowed}, got {shown}", parameter="motion", allowed=_HOW, value=part,
-                shown=checks.given("motion", part),
-            )  # fmt: skip
+        checks.of_kind("motion", part, (GroundMotion, Pulse, type(None)), _HOW)
     if all(part is None for part in parts):
         raise InvalidValueError(
             "{parameter} must be {allowed}, got none", parameter="motion", allowed=_HOW,

@@ -53,9 +53,8 @@ def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
     known, bounds = logs[~censored], logs[censored]
     if known.size < 2:
         raise InvalidValueError(
-            "a dispersion needs at least 2 crossings, got {count} of {motions} motions", count=known.size,
-            motions=logs.size,
-        )  # fmt: skip
+            "a dispersion needs at least 2 crossings, got {count} of {total} motions", count=known.size, total=logs.size
+        )
     centre, spread = float(known.mean()), float(known.std())
     if spread == 0.0 and not np.any(bounds > known[0]):
         raise InvalidValueError("a dispersion needs crossings that differ, got {count} equal ones", count=known.size)
@@ -114,9 +113,8 @@ def _maximum(known: FloatArray, bounds: FloatArray) -> tuple[float, float]:
     if float(np.abs(gradient).max()) < 1e-6 * (known.size + bounds.size):
         return float(at[0]), float(at[1])
     raise InvalidValueError(
-        "no lognormal distribution fits {crossings} crossings and {bounds} bounds", crossings=known.size,
-        bounds=bounds.size,
-    )  # fmt: skip
+        "no lognormal distribution fits {count} crossings and {bounds} bounds", count=known.size, bounds=bounds.size
+    )
 
 
 def _likelihood(at: FloatArray, known: FloatArray, bounds: FloatArray) -> float:

@@ -212,9 +212,8 @@ def _whole(name: str, values: Any, size: int, least: float) -> FloatArray:
     array = _row(name, np.asarray(values, dtype=np.float64) if yes_or_no else values)
     if array.size != size:
         raise InvalidValueError(
-            "{parameter} must have one number a level: {levels}, got {count}", parameter=name, levels=size,
-            count=array.size,
-        )  # fmt: skip
+            "{parameter} must have one number a level: {size}, got {count}", parameter=name, size=size, count=array.size
+        )
     bad = ~(np.isfinite(array) & (array >= least) & (array == np.round(array)) & (array < 2.0**53))
     if bad.any():
         first = int(np.argmax(bad))

@@ -160,9 +160,8 @@ def _ring(positions: Any, name: str) -> FloatArray:
     points = [_position(p, f"{name}[{i}]") for i, p in enumerate(positions)]
     if points[0] != points[-1]:
         raise BodyFileError(
-            "{member} must end at its first position (RFC 7946, 3.1.6), got {position}", member=name,
-            position=points[-1],
-        )  # fmt: skip
+            "{member} must end at its first position (RFC 7946, 3.1.6), got {point}", member=name, point=points[-1]
+        )
     return np.array(points, dtype=np.float64)
 
 

@@ -152,8 +152,9 @@ def readable(path: Path) -> Iterator[None]:
     except RockingError:
         raise
     except Exception as error:
-        what = f"{path.name}: cannot be read ({type(error).__name__}: {str(error)[:120]}); damaged?"
-        raise BodyFileError(what) from error
+        raise BodyFileError(
+            "cannot be read ({type}: {reason:.120})", type=type(error).__name__, reason=str(error), hint="damaged?"
+        ).at(path.name) from error
 
 
 def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:

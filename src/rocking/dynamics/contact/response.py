@@ -377,16 +377,12 @@ def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None,
     return motion.duration + after * slow
 
 
-def _segments(motion: object, base: PlaneBase, gravity: float, duration: float | None) -> Segments:
+def _segments(motion: Any, base: PlaneBase, gravity: float, duration: float | None) -> Segments:
     slow = math.sqrt(base.size / gravity)
     if motion is None:
         length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
         return ground_at_rest(length / max(1, math.ceil(length / (FINE * slow) - 1e-9)), length)
-    if not isinstance(motion, (GroundMotion, Pulse)):
-        raise InvalidValueError(
-            "{parameter} must be {allowed}, got {shown}", parameter="motion", allowed="a GroundMotion, a pulse or None",
-            value=motion, shown=checks.given("motion", motion),
-        )  # fmt: skip
+    checks.of_kind("motion", motion, (GroundMotion, Pulse), "a GroundMotion, a pulse or None")
     length = length_of(motion, slow, duration)
     segments = motion.segments()
     return followed(segments, length, math.ceil(segments.step / (FINE * slow)), motion)

@@ -278,8 +278,9 @@ def _sheet(source: Source) -> tuple[tuple[str, ...], FloatArray]:
     for line, row in enumerate(rows[1:], 1):
         for place, cell in enumerate(row):
             if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
-                raise MeasurementError(
-                    "number expected, found {cell}{gap}", cell=f"{cell!r:.40}", gap=gap_words(str(cell))
-                ).at(f"{source.name}, row {line + 1}")
+                raise source.error(
+                    None, "row {row}: number expected, found {cell}{gap}", row=line + 1, cell=f"{cell!r:.40}",
+                    gap=gap_words(str(cell)),
+                )  # fmt: skip
             values[line - 1, place] = cell
     return tuple(str(cell).strip() for cell in rows[0]), values

@@ -105,8 +105,9 @@ def read_measurement(  # noqa: PLR0913 - what may be said of a file
     except RockingError:
         raise
     except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
-        what = f"{path.name}: cannot be read ({type(error).__name__}: {str(error)[:120]}); damaged?"
-        raise MeasurementError(what) from error
+        raise MeasurementError(
+            "cannot be read ({type}: {reason:.120})", type=type(error).__name__, reason=str(error), hint="damaged?"
+        ).at(path.name) from error
 
 
 def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], Measurement]:

@@ -79,9 +79,8 @@ def side_by_side(
             headers.check_end(source, behind)
     if values.size != count * across:
         raise source.error(
-            None, "the header states {stated} samples, the file holds {count:g}", stated=count,
-            count=values.size / across,
-        )  # fmt: skip
+            None, "the header states {stated} samples, the file holds {read:g}", stated=count, read=values.size / across
+        )
     if count < 2:
         raise source.error(None, "at least 2 samples are needed, found {count}", count=count)
     word = next(text.split()[0] for text in source.lines[first:] if text.strip())

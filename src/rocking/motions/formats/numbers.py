@@ -132,9 +132,8 @@ def rows(source: Source, first: int, last: int) -> FloatArray:
         columns = columns or words
         if words and (short or words > columns):
             raise source.error(
-                line, "{expected} numbers a line expected save on the last", expected=columns,
-                hint="missing or damaged?",
-            )  # fmt: skip
+                line, "{columns} numbers a line expected save on the last", columns=columns, hint="missing or damaged?"
+            )
         short = short or 0 < words < columns
     if not columns:
         raise source.error(None, "no sample after the header")

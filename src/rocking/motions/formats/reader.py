@@ -300,8 +300,10 @@ def _read(
         raise
     except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
         where = "while its format was looked for" if chosen is None else f"as {chosen.name}"
-        what = f"it cannot be read {where} ({type(error).__name__}: {str(error)[:120]}); damaged, or another format?"
-        raise source.error(None, what) from error
+        raise source.error(
+            None, "it cannot be read {stage} ({type}: {reason:.120})", stage=where, type=type(error).__name__,
+            reason=str(error), hint="damaged, or another format?",
+        ) from error  # fmt: skip
     if not source.doubts:
         return record
     plausibility.warn(source.doubts)
