@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
-from rocking.messages import Amount, Range
+from rocking.messages import Amount, Message, Range
 
 _SLACK = 1e-6  # a moment may lie this far, relative to itself, beyond what its outline allows: rounding
 
@@ -96,7 +96,7 @@ class Known:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What had to be assumed beside, in words."""
-        spread = (
+        spread = Message(
             "distribution of mass assumed by ked and horizontal-momentum, whatever the outline: even in each quarter "
             "of the bounding box about the centre of mass, drawn together or put into its corners as far as the moment "
             "of inertia asks"
@@ -104,7 +104,7 @@ class Known:
         if self.moment_of_inertia is not None:
             return (spread,)
         return (
-            "moment of inertia assumed: the share of the most its outline allows that a homogeneous body has",
+            Message("moment of inertia assumed: the share of the most its outline allows that a homogeneous body has"),
             spread,
         )
 

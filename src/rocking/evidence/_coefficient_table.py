@@ -14,6 +14,7 @@ from rocking.evidence.calibration import CALIBRATED_RANGE, KEPT, PredictedCoeffi
 from rocking.evidence.hierarchy import calibrate_hierarchy
 from rocking.evidence.likelihood import fit_scatter
 from rocking.evidence.measurements import DataSet, all_measurements
+from rocking.messages import Message
 from rocking.restitution import Calibrated, Fixed, Implication, RestitutionModel, implied, model, models
 from rocking.restitution.calibrated import kept, scatter
 
@@ -155,7 +156,7 @@ def coefficient_table(
 
 def _row(body: Body, onto: Foot, known: RestitutionModel) -> CoefficientRow:
     interval, given = interval_for(known, body, onto=onto), known.evaluate(body, onto)
-    warnings = tuple(flag.value for flag in given.flags)
+    warnings: tuple[str, ...] = tuple(flag.value for flag in given.flags)
     if isinstance(known, Calibrated) and (outside := outside_evidence(body, onto)):
         warnings = (*warnings, outside)
     value, low, high = given.coefficient, float(interval.low), float(interval.high)
@@ -170,4 +171,7 @@ def outside_evidence(body: Body, onto: Foot = "right") -> str:
     ratio = body.side(onto).slenderness_ratio
     if low <= ratio <= high:
         return ""
-    return f"h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation"
+    return Message(
+        "h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation",
+        {"ratio": ratio, "low": low, "high": high},
+    )

@@ -156,12 +156,12 @@ class Prediction(Exported):
     @property
     def assumed(self) -> tuple[str, ...]:
         """What nobody said and was assumed, and why, in a sentence each."""
-        return tuple(f"{name}: {reason}" if reason else name for name, reason in self.assumptions.items())
+        return tuple(_reasoned(name, reason) if reason else name for name, reason in self.assumptions.items())
 
     @property
     def not_sampled(self) -> tuple[str, ...]:
         """What is one value in all histories, and why, in a sentence each."""
-        return tuple(f"{name}: {reason}" for name, reason in self.fixed.items())
+        return tuple(_reasoned(name, reason) for name, reason in self.fixed.items())
 
     @property
     def condition(self) -> str:
@@ -303,6 +303,10 @@ class Prediction(Exported):
             **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
         }  # fmt: skip
         return Table("motion", columns, with_units(provenance), {"input": Table("input", beside)})
+
+
+def _reasoned(name: str, reason: str) -> str:
+    return Message("{name}: {reason}", {"name": Message(name), "reason": reason})
 
 
 def _between(low: float, high: float) -> str:

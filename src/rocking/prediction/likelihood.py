@@ -56,5 +56,14 @@ def scale_words() -> str:
     'Likelihood terms:'
     """
     ordered = sorted(TERMS, key=lambda term: (-term.high, -term.low))
-    terms = ", ".join(f"{term.words} {100.0 * term.low:g} to {100.0 * term.high:g} %" for term in ordered)
-    return f"Likelihood terms: {terms}. A term holds the whole 95 % interval. {SOURCE}."
+    first, *others = (
+        Message(
+            "{term} {low:g} to {high:g} %",
+            {"term": Message(term.words), "low": 100.0 * term.low, "high": 100.0 * term.high},
+        )
+        for term in ordered
+    )
+    for other in others:
+        first = Message("{first}, {second}", {"first": first, "second": other})
+    facts = {"terms": first, "source": SOURCE}
+    return Message("Likelihood terms: {terms}. A term holds the whole 95 % interval. {source}.", facts)

@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.messages import Range
+from rocking.messages import Amount, Message, Range
 from rocking.motions.components import Components, components_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -46,7 +46,7 @@ class Uncertain:
         >>> found.words, found.quantile(np.array([0.25])).tolist()
         ('from 0.4 to 0.8, all alike', [0.5])
         """
-        ends, told = (low, high), "" if unit == "-" else f" {unit}"
+        ends, told = (low, high), "" if unit == "-" else unit
         if isinstance(given, Mapping):
             return cls._of_table(name, given, ends, told)
         if callable(getattr(given, "ppf", None)):
@@ -56,7 +56,7 @@ class Uncertain:
         if isinstance(given, (str, bool)) or given is None:
             raise InvalidValueError(parameter=name, allowed=_HINT, value=given)
         value = checks.within(name, given, low, high)
-        return cls(f"{value:g}{told}", lambda u: np.full(u.shape, value), fixed=True)
+        return cls(str(Amount(value, told)), lambda u: np.full(u.shape, value), fixed=True)
 
     @classmethod
     def _of_table(cls, name: str, given: Mapping[str, Any], ends: _Ends, unit: str) -> "Uncertain":
@@ -81,7 +81,8 @@ class Uncertain:
                 "{parameter} must be a range from low to high, got {low:g} to {high:g}", parameter=name, low=least,
                 high=most,
             )  # fmt: skip
-        return cls(f"from {least:g} to {most:g}{unit}, all alike", lambda u: least + u * (most - least))
+        words = Message("from {low} to {high}, all alike", {"low": Amount(least), "high": Amount(most, unit)})
+        return cls(words, lambda u: least + u * (most - least))
 
     @classmethod
     def _of_sample(cls, name: str, given: Any, ends: _Ends, unit: str) -> "Uncertain":
@@ -91,7 +92,10 @@ class Uncertain:
             raise InvalidValueError(
                 "{parameter} as a sample takes two values or more, got {count}", parameter=name, count=values.size
             )
-        words = f"one of {values.size} values from {values[0]:g} to {values[-1]:g}{unit}, each as likely"
+        words = Message(
+            "one of {size} values from {low} to {high}, each as likely",
+            {"size": values.size, "low": Amount(float(values[0])), "high": Amount(float(values[-1]), unit)},
+        )
         return cls(words, lambda u: values[np.minimum((u * values.size).astype(np.int64), values.size - 1)])
 
     @classmethod
@@ -102,10 +106,11 @@ class Uncertain:
         kinds = ("median", "dispersion") if logarithmic else ("mean", "deviation")
         middle, spread = checks.within(f"{name} {kinds[0]}", given[kinds[0]], *ends), given[kinds[1]]
         spread = checks.positive(f"{name} {kinds[1]}", spread)
-        words = f"normal, {middle:g} +- {spread:g}{unit}"
+        words = Message("normal, {mean} +- {deviation}", {"mean": Amount(middle), "deviation": Amount(spread, unit)})
         scaled = np.array([*ends, middle])
         if logarithmic:
-            words = f"lognormal, median {middle:g}{unit}, dispersion {spread:g}"
+            facts = {"median": Amount(middle, unit), "dispersion": Amount(spread)}
+            words = Message("lognormal, median {median}, dispersion {dispersion}", facts)
             with np.errstate(divide="ignore", invalid="ignore"):
                 scaled = np.log(np.maximum(scaled, 0.0))
         low, high = ndtr((scaled[:2] - scaled[2]) / spread).tolist()
@@ -129,7 +134,8 @@ class Uncertain:
                 "{parameter} must be within {limits}, got {low:g} to {high:g}", parameter=name, allowed=Range(*ends),
                 limits=Range(*ends).limits(), low=low, high=high,
             )  # fmt: skip
-        words = f"of a distribution, nearly all from {low:.4g} to {high:.4g}{unit}"
+        facts = {"low": Amount(low, digits=".4g"), "high": Amount(high, unit, ".4g")}
+        words = Message("of a distribution, nearly all from {low} to {high}", facts)
         return cls(words, lambda u: np.clip(np.asarray(given.ppf(u), dtype=np.float64), *ends))
 
 
@@ -138,9 +144,26 @@ MEASURED, COMPLEMENTARITY = ("measured", "calibrated"), "complementarity"
 
 FRICTION = ((0.3, 0.8), 0.01, 10.0, "-")
 CENTRE = ((0.97, 1.03), 0.5, 1.5, "-")
-FRICTION_WHY = "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by as much for one pair of them"
-CENTRE_WHY = "factor on the height of the centre: what is inside is rarely homogeneous"
-AZIMUTH_WHY = "which way round the body stands to the two components is not known"
+FRICTION_WHY = Message(
+    "dry stone, concrete, wood and metal: EN 12812 and BS 5975 differ by as much for one pair of them"
+)
+CENTRE_WHY = Message("factor on the height of the centre: what is inside is rarely homogeneous")
+AZIMUTH_WHY = Message("which way round the body stands to the two components is not known")
+DENSITY_WHY = Message("a factor on it changes no rotation; the factor centre stands for density that differs by place")
+
+
+def because(choice: str, reason: str) -> str:
+    """Return what was assumed of an input, and why."""
+    return Message("{choice} ({reason})", {"choice": choice, "reason": reason})
+
+
+def as_measured(words: str, *, extrapolated: bool) -> str:
+    """Return the words for a coefficient of restitution that the measurements give."""
+    outside = Message("{words}, outside of the slendernesses that were measured", {"words": words})
+    return outside if extrapolated else words
+
+
+MEASURED_WHY = Message("the published measurements, with the scatter of single bodies")
 
 Usual = tuple[Any, float, float, str]
 """What an input is where nobody says otherwise, its least and largest value that make sense, and its unit."""
@@ -179,7 +202,7 @@ class SampledBodies(ABC):
             told = self.given.get(name)
             self.inputs[name] = Uncertain.of(name, otherwise if told is None else told, low, high, unit)
             if told is None:
-                self.assumed[name] = f"{self.inputs[name].words} ({self.why[name]})"
+                self.assumed[name] = because(self.inputs[name].words, self.why[name])
         plausibility.warn(plausibility.of_friction(self.inputs["friction"].median))
 
     @property
@@ -190,7 +213,8 @@ class SampledBodies(ABC):
     @property
     def not_sampled(self) -> dict[str, str]:
         """What is one value in all histories: inputs that are known, and what has no distribution."""
-        known = {name: f"{each.words} (given)" for name, each in self.inputs.items() if each.fixed}
+        given = Message("given")
+        known = {name: because(each.words, given) for name, each in self.inputs.items() if each.fixed}
         return {**known, **self.never_sampled}
 
     def probabilities(self, draws: FloatArray) -> dict[str, FloatArray]:

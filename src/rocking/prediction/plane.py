@@ -16,6 +16,7 @@ from rocking.dynamics.rows import Rows
 from rocking.dynamics.settings import thread_count
 from rocking.errors import InvalidValueError
 from rocking.evidence import calibrate_hierarchy, restitution_distribution
+from rocking.messages import Message
 from rocking.motions.components import rotated, with_vertical
 from rocking.outcome import Outcome, overturned
 from rocking.prediction.mechanics import (
@@ -23,12 +24,16 @@ from rocking.prediction.mechanics import (
     CENTRE,
     CENTRE_WHY,
     COMPLEMENTARITY,
+    DENSITY_WHY,
     FRICTION,
     FRICTION_WHY,
     MEASURED,
+    MEASURED_WHY,
     Endings,
     SampledBodies,
     Uncertain,
+    as_measured,
+    because,
     parts,
 )
 from rocking.restitution import ImpactGeometry, RestitutionModel
@@ -40,17 +45,22 @@ DIRECTIONS = 36
 """Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""
 
 NOT_SAMPLED = {
-    "placement": "the ground is level and the body stands flat on both feet",
-    "density": "a factor on it changes no rotation; the factor centre stands for density that differs by place",
+    "placement": Message("the ground is level and the body stands flat on both feet"),
+    "density": DENSITY_WHY,
 }
 
 _WHY = {
     "friction": FRICTION_WHY,
-    "base": "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width",
+    "base": Message(
+        "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width"
+    ),
     "centre": CENTRE_WHY,
-    "polarity": "as recorded or mirrored: which way round the body will stand is not known",
+    "polarity": Message("as recorded or mirrored: which way round the body will stand is not known"),
     "azimuth": AZIMUTH_WHY,
 }
+
+
+_FOLLOWS = Message("restitution follows base and centre as the shifted impulse of the calibrated model does")
 
 
 class SampledInPlane(SampledBodies):
@@ -85,12 +95,13 @@ class SampledInPlane(SampledBodies):
         if word in MEASURED:
             found = restitution_distribution(self.body)
             self._tables = [found.tables[foot] for foot in FEET]
-            words = f"{self._tables[1][25]:.3f} to {self._tables[1][-26]:.3f} onto the right foot in 95 % of draws"
-            words += ", outside of the slendernesses that were measured" if found.extrapolated else ""
+            ends = {"low": float(self._tables[1][25]), "high": float(self._tables[1][-26])}
+            onto = Message("{low:.3f} to {high:.3f} onto the right foot in 95 % of draws", ends)
+            words = as_measured(onto, extrapolated=found.extrapolated)
             self._follows, fixed = True, False
-            self.assumed["restitution"] = f"{words} (the published measurements, with the scatter of single bodies)"
+            self.assumed["restitution"] = because(words, MEASURED_WHY)
         elif word == COMPLEMENTARITY:
-            words, self._follows, fixed = "by complementarity alone", False, True
+            words, self._follows, fixed = Message("by complementarity alone"), False, True
             self._tables = [np.full(2, np.nan)] * 2
         elif word or isinstance(told, RestitutionModel) or (isinstance(told, Mapping) and set(told) == set(FEET)):
             pair, words = coefficients_of(told, self.body)
@@ -105,7 +116,7 @@ class SampledInPlane(SampledBodies):
             levels[[0, -1]] = 0.25 / 1025, 1.0 - 0.25 / 1025
             self._tables, self._follows, fixed, words = [one.quantile(levels)] * 2, False, one.fixed, one.words
         if self._follows:
-            self.assumed["restitution follows base and centre as the shifted impulse of the calibrated model does"] = ""
+            self.assumed[_FOLLOWS] = ""
         at = np.linspace(0.0, 1.0, self._tables[1].size)
         right = self._tables[1]
         self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}

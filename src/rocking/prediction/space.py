@@ -20,17 +20,22 @@ from rocking.dynamics.space.attitude import product, turn
 from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 from rocking.evidence import restitution_distribution
+from rocking.messages import Message
 from rocking.outcome import Status
 from rocking.prediction.mechanics import (
     AZIMUTH_WHY,
     CENTRE,
     CENTRE_WHY,
+    DENSITY_WHY,
     FRICTION,
     FRICTION_WHY,
     MEASURED,
+    MEASURED_WHY,
     Endings,
     SampledBodies,
     Uncertain,
+    as_measured,
+    because,
     parts,
 )
 
@@ -45,14 +50,16 @@ _UPRIGHT = -1.0 + 1e-12
 _SETTINGS = HullSettings(tolerance=1e-8)
 
 NOT_SAMPLED = {
-    "placement": "the ground is level and the body stands by itself",
-    "density": "a factor on it changes no rotation; the factor centre stands for density that differs by place",
+    "placement": Message("the ground is level and the body stands by itself"),
+    "density": DENSITY_WHY,
 }
 
 _WHY = {
     "friction": FRICTION_WHY,
-    "base": "below zero: how far its corners lie inside of the drawn ones, for wear and chips; above zero: how high "
-    "points lie that touch the ground too, for what a scan or a floor is uneven by",
+    "base": Message(
+        "below zero: how far its corners lie inside of the drawn ones, for wear and chips; above zero: how high points "
+        "lie that touch the ground too, for what a scan or a floor is uneven by"
+    ),
     "centre": CENTRE_WHY,
     "azimuth": AZIMUTH_WHY,
 }
@@ -111,7 +118,7 @@ class SampledInSpace(SampledBodies):
             self._law, (found, words) = histories.POSITION, self._measured()
             at = np.linspace(0.0, 1.0, found.size)
             one = Uncertain(words, lambda u: np.interp(u, at, found))
-            self.assumed["restitution"] = f"{words} (the published measurements, with the scatter of single bodies)"
+            self.assumed["restitution"] = because(words, MEASURED_WHY)
         elif word:
             if word not in _LAWS:
                 raise InvalidValueError(
@@ -139,12 +146,14 @@ class SampledInSpace(SampledBodies):
         r = found.tables["right"]
         ahead = (inertia / self._mass + height**2) * (1.0 - r) / (r * new + old)  # Eq. 4
         k = np.clip((2.0 * ahead - (new - old)) / (new + old), 0.0, 1.0)  # Eq. 104
-        words = f"{r[25]:.3f} to {r[-26]:.3f} over the edge that is nearest to the centre in 95 % of draws"
+        ends = {"low": float(r[25]), "high": float(r[-26])}
+        words = Message("{low:.3f} to {high:.3f} over the edge that is nearest to the centre in 95 % of draws", ends)
         if (k == 1.0).any():
-            words += (
-                f", of which {percent(float((k == 1.0).mean()))} lose more than Housner's impact and are taken as that"
+            words = Message(
+                "{words}, of which {share} lose more than Housner's impact and are taken as that",
+                {"words": words, "share": percent(float((k == 1.0).mean()))},
             )
-        return k, words + (", outside of the slendernesses that were measured" if found.extrapolated else "")
+        return k, as_measured(words, extrapolated=found.extrapolated)
 
     def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
         """Return what becomes of bodies under a motion times a factor."""

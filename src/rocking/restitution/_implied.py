@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import Foot, opposite
+from rocking.messages import Message
 
 # Bounds are met to rounding by the models that sit exactly on them (Housner has k = 1).
 _SLACK = 1e-9
@@ -55,9 +56,11 @@ class Implication:
         """What is wrong with the coefficient, in sentences; empty if admissible."""
         found = []
         if not self.within_base:
-            found.append(f"implies an impulse outside the base (k = {self.impulse_ratio:.3f})")
+            facts = {"ratio": self.impulse_ratio}
+            found.append(Message("implies an impulse outside the base (k = {ratio:.3f})", facts))
         if not self.within_energy:
-            found.append(f"creates energy: r must not exceed {self.largest_coefficient:.6f} for this body")
+            facts = {"largest": self.largest_coefficient}
+            found.append(Message("creates energy: r must not exceed {largest:.6f} for this body", facts))
         return tuple(found)
 
 

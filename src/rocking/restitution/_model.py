@@ -12,6 +12,7 @@ from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
+from rocking.messages import Message
 from rocking.restitution.impact import ImpactGeometry
 
 _PIECE = 16384
@@ -21,7 +22,7 @@ _FLATTEST, _TALLEST = 1e-18, 1e18
 class Flag(Enum):
     """Why a coefficient is not the bare number of its model; the value is the sentence a user reads."""
 
-    STOPS = "the model's equation gives r <= 0: the body does not step onto the new foot but stops (r = 0)"
+    STOPS = Message("the model's equation gives r <= 0: the body does not step onto the new foot but stops (r = 0)")
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ from rocking.bodies.solid.surfaces import vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install, located
+from rocking.messages import Message
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # formats that are read, by the end of the file's name
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
@@ -70,7 +71,9 @@ def mesh_from_file(
         )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
         if kind == "glb" and units != "m":
-            doubts.append(f"GLB files are in m by their specification; read in {units} as asked")
+            doubts.append(
+                Message("GLB files are in m by their specification; read in {units} as asked", {"units": units})
+            )
         return replace(done, repairs=(*done.repairs, *doubts))
 
 
@@ -135,10 +138,14 @@ def solid_from_mesh(
 def _settled_words(turn: FloatArray, height: float) -> str:
     angle = math.degrees(math.acos(min(1.0, float(turn[2, 2]))))
     if angle < _LEAN:
-        return f"turned by {angle:.2g} degrees onto the points that it rests on, its centre {height:.4g} m high"
-    return (
-        f"does not stand as the file has it: let down from there, it rests turned by {angle:.3g} degrees, its centre "
-        f"{height:.4g} m high; up= says which of its sides is up"
+        return Message(
+            "turned by {angle:.2g} degrees onto the points that it rests on, its centre {height:.4g} m high",
+            {"angle": angle, "height": height},
+        )
+    return Message(
+        "does not stand as the file has it: let down from there, it rests turned by {angle:.3g} degrees, its centre "
+        "{height:.4g} m high; up= says which of its sides is up",
+        {"angle": angle, "height": height},
     )
 
 

@@ -18,6 +18,7 @@ from rocking.bodies.solid.surfaces import Shape
 from rocking.bodies.solid.turned import cone, cylinder, ellipsoid, frustum, revolution
 from rocking.checks import length_unit
 from rocking.errors import BodyFileError, located
+from rocking.messages import Message
 
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
@@ -125,7 +126,7 @@ def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: f
         path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface, wall=wall,
         inner_parts=table.inner_parts,
     )  # fmt: skip
-    repairs += [f"{path.name}: {words}" for words in mesh.repairs]
+    repairs += [Message("{file}: {repair}", {"file": path.name, "repair": words}) for words in mesh.repairs]
     return mesh.part(density)
 
 

@@ -76,9 +76,7 @@ class Changes:
         """Return what was done, each with its bound; refuse more than safe repairs may change."""
         bounds = self.bounds(whole, size)
         listed = [
-            f"{words}; that is at most {percent(share)} of the volume and {1000.0 * shift:.2g} mm of the centre"
-            if share
-            else words
+            _bounded(words, share, shift) if share else words
             for (words, _, _), (share, shift) in zip(self.made, bounds, strict=True)
         ]
         share, shift = sum(pair[0] for pair in bounds), sum(pair[1] for pair in bounds)
@@ -91,3 +89,11 @@ class Changes:
                 repairs="; ".join(words for words, pair in zip(listed, bounds, strict=True) if pair[0]), hint=HELP,
             )  # fmt: skip
         return tuple(listed)
+
+
+def _bounded(words: str, share: float, shift: float) -> str:
+    """Return a repair with what it can have changed of the volume [-] and of the centre [m]."""
+    return Message(
+        "{repair}; that is at most {share} of the volume and {shift:.2g} mm of the centre",
+        {"repair": words, "share": percent(share), "shift": 1000.0 * shift},
+    )

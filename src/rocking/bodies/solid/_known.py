@@ -13,12 +13,13 @@ from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.surfaces import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.messages import Message
 from rocking.portable import applied, times
 
 _SLACK = 1e-6
 _DIRECTIONS = 64
 
-ASSUMED = (
+ASSUMED = Message(
     "inertia assumed: along each axis the share of the most that its box allows about the known centre of mass that "
     "the body of its parts has"
 )

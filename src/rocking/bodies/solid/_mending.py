@@ -38,15 +38,18 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     sheets = [k for k in np.flatnonzero(is_open & ~dust & (room < room.max())) if _is_sheet(points[faces[labels == k]])]
     if sheets:
         changes.say(
-            f"left out {len(sheets)} open sheet(s) beside the body, such as the table that it was scanned on, "
-            f"{np.isin(labels, sheets).sum()} faces"
+            Message(
+                "left out {sheets} open sheet(s) beside the body, such as the table that it was scanned on, {faces} "
+                "faces",
+                {"sheets": len(sheets), "faces": int(np.isin(labels, sheets).sum())},
+            )
         )
     if dust.any():
         whole = float(room[dust].sum())
         where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
-        changes.say(
-            f"left out {dust.sum()} loose piece(s) that hold next to nothing, {dust[labels].sum()} faces", whole, where
-        )
+        facts = {"pieces": int(dust.sum()), "faces": int(dust[labels].sum())}
+        loose = Message("left out {pieces} loose piece(s) that hold next to nothing, {faces} faces", facts)
+        changes.say(loose, whole, where)
     dust[sheets] = True
     kept: IntArray = faces[~dust[labels]]
     return kept
@@ -73,7 +76,8 @@ def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     fin[np.intersect1d(owners[counts == 1], owners[counts > 2])] = True
     fin &= areas < FIN * areas.sum()
     if fin.any():
-        changes.say(f"left out {fin[labels].sum()} faces that stood out from the surface like fins")
+        facts = {"faces": int(fin[labels].sum())}
+        changes.say(Message("left out {faces} faces that stood out from the surface like fins", facts))
     kept: IntArray = faces[~fin[labels]]
     return kept
 
@@ -104,13 +108,15 @@ def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
         )  # fmt: skip
     if first.pairs:
         changes.say(
-            f"smoothed {near.sum()} vertices where {first.pairs} pair(s) of faces crossed, by up to "
-            f"{1000.0 * moved.max():.2g} mm",
+            Message(
+                "smoothed {vertices} vertices where {pairs} pair(s) of faces crossed, by up to {distance:.2g} mm",
+                {"vertices": int(near.sum()), "pairs": int(first.pairs), "distance": float(1000.0 * moved.max())},
+            ),
             float(swept.sum()),
             (before[faces].mean(axis=1) * swept[:, None]).sum(axis=0) / swept.sum(),
         )
     if not check_crossings(points[faces], changes.place, found):
-        changes.note("too many faces lie side by side to try whether all of them keep clear of each other")
+        changes.note(Message("too many faces lie side by side to try whether all of them keep clear of each other"))
     return points, faces
 
 

@@ -67,11 +67,11 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         return points, faces
     if changes.allowed == "none":
         hint = Message("{safe} closes an open bottom and small holes", {"safe": Option("body.repair", "safe")})
-        raise GeometryError(_listed(loops, points, changes), hint=hint)
+        raise GeometryError(_not_closed(loops, points, changes), hint=hint)
     if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
         raise GeometryError(
             "{loops}; {share} of its edges are open: its faces hardly hang together",
-            loops=_listed(loops, points, changes), share=percent(share), hint=HELP,
+            loops=_not_closed(loops, points, changes), share=percent(share), hint=HELP,
         )  # fmt: skip
     added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
     for ring in loops:
@@ -91,21 +91,36 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         patches.append(ring)
         changes.mended.append(points[ring[patch]])
     if slits:
-        changes.say(f"closed {slits} slit(s) without area, where vertices lay within the edges of other faces")
+        changes.say(
+            Message(
+                "closed {slits} slit(s) without area, where vertices lay within the edges of other faces",
+                {"slits": slits},
+            )
+        )
     if patches:
-        changes.say(f"closed {_listed(patches, points, changes).partition('it has ')[2]}", bound, where / bound)
+        closed_holes = Message("closed {holes}", {"holes": _listed(patches, points, changes)})
+        changes.say(closed_holes, bound, where / bound)
     return points, np.concatenate(added)
 
 
 def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
-    """Say what a user must know about the holes of a surface."""
+    """Return how many holes a surface has, with the size and the place of the largest."""
     order = sorted(loops, key=lambda ring: -_width(points[ring]))
-    words = "; ".join(
-        f"{_width(points[ring]):.3g} m wide ({len(ring)} edges) at {changes.place(points[ring].mean(axis=0))}"
+    holes = tuple(
+        Message(
+            "{width:.3g} m wide ({edges} edges) at {place}",
+            {"width": _width(points[ring]), "edges": len(ring), "place": changes.place(points[ring].mean(axis=0))},
+        )
         for ring in order[:_LISTED]
     )
-    more = f" and {len(loops) - _LISTED} smaller" if len(loops) > _LISTED else ""
-    return f"the surface is not closed, it has {len(loops)} hole(s): {words}{more}"
+    facts = {"number": len(loops), "holes": holes, "smaller": len(loops) - _LISTED}
+    if len(loops) > _LISTED:
+        return Message("{number} hole(s): {holes} and {smaller} smaller", facts)
+    return Message("{number} hole(s): {holes}", facts)
+
+
+def _not_closed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
+    return Message("the surface is not closed, it has {holes}", {"holes": _listed(loops, points, changes)})
 
 
 def _is_bottom(points: FloatArray, faces: IntArray, ring: IntArray) -> bool:
@@ -149,9 +164,13 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
     patch = _patch(lowered, _normal(lowered))
     plan = np.abs(area_vectors(lowered[patch])[:, 2])
     volume = 0.0 if is_low.all() else float((plan * (rim[patch][..., 2].mean(axis=1) - low)).sum())
+    bottom = Message(
+        "closed the open bottom, {width:.3g} m wide ({edges} edges), by a flat face at its lowest point",
+        {"width": _width(rim), "edges": len(ring)},
+    )
+    inclined = Message("{repair}, {angle:.2g} degrees from level as its rim is", {"repair": bottom, "angle": leans})
     changes.say(
-        f"closed the open bottom, {_width(rim):.3g} m wide ({len(ring)} edges), by a flat face at its lowest point"
-        + (f", {leans:.2g} degrees from level as its rim is" if leans > _LEANS else ""),
+        inclined if leans > _LEANS else bottom,
         volume,
         (lowered @ upright).mean(axis=0),
     )
@@ -278,8 +297,12 @@ def _welded(
         first = np.unique(near, return_index=True)[1]
         same, joined = same[first], near[joined]
     if merged:
-        how = f"within {reach:.3g} m of each other" if reach > 0.0 else "in the same place"
-        changes.note(f"merged {merged} of {len(points)} vertices that lay {how}")
+        facts = {"merged": merged, "total": len(points), "distance": reach}
+        near_each_other = Message(
+            "merged {merged} of {total} vertices that lay within {distance:.3g} m of each other", facts
+        )
+        in_one_place = Message("merged {merged} of {total} vertices that lay in the same place", facts)
+        changes.note(near_each_other if reach > 0.0 else in_one_place)
     return same, joined
 
 
@@ -303,7 +326,8 @@ def _cleaned(faces: IntArray, changes: Changes) -> IntArray:
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)
     if not whole.all():
-        changes.say(f"removed {int((~whole).sum())} faces that had shrunk to an edge or a point")
+        facts = {"number": int((~whole).sum())}
+        changes.say(Message("removed {number} faces that had shrunk to an edge or a point", facts))
     faces = faces[whole]
     low, middle, high = np.sort(faces, axis=1).T
     edge = numbered(np.stack([low, middle], axis=1))
@@ -319,7 +343,7 @@ def _cleaned(faces: IntArray, changes: Changes) -> IntArray:
         raise GeometryError(
             "the faces lie on top of each other and nothing is left between them: the surface is a sheet"
         )
-    changes.say(f"removed {len(faces) - len(result)} faces that lay on top of others")
+    changes.say(Message("removed {number} faces that lay on top of others", {"number": len(faces) - len(result)}))
     return result
 
 

@@ -64,8 +64,11 @@ def decimated(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Fl
     before, after = polyhedron_moments(points[faces]), polyhedron_moments(fewer_points[fewer])
     shift = float(np.linalg.norm(after.centre - before.centre))
     changes.say(
-        f"simplified from {len(faces)} to {len(fewer)} faces, which moves the hull by at most {1000.0 * moved:.2g} mm "
-        f"and the centre by {1000.0 * shift:.2g} mm",
+        Message(
+            "simplified from {before} to {after} faces, which moves the hull by at most {hull:.2g} mm and the centre "
+            "by {centre:.2g} mm",
+            {"before": len(faces), "after": len(fewer), "hull": 1000.0 * moved, "centre": 1000.0 * shift},
+        ),
         abs(after.mass - before.mass),
     )
     return fewer_points, fewer
@@ -133,7 +136,10 @@ def turned_consistently(faces: IntArray, changes: Changes) -> IntArray:
     turn = flip != minority[labels]
     if turn.any():
         changes.say(
-            f"turned round {int(turn.sum())} of {len(faces)} faces that looked the other way than their neighbours"
+            Message(
+                "turned round {turned} of {faces} faces that looked the other way than their neighbours",
+                {"turned": int(turn.sum()), "faces": len(faces)},
+            )
         )
     return np.where(turn[:, None], faces[:, ::-1], faces)
 
@@ -166,11 +172,15 @@ def oriented_shells(points: FloatArray, faces: IntArray, changes: Changes) -> tu
     wrong = borders & (matter == filled) & ((volumes < 0.0) == filled) & (volumes != 0.0)
     turned = sum(len(shell) for shell, bad in zip(shells, wrong, strict=True) if bad)
     if turned:
-        changes.say(f"turned {wrong.sum()} shell(s), {turned} faces, inside out")
+        facts = {"shells": int(wrong.sum()), "faces": turned}
+        changes.say(Message("turned {shells} shell(s), {faces} faces, inside out", facts))
     if borders.sum() > 1:
         changes.note(
-            f"the surface has {borders.sum()} separate shells, {(borders & ~filled).sum()} of them cavities inside "
-            "others; the rest add up: cut out what is not of the body, as the table that it stood on"
+            Message(
+                "the surface has {shells} separate shells, {cavities} of them cavities inside others; the rest add up: "
+                "cut out what is not of the body, as the table that it stood on",
+                {"shells": int(borders.sum()), "cavities": int((borders & ~filled).sum())},
+            )
         )
     kept = [(shell, (volume < 0.0) == full) for shell, volume, full, border in
             zip(shells, volumes, filled, borders, strict=True) if border]  # fmt: skip
@@ -248,7 +258,10 @@ def _once(
         twice &= ~matter
     for i, j in np.argwhere(twice).tolist():
         changes.say(
-            f"left out a shell {1000.0 * gaps[i, j]:.2g} mm within another, as of a surface scanned twice",
+            Message(
+                "left out a shell {distance:.2g} mm within another, as of a surface scanned twice",
+                {"distance": float(1000.0 * gaps[i, j])},
+            ),
             abs(abs(volumes[j]) - abs(volumes[i])),
         )
     return np.flatnonzero(~twice.any(axis=1))
@@ -274,7 +287,10 @@ def _united(
     doubt = len(bodies) * float(whole.volume()) - sum(volumes)
     overlap = sum(volumes) - float(whole.volume())
     changes.say(
-        f"united {len(bodies)} shells that pass through each other and share {overlap:.3g} m3",
+        Message(
+            "united {shells} shells that pass through each other and share {overlap:.3g} m3",
+            {"shells": len(bodies), "overlap": overlap},
+        ),
         doubt if doubt < 0.1 * overlap else 0.0,
     )
     new, joined = surface(whole)

@@ -9,6 +9,7 @@ from rocking.bodies.solid._shells import connected
 from rocking.bodies.solid.surfaces import area_vectors
 from rocking.conventions import BoolArray, FloatArray, IntArray, percent
 from rocking.errors import GeometryError
+from rocking.messages import Message
 
 Surface = Literal["faces", "wrap", "hull"]
 
@@ -26,7 +27,7 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
     points = points if surface == "hull" else _with_bottom(points, changes)
     hull = _hull(points)
     if surface == "hull":
-        changes.note(f"took the convex hull of its {len(points)} points, hollows filled")
+        changes.note(Message("took the convex hull of its {number} points, hollows filled", {"number": len(points)}))
         return points, hull
     kept = _thinned(points, np.unique(hull))
     count, points = len(points), points[kept]
@@ -34,11 +35,19 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
     half = np.union1d(np.arange(0, len(kept), 2), np.searchsorted(kept, np.unique(hull)))
     coarse = 2.0 * abs(volume - _wrapped(points[half])[1]) + wider - volume
     depth, area = _depth(points, faces)
-    thinned = f" of {count}" if len(kept) < count else ""
+    number = Message("{number} of {total}", {"number": len(kept), "total": count}) if len(kept) < count else len(kept)
     changes.note(
-        f"stretched a skin over {len(kept)}{thinned} points, which balls of {2000.0 * radius:.3g} mm cannot pass; the "
-        f"points lie {1000.0 * depth:.2g} mm beneath it on average, and a wider ball and twice as many points "
-        f"may change its volume by {percent(coarse / volume)}",
+        Message(
+            "stretched a skin over {number} points, which balls of {diameter:.3g} mm cannot pass; the points lie "
+            "{depth:.2g} mm beneath it on average, and a wider ball and twice as many points may change its volume by "
+            "{share}",
+            {
+                "number": number,
+                "diameter": 2000.0 * radius,
+                "depth": 1000.0 * depth,
+                "share": percent(coarse / volume),
+            },
+        ),
         coarse + area * depth,
     )
     return points, faces
@@ -81,8 +90,10 @@ def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
     np.minimum.at(lowest, sector, rim[:, 2] - low)
     depth = float(lowest[np.isfinite(lowest)].mean())
     changes.say(
-        f"closed the open bottom, {float(np.linalg.norm(np.ptp(plan, axis=0))):.3g} m wide, by a level face at its "
-        "lowest point",
+        Message(
+            "closed the open bottom, {width:.3g} m wide, by a level face at its lowest point",
+            {"width": float(np.linalg.norm(np.ptp(plan, axis=0)))},
+        ),
         depth * len(grid) * step**2,
         np.append(plan.mean(axis=0), low),
     )

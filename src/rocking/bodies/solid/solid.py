@@ -29,7 +29,7 @@ from rocking.portable import times
 
 BASE_TOLERANCE = 1e-9
 _UPRIGHT, _WHOLE = 1e-12, 0.999
-_OWN_BASE = (
+_OWN_BASE = Message(
     "the body stands on a base of its own, smaller than the facet of its hull: what lifts it and how far its centre "
     "must rise are those of the whole facet here, more than its own base asks"
 )
@@ -173,7 +173,7 @@ class Solid:
         along, across, up = moments.xx, moments.mass * section.depth**2 / 12.0, moments.yy
         inertia = (across + up, along + up, along + across)
         solid = cls(parts, base=feet, ground=section.ground, centre=(x, 0.0, z), inertia=inertia)
-        solid._assumed = (*section.known.assumed[:-1], "mass spread evenly over the depth")
+        solid._assumed = (*section.known.assumed[:-1], Message("mass spread evenly over the depth"))
         return solid
 
     @property

@@ -17,6 +17,7 @@ from rocking.bodies.solid.surfaces import placed_points
 from rocking.bodies.solid.turned import Turned
 from rocking.conventions import FloatArray, g
 from rocking.errors import GeometryError
+from rocking.messages import Message
 from rocking.portable import applied, dot, norm, times
 
 _ROUND = 1e-4
@@ -45,7 +46,7 @@ def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, lea
         found = replace(found, surface=np.concatenate([found.surface, *(each - found.centre for each in whole)]))
     if not rounded:
         return found
-    found = replace(found, notes=(*found.notes, "round faces are taken as those of 360 corners"))
+    found = replace(found, notes=(*found.notes, Message("round faces are taken as those of 360 corners")))
     axis = _axis(parts, moments.centre, size)
     return found if axis is None else _revolved(found, parts, axis)
 
@@ -117,14 +118,18 @@ def _revolved(found: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equ
     def energy(height: float) -> float:
         return found.mass * g * (height - low)
 
-    notes = [f"{len(rings)} circles of equilibria are told apart from the others: a body of revolution rolls on them"]
+    apart = Message(
+        "{count} circle of equilibria is told apart from the others: a body of revolution rolls on it",
+        {"count": len(rings)},
+        "{count} circles of equilibria are told apart from the others: a body of revolution rolls on them",
+    )
     return replace(
         found,
         stable=tuple(replace(one, number=order[one.number], energy=energy(one.height)) for one in points),
         saddles=(),
         summits=tuple(replace(one, energy=energy(one.height)) for one in found.summits if not is_ring(one)),
         rings=tuple(replace(ring, energy=energy(ring.height)) for ring in rings),
-        notes=(*found.notes, *notes),
+        notes=(*found.notes, apart),
         basins={facet: order[number] for facet, number in found.basins.items()},
         links=tuple((order[one], order[other], top) for one, other, top in found.links),
     )

@@ -191,7 +191,7 @@ const Chances = ({ of: { probability, beside } }) => html`
 const Sources = ({ of: { motions, likelihood_scale, not_sampled, repairs } }) => html`
   <details><summary>Source and processing of the ground motions</summary>
     <ul translate="no">${motions.map((/** @type {any} */ each) => html`<li key=${each.name} translate="no">${each.name}: ${each.provenance.join("; ")}</li>`)}</ul></details>
-  <details><summary>Likelihood terms</summary><p translate="no">${likelihood_scale}</p></details>
+  <details><summary>Likelihood terms</summary><p>${likelihood_scale}</p></details>
   <details><summary>Not sampled</summary>
     <ul>${not_sampled.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
   ${repairs.length > 0 && html`<details><summary>Mesh repairs</summary>
