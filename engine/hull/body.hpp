@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "../spatial/vectors.hpp"
+#include "../spatial/positions.hpp"
 #include "few.hpp"
 
 namespace rocking::hull {
 using namespace rocking::spatial::ROCKING_ISA;
 
-constexpr int kInterval = 35, kPowers = 8, kAcross = 8;
+constexpr int kPowers = 8, kAcross = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Points = Few<int>;
@@ -32,8 +32,7 @@ struct Body {
     std::vector<Vec> facets;           // outward normals over distances from the centre
     List poses, first, beside;         // of each facet: pose to which it leads, its neighbours
     List first_corner, corners;         // of each facet
-    const double* positions = nullptr; // intervals of azimuth, with the coefficients of k over each
-    int intervals = 0;
+    Positions ked, calibrated;         // k of a landing on the base, by two models
     bool usable = false;
 
     void prepare() {

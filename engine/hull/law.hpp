@@ -4,7 +4,7 @@
 
 namespace rocking::hull {
 
-enum Code : int { kHousner = 0, kPosition = 1, kCoefficient = 2, kKed = 3 };
+enum Code : int { kHousner = 0, kPosition = 1, kCoefficient = 2, kKed = 3, kCalibrated = 4 };
 constexpr double kFlat = 1e-7;
 
 struct Law {
@@ -18,7 +18,8 @@ struct Law {
         if (code == kHousner || height - dot(down, old) > kFlat * b.size || height - dot(down, now) > kFlat * b.size) return 1.0;
         if (code == kPosition) return coefficient;
         if (code == kCoefficient) return greater(by_coefficient(b, step, down, height), 0.0);  // a stated loss may be larger than Housner's
-        return lesser(greater(by_azimuth(b, step), 0.0), 1.0);
+        if (code == kCalibrated) return greater(b.calibrated.at(step), 0.0);
+        return lesser(greater(b.ked.at(step), 0.0), 1.0);
     }
 
     Vec place(const Body& b, Vec old, Vec now) const {
@@ -37,20 +38,6 @@ struct Law {
         const double over_foot = dot(edge, b.inertia * edge) / b.mass + height * height;
         const double lever = over_foot * (1.0 - coefficient) / (coefficient * ahead - behind);  // Eq. 4
         return (2.0 * lever - (ahead + behind)) / (ahead - behind);  // Eq. 104
-    }
-
-    static double by_azimuth(const Body& b, Vec step) {
-        double angle = std::atan2(step.y, step.x);
-        const double* p = b.positions;
-        if (angle < p[0]) angle += 2.0 * 3.141592653589793;
-        for (int i = 1; i < b.intervals && angle >= b.positions[i * kInterval]; ++i) p += kInterval;
-        const double x = (2.0 * angle - p[0] - p[1]) / (p[1] - p[0]);
-        double one = 0.0, two = 0.0;
-        for (int k = kInterval - 1; k > 2; --k) {
-            const double sum = 2.0 * x * one - two + p[k];
-            two = one, one = sum;
-        }
-        return x * one - two + p[2];
     }
 };
 

@@ -43,11 +43,11 @@ class Library {
     Library() = default;
     Library(const Library&) = delete;
 
-    // positions: intervals of k of landings on the base, none where they are not known.
+    // ked, calibrated: intervals of k of landings on the base, by two models; none where they are not needed.
     void add_body(double mass, Table<const double> inertia, Table<const double> vertices, Table<const double> facets, Line<const Whole> poses,
-                  Line<const Whole> first, Line<const Whole> beside, Line<const Whole> first_corner, Line<const Whole> corners, Table<const double> positions) {
+                  Line<const Whole> first, Line<const Whole> beside, Line<const Whole> first_corner, Line<const Whole> corners, Table<const double> ked, Table<const double> calibrated) {
         expect(inertia.shape(0) == 3 && inertia.shape(1) == 3 && vertices.shape(1) == 3 && facets.shape(1) == 3 && vertices.shape(0) > 3 &&
-                   facets.shape(0) > 3 && poses.size() == facets.shape(0) && positions.shape(1) == kInterval,
+                   facets.shape(0) > 3 && poses.size() == facets.shape(0) && ked.shape(1) == kInterval && calibrated.shape(1) == kInterval,
                "tables of a body expected");
         auto b = std::make_unique<Body>();
         b->mass = mass, b->inertia = mat(inertia.data());
@@ -56,8 +56,10 @@ class Library {
         b->poses.assign(poses.data(), poses.data() + poses.size());
         lists(first, beside, facets.shape(0), facets.shape(0), b->first, b->beside);
         lists(first_corner, corners, facets.shape(0), vertices.shape(0), b->first_corner, b->corners);
-        kept_.emplace_back(positions.data(), positions.data() + positions.size());
-        b->positions = kept_.back().data(), b->intervals = static_cast<int>(positions.shape(0));
+        for (const auto& [rows, positions] : {std::pair{&ked, &b->ked}, {&calibrated, &b->calibrated}}) {
+            kept_.emplace_back(rows->data(), rows->data() + rows->size());
+            *positions = {kept_.back().data(), static_cast<int>(rows->shape(0))};
+        }
         b->usable = mass > 0.0;
         b->prepare();
         bodies_.push_back(std::move(b));
@@ -127,7 +129,7 @@ class Library {
         const auto there = [](Whole k, const auto& all) { return k >= 0 && k < static_cast<Whole>(all.size()); };
         if (!there(c[0], bodies_) || !there(c[1], motions_) || !bodies_[c[0]]->usable || !(v[3] >= 0.0 && v[13] > 0.0 && v[14] > 0.0 && v[28] > 0.0)) return {};
         const Body& b = *bodies_[c[0]];
-        if (!(c[2] == kHousner || ((c[2] == kCoefficient || c[2] == kPosition) && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.intervals > 0))) return {};
+        if (!(c[2] == kHousner || ((c[2] == kCoefficient || c[2] == kPosition) && v[0] >= 0.0 && v[0] <= 1.0) || (c[2] == kKed && b.ked.intervals > 0) || (c[2] == kCalibrated && b.calibrated.intervals > 0))) return {};
         if (c[3] < 0 || c[3] >= static_cast<Whole>(b.facets.size())) return {};
         Ground g;
         g.motion = &motions_[c[1]], g.scale = v[1], g.gravity = v[28], g.level = mat(v + 4), g.shelf[0] = v[13], g.shelf[1] = v[14];
@@ -158,7 +160,7 @@ NB_MODULE(_hull, m) {
     nb::class_<Library>(m, "Library")
         .def(nb::init<>())
         .def("add_body", &Library::add_body, "mass"_a, "inertia"_a, "vertices"_a, "facets"_a, "poses"_a, "first"_a, "beside"_a, "first_corner"_a,
-             "corners"_a, "positions"_a)
+             "corners"_a, "ked"_a, "calibrated"_a)
         .def("add_nobody", &Library::add_nobody)
         .def("add_motion", &Library::add_motion, "times"_a, "rows"_a)
         .def("run", &Library::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "rest_speed"_a, "tolerance"_a, "most_events"_a,

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "vectors.hpp"
+#include "positions.hpp"
 
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
 enum Contact : int { kRest = 0, kEdge = 1, kVertex = 2, kRolling = 3 };
 
-constexpr int kMostVertices = 64, kKept = 117, kInterval = 35;
+constexpr int kMostVertices = 64, kKept = 117;
 
 // What stays on the ground: the face, an edge, a vertex, or a point of a rim.
 struct Pivot {
@@ -36,8 +36,7 @@ struct Body {
     int count = 0;
     bool round = false, usable = false;
     std::vector<Vec> vertices, edges, inward;
-    const double* positions = nullptr;    // intervals of azimuth, with the coefficients of k over each
-    int intervals = 0;
+    Positions ked, calibrated;            // k of a landing of the whole base, by two models
     Pivot face;
     std::vector<Pivot> vertex, edge;
 

@@ -42,8 +42,9 @@ private:
         b.mass = v[0], b.p = v[1], b.size = v[2], b.lift = v[3], b.radius = v[4];
         b.centre = {v[5], v[6], v[7]};
         b.inertia = {{v[8], v[9], v[10]}, {v[11], v[12], v[13]}, {v[14], v[15], v[16]}};
-        const std::int64_t first = n.corners[4 * i], count = n.corners[4 * i + 1];
-        b.positions = positions_.data() + n.corners[4 * i + 2] * kPosition, b.intervals = static_cast<int>(n.corners[4 * i + 3]);
+        const std::int64_t *corners = n.corners + i * kBodyPlaces, first = corners[0], count = corners[1];
+        b.ked = {positions_.data() + corners[2] * kPosition, static_cast<int>(corners[3])};
+        b.calibrated = {positions_.data() + corners[4] * kPosition, static_cast<int>(corners[5])};
         b.usable = true;
         for (int k = 0; k < kBodyNumbers; ++k) b.usable &= std::isfinite(v[k]);
         for (std::int64_t k = 0; k < 2 * count; ++k) b.usable &= std::isfinite(n.vertices[2 * first + k]);
@@ -63,7 +64,7 @@ private:
         const auto count = [](const auto& all) { return static_cast<std::int64_t>(all.size()); };
         if (row.body < 0 || row.body >= count(bodies_) || row.motion < 0 || row.motion >= count(motions_)) return false;
         const Body& body = bodies_[row.body];
-        if (row.law < kHousner || row.law > kKedPoint || (row.law == kKed && body.intervals == 0)) return false;
+        if (row.law < kHousner || row.law > kCalibrated || (row.law == kKed && body.ked.intervals == 0) || (row.law == kCalibrated && body.calibrated.intervals == 0)) return false;
         if (row.law == kKedPoint && (kept_.empty() || body.round || !std::isfinite(body.vertex[0].kept[0]))) return false;
         const Vec w = row.velocity;
         const double* q = row.attitude;

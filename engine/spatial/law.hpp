@@ -1,11 +1,13 @@
 // What an impact costs: one law a function. All of them give the angular velocity about the new pivot.
 #pragma once
+#include <limits>
+
 #include "body.hpp"
 
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3, kKedPoint = 4 };
+enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3, kKedPoint = 4, kCalibrated = 5 };
 
 // A body at an instant: a point at rest on the ground, angular velocity, vertical, gravity less the acceleration of the
 // ground, and of a body on an edge the way to its other end, in its own axes.
@@ -60,22 +62,6 @@ inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
     return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;  // Eq. 21
 }
 
-// k of a landing of the whole base in the direction of a step, not above 1; 1 where there is no step.
-inline double impulse_position(const Body& body, Vec step) {
-    if (!(largest(step) > 1e-12 * body.size)) return 1.0;
-    double angle = std::atan2(step.y, step.x);
-    if (angle < body.positions[0]) angle += 2.0 * 3.141592653589793;
-    const double* p = body.positions;
-    for (int i = 1; i < body.intervals && angle >= body.positions[i * kInterval]; ++i) p += kInterval;
-    const double x = (2.0 * angle - p[0] - p[1]) / (p[1] - p[0]);
-    double one = 0.0, two = 0.0;
-    for (int k = kInterval - 1; k > 2; --k) {
-        const double sum = 2.0 * x * one - two + p[k];
-        two = one, one = sum;
-    }
-    return lesser(x * one - two + p[2], 1.0);
-}
-
 // Momentum about the point where the impulse acts, which lies behind the new pivot by (1 - k)/2 of the step.
 inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Vec step, double k) {
     const Vec back = 0.5 * (1.0 - k) * body.mass * step, speed = cross(s.velocity, body.centre - s.pivot);
@@ -84,7 +70,8 @@ inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Ve
     return inverse(onto.inertia + diagonal(dot(back, onto.arm)) - outer(onto.arm, back)) * momentum;  // Eq. 103
 }
 
-inline Vec by_position(const Body& body, const State& before, const Pivot& onto) {
+// highest: largest k; 1 is the new pivot, beyond which the contact force would be tensile.
+inline Vec by_position(const Body& body, const State& before, const Pivot& onto, const Positions& positions, double highest) {
     State s = before;
     const double length = dot(s.along, s.along);
     if (length > 0.0) {  // of an edge the point that is nearest to the new stance
@@ -94,7 +81,7 @@ inline Vec by_position(const Body& body, const State& before, const Pivot& onto)
     Vec step = onto.at - s.pivot;
     if (onto.contact == kEdge) step = step - dot(step, onto.axis) * onto.axis;
     const Vec speed = cross(s.velocity, body.centre - s.pivot);
-    const double k = impulse_position(body, step);
+    const double k = largest(step) > 1e-12 * body.size ? lesser(positions.at(step), highest) : 1.0;  // 1 where there is no step
     Vec made = about_impulse(body, s, onto, step, k);
     if (k < 1.0 && dot(s.up, cross(made, onto.arm) - speed) < 0.0) made = about_impulse(body, s, onto, step, 1.0);
     const double first = dot(s.velocity, body.inertia * s.velocity) + body.mass * dot(speed, speed), left = dot(made, onto.inertia * made);
@@ -103,7 +90,8 @@ inline Vec by_position(const Body& body, const State& before, const Pivot& onto)
 
 inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, int law, double coefficient) {
     if (law == kHorizontal) return level_only(body, s, onto);
-    if (law == kKed) return by_position(body, s, onto);
+    if (law == kKed) return by_position(body, s, onto, body.ked, 1.0);
+    if (law == kCalibrated) return by_position(body, s, onto, body.calibrated, std::numeric_limits<double>::infinity());
     if (law == kKedPoint) return scaled_to(onto, level_only(body, s, onto), twice_kept(s, onto));
     const Vec plastic = projected(body, s, onto);
     if (law == kHousner) return plastic;

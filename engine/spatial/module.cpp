@@ -46,15 +46,16 @@ public:
         const auto size = [](const auto& a, int k) { return static_cast<std::int64_t>(a.shape(k)); };
         Numbers n{bodies.data(), corners.data(), vertices.data(), kept.size() ? kept.data() : nullptr, positions.data(),
                   size(bodies, 0), size(vertices, 0), size(positions, 0), degree, places.data(), times.data(), accelerations.data(), size(places, 0), size(times, 0), size(accelerations, 0)};
-        expect(size(bodies, 1) == kBodyNumbers && size(corners, 0) == n.body_count && size(corners, 1) == 4, "a table of bodies expected");
+        expect(size(bodies, 1) == kBodyNumbers && size(corners, 0) == n.body_count && size(corners, 1) == kBodyPlaces, "a table of bodies expected");
         expect(size(positions, 1) == kPosition, "azimuths and coefficients of intervals expected");
         expect(size(vertices, 1) == 2 && size(places, 1) == 3 && (degree == 1 || degree == 7), "tables of vertices and motions expected");
         expect(!n.kept || size(kept, 0) == 2 * n.vertex_count * kKeptNumbers, "moments of every vertex and edge expected");
         for (std::int64_t i = 0; i < n.body_count; ++i) {
-            const std::int64_t first = n.corners[4 * i], count = n.corners[4 * i + 1], place = n.corners[4 * i + 2], intervals = n.corners[4 * i + 3];
+            const std::int64_t *corners_of = n.corners + i * kBodyPlaces, first = corners_of[0], count = corners_of[1];
             expect(first >= 0 && count >= 0 && count != 1 && count != 2 && count <= kMostCorners && first + count <= n.vertex_count,
                    "a body names vertices that are not there");
-            expect(place >= 0 && intervals >= 0 && place + intervals <= n.position_count, "a body names intervals that are not there");
+            for (const std::int64_t* place : {corners_of + 2, corners_of + 4})
+                expect(place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= n.position_count, "a body names intervals that are not there");
         }
         for (std::int64_t i = 0; i < n.motion_count; ++i) {
             const std::int64_t* p = n.places + 3 * i;

@@ -9,7 +9,7 @@ namespace rocking::spatial {
 // of k of a landing: first and last azimuth of an interval, Chebyshev coefficients over it
 constexpr int kPosition = 35;
 // of a body: mass, p, size, lift, radius, centre (3), inertia (9); of a row: coefficient, scale, horizon, attitude (4), velocity (3)
-constexpr int kBodyNumbers = 17, kRowNumbers = 10, kRowChoices = 3;
+constexpr int kBodyNumbers = 17, kBodyPlaces = 6, kRowNumbers = 10, kRowChoices = 3;
 // peak tilt, its time, peak spin, overturning time, direction, first uplift, end, held, lost energy
 constexpr int kResults = 9;
 // outcome, status, contact and number over which it fell, impacts, uplifts, events, steps, whether it still rocks
@@ -19,10 +19,10 @@ constexpr int kSample = 18;
 
 struct Numbers {
     const double* bodies;             // by body
-    const std::int64_t* corners;      // first vertex and number of vertices, first interval of k and their number, by body
+    const std::int64_t* corners;      // first vertex and number of vertices, first interval of k and number of intervals by two models, by body
     const double* vertices;           // x and y
     const double* kept;               // moments by vertex and edge of all bodies, or null
-    const double* positions;          // k of landings of the whole base, interval by interval of all bodies
+    const double* positions;          // k of landings of the whole base, interval by interval of all bodies and models
     std::int64_t body_count, vertex_count, position_count;
     int degree;
     const std::int64_t* places;       // first number of times, first of accelerations, and stretches, by motion

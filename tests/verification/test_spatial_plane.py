@@ -28,6 +28,7 @@ PLANE = {
     "ked-3d-point": "ked",
     "housner-3d": "housner",
     "horizontal-momentum-3d": "horizontal-momentum",
+    "calibrated-3d": "calibrated",
     0.9: 0.9,
 }
 

@@ -110,8 +110,8 @@ def simulate(body: Any, motion: Any, restitution: Any = "ked", *, friction: floa
         complementarity. In space a model of `rocking.restitution.space`, with or without its "-3d" ("ked" needs the
         distribution of mass, which a Solid, a box and a cylinder have), a coefficient from 0 to 1 (that share of the
         angular velocity goes on, in the direction of the plastic impact), or any object with `velocity_after` and
-        `label`. In space with friction "housner-3d", "ked-3d" or the coefficient of a landing of the whole base, not
-        below Housner's.
+        `label`. In space with friction "housner-3d", "ked-3d", "calibrated-3d" or the coefficient of a landing of the
+        whole base.
     friction : float, optional
         Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
         given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body

@@ -168,8 +168,8 @@ class SampledInSpace(SampledBodies):
         numbers = numbers_of_rows(drawn["restitution"], factor, drawn["friction"], state, self._gravity)
         stood = np.array([shape.facet for shape in shapes])
         choices = np.column_stack([place, np.zeros_like(place), np.full_like(place, self._law), stood])
-        ked = self._law == histories.KED
-        rows = HullRows([shape.body for shape in several], [ground], _SETTINGS, histories.chosen("auto"), ked=ked)
+        bodies = [shape.body for shape in several]
+        rows = HullRows(bodies, [ground], _SETTINGS, histories.chosen("auto"), {self._law})
         found = rows.run(numbers, choices, thread_count(threads))
         known = found["status"] == Status.GOOD.code
         pairs = zip(shapes, found["pose"].tolist(), strict=True)

@@ -77,8 +77,8 @@ class RowsOnHull:
         self.law, self.gravity, self.friction = law, settings.gravity, settings.friction
         grounds = [_ground(motion) for motion in motions]
         which = histories.chosen(engine)
-        ked = law.model == "ked-3d"
-        self.rows = HullRows([law.on_hull], grounds, settings, which, ked=ked)
+        laws = {histories.CODES[law.model]} if isinstance(law.model, str) else set()
+        self.rows = HullRows([law.on_hull], grounds, settings, which, laws)
 
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
         """Return the results of a piece by the names that studies know, and the steps taken.

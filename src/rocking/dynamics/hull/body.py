@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.equilibria.polytope import Polytope, polytope
-from rocking.bodies.solid import Solid
+from rocking.bodies.solid import Base, Solid
 from rocking.conventions import FloatArray
 from rocking.dynamics.hull.ground import Frame, Vector, dot, length
 from rocking.dynamics.space.body import SpatialBody, checked_inertia
@@ -31,6 +31,7 @@ class HullBody:
     centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
     inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)
     solid: Solid | None = None  # distribution of mass, for laws that need it; its own frame is that of the vertices
+    footprint: Base | None = None  # base of a body that stands upright, in the axes of the vertices
     hull: Polytope = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -63,7 +64,8 @@ class HullBody:
         moments = solid.local_moments
         points = solid.equilibria().hull_vertices - solid.origin
         known = solid.known is not None  # then only these moments are known
-        return cls(points, moments.mass, moments.centre, moments.inertia, None if known else solid)
+        spread = None if known else solid
+        return cls(points, moments.mass, moments.centre, moments.inertia, spread, solid.local_base)
 
     @cached_property
     def points(self) -> list[Vector]:

@@ -1,8 +1,8 @@
 """Many histories of bodies on their hulls: every combination of bodies, grounds, scales, laws, frictions and starts."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +16,7 @@ from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory
 from rocking.dynamics.hull.motion import State
-from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, spread_of
+from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, position_on_base, spread_of
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.settings import CompiledEngine, check_progress, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
@@ -26,8 +26,8 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
-HOUSNER, POSITION, COEFFICIENT, KED = range(4)
-CODES = {"housner-3d": HOUSNER, "ked-3d": KED}
+HOUSNER, POSITION, COEFFICIENT, KED, CALIBRATED = range(5)
+CODES = {"housner-3d": HOUSNER, "ked-3d": KED, "calibrated-3d": CALIBRATED}
 MOST_POWERS = 8
 ENGINES = {
     "fast": "fast (Dormand-Prince with complementarity, compiled)",
@@ -47,14 +47,14 @@ available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.cho
 COLUMNS = _COMPILED.columns
 
 
-def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], *, ked: bool) -> Any:
-    """Return bodies and motions as the compiled engine keeps them; ked: whether the law asks where the mass is."""
+def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], laws: Collection[int]) -> Any:
+    """Return bodies and motions as the compiled engine keeps them; laws: codes of the rows."""
     made = module().Library()
     for body in bodies:
         if body is None:
             made.add_nobody()
         else:
-            made.add_body(body.mass, np.array(body.tensor), **_tables(body), positions=_positions(body, ked=ked))
+            made.add_body(body.mass, np.array(body.tensor), **_tables(body), **_positions(body, laws))
     for motion in motions:
         rows = motion.coefficients.transpose(0, 2, 1)
         if rows.shape[1] > MOST_POWERS:
@@ -103,7 +103,7 @@ def traced(
         spread_of(body)
     state, plane = numbers_of(body, start)[None], _plane(ground)
     numbers = numbers_of_rows(value, 1.0, friction, state, ground.gravity, plane, horizon)
-    library = library_of([body], [ground.motion], ked=code == KED)
+    library = library_of([body], [ground.motion], {code})
     results, counts = _COMPILED.room(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
     nodes, impacts, members, stuck, struck, least, fell = library.trace(
@@ -144,11 +144,11 @@ def _tables(body: HullBody) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _positions(body: HullBody, *, ked: bool) -> FloatArray:
-    """Return where the impulse of a landing on the solid's own base acts: azimuths and coefficients by interval."""
-    if not ked or body.solid is None:
-        return np.zeros((0, HIGHEST + 3))
-    return np.array(impulse_position(body.solid).table())
+def _positions(body: HullBody, laws: Collection[int]) -> dict[str, FloatArray]:
+    """Return the impulse position of a landing on the body's own base: azimuths and coefficients by interval."""
+    ked = impulse_position(body.solid).table() if KED in laws and body.solid is not None else ()
+    calibrated = position_on_base(body).table() if CALIBRATED in laws else ()
+    return {name: np.array(rows).reshape(-1, HIGHEST + 3) for name, rows in (("ked", ked), ("calibrated", calibrated))}
 
 
 PIECE = 1 << 14
@@ -189,7 +189,8 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    if ked := any(code == KED for code, _ in codes):
+    used = {code for code, _ in codes}
+    if KED in used:
         for one in filter(None, several):
             spread_of(one)
     shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
@@ -202,7 +203,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     )
     bases = np.array([0 if each is None else each.base for each in several])
     choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law], bases[body]]).astype(np.int64)
-    rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), ked=ked)
+    rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), used)
     found = rows.run(numbers, choices, taken, progress)
     return SpatialBatch(shape, found, rows.words, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
 
@@ -215,7 +216,7 @@ class HullRows:
     motions: Sequence[SpatialGround]
     settings: HullSettings
     engine: str  # fast or reference
-    ked: bool = field(kw_only=True)  # whether a row asks where the mass is
+    laws: Collection[int]  # codes of the rows
 
     @property
     def words(self) -> str:
@@ -225,7 +226,7 @@ class HullRows:
     @cached_property
     def library(self) -> Any:
         """Bodies and motions as the compiled engine keeps them."""
-        return library_of(self.bodies, self.motions, ked=self.ked)
+        return library_of(self.bodies, self.motions, self.laws)
 
     def run(
         self, numbers: FloatArray, choices: IntArray, threads: int, progress: Callable[[int], None] | None = None
@@ -252,7 +253,7 @@ class HullRows:
     def _one(self, row: FloatArray, which: list[int]) -> tuple[list[float], list[int]]:
         body, unbounded = self.bodies[which[0]], np.isin(np.arange(row.size), (3, 13, 14))
         known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
-        bounded = which[2] in {HOUSNER, KED} or 0.0 <= row[0] <= 1.0
+        bounded = which[2] in CODES.values() or 0.0 <= row[0] <= 1.0
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
             refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.wholes) - 3)]
             return [math.nan] * len(_COMPILED.floats), refused

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies.equilibria.polytope import FLAT
-from rocking.bodies.solid import Solid
+from rocking.bodies.solid import Solid, SolidMoments, SupportPolygon
 from rocking.dynamics.content import hash_of
 from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import Vector, added, applied, cross, dot, minus, scaled, unit
@@ -18,7 +18,11 @@ from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.fast_engine import batch_law
 from rocking.errors import InvalidValueError
+from rocking.restitution.space.calibrated import CalibratedPosition
 from rocking.restitution.space.impulse_position import impulse_position
+
+MODELS = ("housner-3d", "ked-3d", "calibrated-3d")
+"""Models of `rocking.restitution.space` that friction does not exclude."""
 
 ImpulseLaw = Callable[[Vector, Vector], float]
 """Position k of the impulse of a step between two points of the body, from its centre of mass; 1 at the new one [-]."""
@@ -47,6 +51,9 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
         return _on_base(body, base, _of_coefficient(body, base, law), math.inf)
     if law == "housner-3d":
         return lambda _old, _new: 1.0
+    if law == "calibrated-3d":
+        calibrated = position_on_base(body)
+        return _on_base(body, base, lambda step: calibrated.at(np.array(step)), math.inf)
     position = impulse_position(spread_of(body))
     return _on_base(body, base, lambda step: position.at(np.array(step)))
 
@@ -59,6 +66,20 @@ def spread_of(body: HullBody) -> Solid:
             " HullBody its solid"
         )
     return body.solid
+
+
+@lru_cache(maxsize=256)
+def position_on_base(body: HullBody) -> CalibratedPosition:
+    """Return the impulse position of a landing on the base by the calibrated model, kept for the body."""
+    base, (x, y, _) = body.footprint, body.centre.tolist()
+    if base is None:
+        if dot(unit(body.facets[body.base]), (0.0, 0.0, -1.0)) < 1.0 - 1e-12:
+            raise InvalidValueError("restitution 'calibrated-3d' needs a body on a level base, in its own axes")
+        corners = body.hull.vertices[body.hull.corners(body.base)][::-1]  # clockwise seen from below
+        base = SupportPolygon(corners[:, :2] + [x, y])
+    second = 0.5 * np.trace(body.inertia) * np.eye(3) - body.inertia
+    centre = np.array([x, y, body.hull.heights[body.base]])
+    return CalibratedPosition(SolidMoments(body.mass, centre, second), base)
 
 
 def _on_base(body: HullBody, base: int, position: Callable[[Vector], float], highest: float = 1.0) -> ImpulseLaw:
@@ -125,10 +146,10 @@ def law_on_hull(restitution: Any) -> str | float | FixedPosition:
     coefficient = getattr(law.law, "coefficient", None)
     if coefficient is not None:
         return float(coefficient)
-    if law.label not in ("housner-3d", "ked-3d"):
+    if law.label not in MODELS:
         raise InvalidValueError(
             "{parameter} of a body in space with friction must be {allowed}, got {value}", parameter="restitution",
-            allowed="'housner-3d', 'ked-3d' or a coefficient from 0 to 1", value=law.label,
+            allowed=f"{', '.join(map(repr, MODELS))} or a coefficient from 0 to 1", value=law.label,
         )  # fmt: skip
     return law.label
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.solid import Part, Solid, SolidMoments, box, cylinder
+from rocking.bodies.solid import Base, Part, RoundBase, Solid, SolidMoments, SupportPolygon, box, cylinder
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import applied, dot, norm
@@ -212,6 +212,11 @@ class SpatialBody:
     def moments(self) -> SolidMoments:
         """Mass, centre and central second moments [kg, m, kg m2]."""
         return SolidMoments(self.mass, self.centre, 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia)
+
+    @cached_property
+    def footprint(self) -> Base:
+        """Base in the axes of the body."""
+        return RoundBase(np.zeros(2), float(self.base)) if self.round else SupportPolygon(np.asarray(self.base))
 
     @cached_property
     def radius(self) -> float:

@@ -120,7 +120,7 @@ class SpatialState:
             middle = contact.pivot if contact.axis is None else contact.pivot + 0.5 * contact.length * contact.axis
             share = float(((middle - pivot) * self.along).sum()) / length
             pivot = pivot + min(max(share, 0.0), 1.0) * self.along
-        return SpatialImpact(body.moments, self.velocity, pivot, onto, self.up, body.matter)
+        return SpatialImpact(body.moments, self.velocity, pivot, onto, self.up, body.matter, body.footprint)
 
     def plastic(self, body: SpatialBody, contact: ContactSet) -> FloatArray:
         """Return the angular velocity that the plastic impact without slip leaves on a contact [rad/s]."""

@@ -14,6 +14,7 @@ from rocking.dynamics.space.ground import SpatialGround
 from rocking.dynamics.space.impact_laws import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
 from rocking.dynamics.space.settings import SpaceBatchSettings
 from rocking.errors import InvalidValueError
+from rocking.restitution.space.calibrated import calibrated_position
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 PIECE = 1 << 15
@@ -21,7 +22,7 @@ PIECE = 1 << 15
 
 MOST_CORNERS = 64  # most vertices of a base that the compiled engine takes
 
-CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4}
+CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4, "calibrated-3d": 5}
 """Laws without a number of their own."""
 
 STEP = np.dtype([
@@ -152,7 +153,7 @@ def _stock(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gr
     codes = {law.code for law in table.laws}
     numbers, corners, vertices = _body_table(bodies, gravity)
     moments = _moment_table(bodies) if CODES["ked-3d-point"] in codes else np.zeros(0)
-    places, positions = _position_table(bodies if CODES["ked-3d"] in codes else [None] * len(bodies))
+    places, positions = _position_table(bodies, codes)
     degree, motions, times, accelerations = _motion_table(grounds)
     return module().Stock(
         numbers, np.column_stack([corners, places]), vertices, moments, positions,
@@ -219,18 +220,24 @@ def _moments(body: SpatialBody) -> FloatArray:
     return np.concatenate([part.ravel() for each in moments for part in (each.second, each.third, each.fourth)])
 
 
-def _position_table(bodies: Bodies) -> tuple[IntArray, FloatArray]:
-    """Return where the impulse of a landing of the whole base acts, which ked-3d needs."""
-    # First interval and number of intervals, none for a body whose distribution of mass is not known (shape (n, 2)).
-    # First and last azimuth of an interval [rad], and the coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
-    places = np.zeros((len(bodies), 2), np.int64)
+def _position_table(bodies: Bodies, codes: set[int]) -> tuple[IntArray, FloatArray]:
+    """Return the impulse position of a landing of the whole base, which ked-3d and calibrated-3d need."""
+    # Of both models first interval and number of intervals; none for a model that no row has, and of ked-3d none for a
+    # body whose distribution of mass is not known (shape (n, 4)). First and last azimuth of an interval [rad], and the
+    # coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
+    places = np.zeros((len(bodies), 4), np.int64)
     rows: list[list[float]] = []
     for number, body in enumerate(bodies):
-        if body is None or body.matter is None:
+        if body is None:
             continue
-        table = impulse_position(body.matter.placed[0]).table()
-        places[number] = len(rows), len(table)
-        rows += table
+        if CODES["ked-3d"] in codes and body.matter is not None:
+            table = impulse_position(body.matter.placed[0]).table()
+            places[number, :2] = len(rows), len(table)
+            rows += table
+        if CODES["calibrated-3d"] in codes:
+            table = calibrated_position(body.moments, body.footprint).table()
+            places[number, 2:] = len(rows), len(table)
+            rows += table
     return places, np.array(rows).reshape(-1, HIGHEST + 3)
 
 

@@ -1,5 +1,6 @@
 """What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
 
+from rocking.restitution.space.calibrated import SpatialCalibrated
 from rocking.restitution.space.energies import UnitEnergies, unit_energies
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
@@ -10,6 +11,7 @@ from rocking.restitution.space.ked import SpatialKedPoint
 from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
 
 __all__ = [
+    "SpatialCalibrated",
     "SpatialFlag",
     "SpatialHorizontalMomentum",
     "SpatialHousner",

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from rocking.bodies.solid import Corner, Edge, Solid, SolidMoments
+from rocking.bodies.solid import Base, Corner, Edge, Solid, SolidMoments
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, norm, solution, times
@@ -17,7 +17,7 @@ UP = np.array([0.0, 0.0, 1.0])  # normal of the ground
 NO_MATTER = (
     "this model needs the distribution of mass, got a body known by its mass, centre and inertia alone: use a Solid of "
     "parts with their densities, SpatialBody.of(solid), SpatialBody.box or SpatialBody.cylinder, or a model that needs "
-    "no more than these, 'housner-3d' or 'horizontal-momentum-3d'"
+    "no more than these, 'calibrated-3d', 'housner-3d' or 'horizontal-momentum-3d'"
 )
 """What a body without a solid is told."""
 
@@ -50,8 +50,10 @@ class SpatialImpact:
     up : ndarray, shape (3,)
         Normal of the ground [-].
     matter : callable, optional
-        Returns the body as a solid and the origin of the solid's frame [m]; models that need no distribution of mass
-        never ask.
+        Returns the body as a solid and the origin of the solid's frame [m]; needed by models of the distribution of
+        mass.
+    base : Base, optional
+        Base of the body, in its axes [m]; needed by calibrated-3d.
 
     Raises
     ------
@@ -77,6 +79,7 @@ class SpatialImpact:
     onto: Corner | Edge
     up: FloatArray = field(default_factory=UP.copy)
     matter: Callable[[], Placed] | None = None
+    base: Base | None = None
 
     def __post_init__(self) -> None:
         """Check the normal of the ground."""

@@ -1,18 +1,22 @@
-"""KED in space: where the paper's energy balance has the impulse of a landing of the whole base, each way (Eq. 104).
+"""Models in 3D by the position of the impulse of a landing of the whole base, in each direction (Eq. 104).
 
-As a function of the azimuth of the step its position k is analytic as long as neither foot changes, so that few exact
-values give it between those azimuths.
+As a function of the azimuth of the step the position k is analytic as long as neither foot changes. Polynomials through
+few exact values give it between those azimuths.
 """
 
 import math
+from abc import ABC, abstractmethod
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 
+from rocking.bodies.moments import SolidMoments
 from rocking.bodies.solid import Part, RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid.base import Base
 from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
@@ -27,15 +31,31 @@ _ARCS = 8
 _PIECE = 4096  # points at a time: what is computed of them stays in the cache
 
 
-class ImpulsePosition:
+@dataclass(frozen=True, eq=False)
+class BaseLanding:
+    """A landing of the whole base in one direction, from the old foot onto the new one."""
+
+    edge: FloatArray  # unit vector along the new foot [-]; shape (3,)
+    offset: float  # of the new foot from the origin, in the direction of the step [m]
+    over_foot: float  # moment of inertia about the line through the foot of the plumb line [kg m2]
+    old_lever: float  # distance of the old foot from the plumb line [m]
+    new_lever: float  # distance of the new foot from the plumb line [m]
+
+
+class ImpulsePosition(ABC):
     """Position k of a landing of the whole base by direction."""
 
     # breaks: azimuths at which a foot changes, in order [rad]
 
-    def __init__(self, solid: Solid) -> None:
-        self.solid = solid
-        self.breaks = _breaks(solid)
+    def __init__(self, moments: SolidMoments, base: Base) -> None:
+        self.moments, self.base, self.size = moments, base, base.size
+        self.height = float(moments.centre[2]) - base.height
+        self.breaks = _breaks(base)
         self._pieces: dict[int, list[float]] = {}
+
+    @abstractmethod
+    def coefficient(self, landing: BaseLanding) -> float:
+        """Return the coefficient of restitution of a landing of the whole base [-]."""
 
     def at(self, step: FloatArray) -> float:
         """Return k of the landing in a direction, in the solid's own frame; above 1 beyond the new foot."""
@@ -45,6 +65,10 @@ class ImpulsePosition:
         number = min(bisect_right(breaks, angle) - 1, len(breaks) - 2)
         low, high = breaks[number : number + 2]
         return _value(self.piece(number), (2.0 * angle - low - high) / (high - low))
+
+    def of_step(self, step: FloatArray) -> float:
+        """Return k of a step in the body's own frame; 1 where there is no step."""
+        return self.at(step) if float(np.abs(step).max()) > _ROUNDING * self.size else 1.0
 
     def piece(self, number: int) -> list[float]:
         """Return Chebyshev coefficients of k between azimuth `number` of `breaks` and the next."""
@@ -59,25 +83,16 @@ class ImpulsePosition:
         return [row + [0.0] * (HIGHEST + 3 - len(row)) for row in rows]
 
     def exact(self, angle: float) -> float:
-        """Return k of the landing at an azimuth from x towards y [rad], straight from the integrals over the mass."""
-        found, x, y = self.solid.local_moments, math.cos(angle), math.sin(angle)
+        """Return k of the landing at an azimuth from x towards y [rad], without the polynomials."""
+        moments, x, y = self.moments, math.cos(angle), math.sin(angle)
         edge = np.array([-y, x, 0.0])
-        new, old = (_reach(self.solid, sign * x, sign * y) for sign in (1.0, -1.0))
-        middle = float(found.centre[0]) * x + float(found.centre[1]) * y
-        b_new, b_old, mass = new - middle, old + middle, found.mass
-        over_foot = float((edge * (found.inertia * edge).sum(axis=1)).sum()) + mass * float(found.centre[2]) ** 2
-        kept = self._projected(edge, new)
-        r = math.sqrt(max(kept, 0.0) / (over_foot + mass * b_new**2))  # Eq. 17, Mao et al. 2024
+        new, old = (_reach(self.base, sign * x, sign * y) for sign in (1.0, -1.0))
+        middle = float(moments.centre[0]) * x + float(moments.centre[1]) * y
+        b_new, b_old, mass = new - middle, old + middle, moments.mass
+        over_foot = float((edge * (moments.inertia * edge).sum(axis=1)).sum()) + mass * self.height**2
+        r = self.coefficient(BaseLanding(edge, new, over_foot, b_old, b_new))
         ahead = over_foot * (1.0 - r) / (mass * (r * b_new + b_old))  # Eq. 4
         return (2.0 * ahead - (b_new - b_old)) / (b_new + b_old)  # Eq. 104
-
-    def _projected(self, edge: FloatArray, offset: float) -> float:
-        """Numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
-        total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
-        for part in self.solid.local_parts:
-            exact = exact_moment(part, point, edge)
-            total += exact if exact is not None else _of_cloud(_cloud(part), edge, offset)
-        return total
 
     def _fitted(self, middle: float, half: float) -> list[float]:
         degree, values = 4, [self.exact(middle + half * math.cos(math.pi * j / 4)) for j in range(5)]
@@ -90,14 +105,35 @@ class ImpulsePosition:
         return found
 
 
+class KedPosition(ImpulsePosition):
+    """Position k where the energy balance of Mao et al. (2024) puts the impulse."""
+
+    def __init__(self, solid: Solid) -> None:
+        super().__init__(solid.local_moments, solid.local_base)
+        self.solid, self.size = solid, solid.size
+
+    def coefficient(self, landing: BaseLanding) -> float:
+        """Return the square root of the ratio of kinetic energies after and before."""
+        kept = self._projected(landing.edge, landing.offset)
+        total = landing.over_foot + self.moments.mass * landing.new_lever**2
+        return math.sqrt(max(kept, 0.0) / total)  # Eq. 17, Mao et al. 2024
+
+    def _projected(self, edge: FloatArray, offset: float) -> float:
+        """Return the numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
+        total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
+        for part in self.solid.local_parts:
+            exact = exact_moment(part, point, edge)
+            total += exact if exact is not None else _of_cloud(_cloud(part), edge, offset)
+        return total
+
+
 @lru_cache(maxsize=256)
-def impulse_position(solid: Solid) -> ImpulsePosition:
-    """Return where the impulse of a landing of the whole base acts, kept for the solid."""
-    return ImpulsePosition(solid)
+def impulse_position(solid: Solid) -> KedPosition:
+    """Return the position of the impulse by KED, kept for the solid."""
+    return KedPosition(solid)
 
 
-def _breaks(solid: Solid) -> list[float]:
-    base = solid.local_base
+def _breaks(base: Base) -> list[float]:
     if isinstance(base, SupportPolygon):
         normals = [math.atan2(-float(along.direction[0]), float(along.direction[1])) for along in base.edges]
         both = sorted(math.remainder(angle + turn, 2.0 * math.pi) for angle in normals for turn in (0.0, math.pi))
@@ -110,9 +146,8 @@ def _breaks(solid: Solid) -> list[float]:
     return [*found, found[0] + 2.0 * math.pi]
 
 
-def _reach(solid: Solid, x: float, y: float) -> float:
-    """How far the base reaches in a direction from the origin of the solid's frame [m]."""
-    base = solid.local_base
+def _reach(base: Base, x: float, y: float) -> float:
+    """Return the distance from the origin to the line that touches the base in a direction [m]."""
     if isinstance(base, SupportPolygon):
         return float((base.vertices[:, 0] * x + base.vertices[:, 1] * y).max())
     assert isinstance(base, RoundBase)
@@ -168,8 +203,35 @@ def _value(coefficients: list[float], x: float) -> float:
 _ROUNDING = 1e-12
 
 
+class ImpulsePositionModel(SpatialModel):
+    """A model that keeps the angular momentum about a point of the way from the old pivot to the new one."""
+
+    highest: ClassVar[float] = 1.0  # largest k; 1 is the new foot (Housner's model)
+
+    @abstractmethod
+    def position(self, impact: SpatialImpact) -> ImpulsePosition:
+        """Return the position of the impulse of landings of the whole base, for the body of an impact."""
+
+    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
+        """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
+        step, axis = _step(impact), impact.edge
+        k = min(self.position(impact).of_step(step), self.highest)
+        made = _kept(impact, step, k)
+        if k < 1.0 and _push(impact, made) < 0.0:
+            made = _kept(impact, step, 1.0)
+        after = 0.5 * dot(made, applied(impact.inertia, made))
+        if after > impact.energy:
+            made = made * math.sqrt(impact.energy / after)
+        return made if axis is None else dot(made, axis) * axis
+
+    def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
+        """Return whether the contact force would be tensile."""
+        scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
+        return (SpatialFlag.PULLS,) * (_push(impact, velocity) < -_ROUNDING * scale)
+
+
 @dataclass(frozen=True)
-class SpatialKed(SpatialModel):
+class SpatialKed(ImpulsePositionModel):
     """Kinetic energy distribution with a place for its impulse: steps of any size, from any pivot to any other.
 
     Of the paper is what a landing of the whole base costs, and with that where its impulse acts: k of the half distance
@@ -206,23 +268,13 @@ class SpatialKed(SpatialModel):
         "onto an edge through the old pivot, and onto the whole base, it is Housner's impact",
     )
 
-    def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
-        step, axis = _step(impact), impact.edge
-        k = min(_position(impact.solid, step), 1.0)
-        made = _kept(impact, step, k)
-        if k < 1.0 and _push(impact, made) < 0.0:
-            made = _kept(impact, step, 1.0)
-        after = 0.5 * dot(made, applied(impact.inertia, made))
-        if after > impact.energy:
-            made = made * math.sqrt(impact.energy / after)
-        return made if axis is None else dot(made, axis) * axis
+    def position(self, impact: SpatialImpact) -> ImpulsePosition:
+        """Return the position by the paper's energy balance."""
+        return impulse_position(impact.solid)
 
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
-        """Return whether k was cut, and whether the ground would have to pull."""
-        scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
-        pulls = _push(impact, velocity) < -_ROUNDING * scale
-        return (SpatialFlag.CUT,) * self.cut(impact.solid, _step(impact)) + (SpatialFlag.PULLS,) * pulls
+        """Return whether k was cut, and whether the contact force would be tensile."""
+        return (SpatialFlag.CUT,) * self.cut(impact.solid, _step(impact)) + super().flags(impact, velocity)
 
     def cut(self, solid: Solid, step: FloatArray) -> bool:
         """Return whether k of a step was cut: the base is too narrow in this direction for the paper's loss.
@@ -239,20 +291,13 @@ class SpatialKed(SpatialModel):
         bool
             True if the impulse is taken at the new foot although the model would have it beyond.
         """
-        return _position(solid, step) > 1.0 + _ROUNDING
+        return impulse_position(solid).of_step(step) > 1.0 + _ROUNDING
 
 
 def _step(impact: SpatialImpact) -> FloatArray:
     """From the old pivot to the landing point, or across the edge."""
     step = impact.onto.point - impact.pivot
     return step if impact.edge is None else step - dot(step, impact.edge) * impact.edge
-
-
-def _position(solid: Solid, step: FloatArray) -> float:
-    """Position k of a step, not cut; 1 where there is no step."""
-    if not float(np.abs(step).max()) > _ROUNDING * solid.size:
-        return 1.0
-    return impulse_position(solid).at(step)
 
 
 def _kept(impact: SpatialImpact, step: FloatArray, k: float) -> FloatArray:

@@ -11,6 +11,7 @@ from rocking.bodies.solid.surfaces import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.portable import norm
+from rocking.restitution.space.calibrated import SpatialCalibrated
 from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.space.housner import SpatialHousner
 from rocking.restitution.space.impact import Placed, SpatialImpact
@@ -19,7 +20,8 @@ from rocking.restitution.space.ked import SpatialKedPoint
 from rocking.restitution.space.model import SpatialModel, SpatialRestitution, middle_of_base
 
 _MODELS: dict[str, type[SpatialModel]] = {
-    kind.name: kind for kind in (SpatialHousner, SpatialHorizontalMomentum, SpatialKed, SpatialKedPoint)
+    kind.name: kind
+    for kind in (SpatialHousner, SpatialHorizontalMomentum, SpatialKed, SpatialKedPoint, SpatialCalibrated)
 }
 
 
@@ -34,7 +36,7 @@ def spatial_models() -> dict[str, type[SpatialModel]]:
     Examples
     --------
     >>> sorted(spatial_models())
-    ['horizontal-momentum-3d', 'housner-3d', 'ked-3d', 'ked-3d-point']
+    ['calibrated-3d', 'horizontal-momentum-3d', 'housner-3d', 'ked-3d', 'ked-3d-point']
     """
     return dict(_MODELS)
 
@@ -125,7 +127,9 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
             "the sign of the angular velocity wrong? The vector points along the axis, right-handed",
             parameter="velocity", speed=down,
         )  # fmt: skip
-    impact = SpatialImpact(solid.local_moments, before, pivot, landing, matter=partial(_placed, solid))
+    impact = SpatialImpact(
+        solid.local_moments, before, pivot, landing, matter=partial(_placed, solid), base=solid.local_base
+    )
     return found.after(impact)
 
 

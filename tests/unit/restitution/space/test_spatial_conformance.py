@@ -28,7 +28,8 @@ def leaning(solid, onto, *, up=LEAN, matter=True, speed=1.0):
         return solid, np.zeros(3)
 
     velocity = speed * np.array([0.3, 1.0, 0.1])
-    return SpatialImpact(solid.local_moments, velocity, np.array([-0.5, 0.1, 0.0]), onto, up, found if matter else None)
+    pivot, base = np.array([-0.5, 0.1, 0.0]), solid.local_base
+    return SpatialImpact(solid.local_moments, velocity, pivot, onto, up, found if matter else None, base)
 
 
 class Bouncing(SpatialModel):

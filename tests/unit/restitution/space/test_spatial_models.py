@@ -136,7 +136,7 @@ def shifted(solid, shift, **changes):
     moments = solid.local_moments
     body = SolidMoments(moments.mass, moments.centre + shift, moments.second)
     pivot = np.array([-0.5, -0.5, 0.0]) + shift
-    options = {"matter": lambda: (solid, shift)} | changes
+    options = {"matter": lambda: (solid, shift), "base": solid.local_base.changed(np.eye(2), shift)} | changes
     return SpatialImpact(body, np.array([-1.0, 1.0, 0.0]), pivot, onto, **options)
 
 
