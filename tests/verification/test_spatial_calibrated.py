@@ -99,22 +99,23 @@ def test_no_landing_gains_energy(seed):
 @pytest.mark.verifies("second engine", "the reference engine without friction", within="1e-6", control="within")
 @pytest.mark.parametrize(
     ("body", "scale"),
-    [(LEANING, 1.0), (CORNERED, 1.2), (Solid(cylinder(0.6, 2.0)), 1.0), (tower(0.6, 0.5, 2.0, 0.05), 1.0)],
+    [(LEANING, 1.0), (CORNERED, 1.1), (Solid(cylinder(0.6, 2.0)), 1.0), (tower(0.6, 0.5, 2.0, 0.05), 1.0)],
     ids=["column", "four corners", "cylinder", "known moments"],
 )  # fmt: skip
 def test_both_engines_agree(body, scale):
-    """Peaks in 2 s by the compiled engine are those of the reference engine, and not those of Housner."""
+    """Impacts, peak and energy lost in 1.5 s are those of the reference engine; Housner loses more."""
     motion = {"x": PULSE} if isinstance(body.base, RoundBase) else {"x": PULSE, "y": OTHER}
     fast, slow = (
         rk.simulate_many(
-            [body], [motion], scale=[scale], restitution=["calibrated", "housner"], duration=2.0, engine=engine
+            [body], [motion], scale=[scale], restitution=["calibrated", "housner"], duration=1.5, engine=engine
         )
         for engine in ("fast", "reference")
     )
-    assert (fast["impacts"].values.ravel() > 0).all()
-    np.testing.assert_allclose(fast["peak_tilt"].values, slow["peak_tilt"].values, rtol=1e-6)
-    tilts = fast["peak_tilt"].values.ravel()
-    assert abs(tilts[0] - tilts[1]) > 1e-3 * tilts[0]
+    assert (fast["impacts"].values == slow["impacts"].values).all()
+    for name in ("peak_tilt", "energy_lost"):
+        np.testing.assert_allclose(fast[name].values, slow[name].values, rtol=1e-6)
+    calibrated, housner = fast["energy_lost"].values.ravel()
+    assert 0.0 < calibrated < 0.9 * housner
 
 
 @pytest.mark.verifies("invariant", "each model has its own table in a batch", within="bits")
