@@ -210,7 +210,18 @@ class ImpulsePositionModel(SpatialModel):
 
     @abstractmethod
     def position(self, impact: SpatialImpact) -> ImpulsePosition:
-        """Return the position of the impulse of landings of the whole base, for the body of an impact."""
+        """Return the position of the impulse of landings of the whole base.
+
+        Parameters
+        ----------
+        impact : SpatialImpact
+            Impact of the body.
+
+        Returns
+        -------
+        ImpulsePosition
+            Position k by the direction of the step.
+        """
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
         """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
@@ -227,7 +238,7 @@ class ImpulsePositionModel(SpatialModel):
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return whether the contact force would be tensile."""
         scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
-        return (SpatialFlag.PULLS,) * (_push(impact, velocity) < -_ROUNDING * scale)
+        return (SpatialFlag.PULLS,) * bool(_push(impact, velocity) < -_ROUNDING * scale)
 
 
 @dataclass(frozen=True)
