@@ -22,7 +22,8 @@ class CalibratedPosition(ImpulsePosition):
     def coefficient(self, landing: BaseLanding) -> float:
         """Return the coefficient of the plane model, which depends on levers and moment of inertia alone."""
         gyration = landing.over_foot / self.moments.mass - self.height**2
-        geometry = ImpactGeometry(self.height, landing.old_lever, landing.new_lever, gyration, 0.0)
+        lengths = self.height, landing.old_lever, landing.new_lever, gyration, 0.0
+        geometry = ImpactGeometry(*map(np.asarray, lengths))
         return float(_PLANE.of_geometry(geometry))  # Eq. 293
 
 

@@ -49,7 +49,7 @@ class ImpulsePosition(ABC):
 
     def __init__(self, moments: SolidMoments, base: Base) -> None:
         self.moments, self.base, self.size = moments, base, base.size
-        self.height = float(moments.centre[2]) - base.height
+        self.height = float(moments.centre[2] - base.height)
         self.breaks = _breaks(base)
         self._pieces: dict[int, list[float]] = {}
 
