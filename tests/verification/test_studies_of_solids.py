@@ -158,7 +158,10 @@ def test_a_bad_row_touches_no_other(engine):
         ({"friction": 0.3, "bounce": 0.2}, "bounce does not apply to a body in space with friction"),
         ({"friction": 0.3, "order": 6}, "order does not apply to a body in space with friction"),
         ({"friction": 0.3, "linear": True}, "linear does not apply to a body in space with friction"),
-        ({"friction": 0.3, "restitution": "horizontal-momentum-3d"}, "must be 'housner-3d', 'ked-3d', 'calibrated-3d' or a coefficient"),
+        (
+            {"friction": 0.3, "restitution": "horizontal-momentum-3d"},
+            "must be 'housner-3d', 'ked-3d', 'calibrated-3d' or",
+        ),
         ({"friction": 0.3, "restitution": 1.2}, "restitution must be in"),
     ],
 )
