@@ -214,8 +214,8 @@ def test_sentences_of_the_server_are_said_whole(open_page: Callable[..., Any], c
         assert re.search(english, text, re.IGNORECASE), text
         assert not re.search(english, other, re.IGNORECASE), other
         assert "[object" not in other
-    odd = Message("from {length} to there", {"length": Amount(0.25, "m")}, context="nowhere")
-    assert page.evaluate(TOLD, [odd.data()]) == ["from 0.25 m to there"]
+    odd = Message("from {length} to there", {"length": Amount(25.0, "m")}, context="nowhere")
+    assert page.evaluate(TOLD, [odd.data()]) == ["from 25 m to there"]
     foreign = [
         "from here to there and back", "a stone of ours. It fell; nobody was there.",
         "overturned by the cat; it was a stone of ours.",
