@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 ANALYSES = ("stripes", "cloud", "incremental")
-MOST_HISTORIES = 10_000_000
-"""A larger analysis is a campaign."""
-
 COUNT, SEED = 100, 1  # what serves where nobody says otherwise
 MOST_MOTIONS = 5000  # all of them are held in memory
 MOST_IN_PICTURE = 6  # restitutions that can be told apart in a picture
@@ -113,7 +110,7 @@ def fragility(
     from rocking.cli.arguments import Arguments
     from rocking.cli.fragility_answer import FragilityAnswer
     from rocking.cli.spelling import typed
-    from rocking.cli.study import TABLES, problem_in
+    from rocking.cli.study import TABLES, histories_in, problem_in
     from rocking.studies.fragility.curves import Crossing
 
     exports = Exports.of(out, EXPORTS)
@@ -128,7 +125,7 @@ def fragility(
         own, written = _table(arguments)
         problem = _problem(arguments, own)
     _check(problem, exports)
-    with bar("histories", _histories(problem), quiet=as_json) as progress:
+    with bar("histories", histories_in(problem), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
     answer.name, answer.crossing = name, crossing
     # the numbers are shown even if a file cannot be made of them
@@ -138,18 +135,6 @@ def fragility(
     for path in exports.write(answer):
         if not as_json:
             print(f"wrote {path}")
-
-
-def _histories(problem: "StudyProblem") -> int:
-    """Return how many histories there are at least, refusing too many."""
-    levels = problem.document.levels
-    total = len(problem.motions) * (1 if levels is None else levels.size) * len(problem.restitutions)
-    if total > MOST_HISTORIES:
-        raise InvalidValueError(
-            "there must be at most {limit} histories, got {count}", limit=MOST_HISTORIES, count=total,
-            hint="rocking campaign computes more",
-        )  # fmt: skip
-    return total
 
 
 def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:

@@ -1,6 +1,5 @@
 """`rocking histories`, and the command of every other study without a module here: options from its own table."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,7 +11,6 @@ from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError
 from rocking.outcome import contact_words, lost_contact, mode_shares
 from rocking.spec.fields import Values, kinds_of
 from rocking.spec.question import BodyQuestion, StudyQuestion
@@ -24,7 +22,6 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 COUNT, SEED = 20, 1  # synthetic motions by default
-_MOST = 10_000_000  # histories; more are a campaign
 _BODY: options.Options = {"body": (options.BodyFile, None)}
 _MOTIONS: options.Options = {
     "record": (options.SeveralRecords, None),
@@ -57,7 +54,7 @@ def command_of(kind: str) -> Callable[..., None]:
         as_json: options.AsJson = False,
     ) -> None:
         from rocking.cli.arguments import Arguments
-        from rocking.cli.study import TABLES, motions_of, of_body, problem_in, problem_of
+        from rocking.cli.study import TABLES, histories_in, motions_of, of_body, problem_in, problem_of
 
         files, length = Exports.of(context.params["out"], exports), None
         first = context.params["body"] if has_body else next(iter(context.params["record"] or ()), None)
@@ -70,12 +67,7 @@ def command_of(kind: str) -> Callable[..., None]:
                 problem = of_body(arguments, kind, stated, laws, motions)
             else:
                 problem = problem_of(kind, arguments, motions, restitution={"models": laws}, **{own: stated})
-        if (total := math.prod(problem.document.sizes)) > _MOST:
-            raise InvalidValueError(
-                "there must be at most {limit} histories, got {count}", limit=_MOST, count=total,
-                hint="rocking campaign has no limit",
-            )  # fmt: skip
-        with bar("histories", total, quiet=as_json) as progress:
+        with bar("histories", histories_in(problem), quiet=as_json) as progress:
             dataset = problem.answer(progress, threads)
         deliver(HistoriesAnswer(problem, dataset, length or "m"), files, as_json=as_json)
 

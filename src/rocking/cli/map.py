@@ -1,6 +1,5 @@
 """`rocking map`: how a body ends over two parameters of it and its motion."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
 
-MOST_CELLS = 10_000_000  # a larger map is a campaign
 _LINE = 1e-4  # how closely the boundary of a picture is bisected: finer than a pixel
 _RESTITUTIONS = {
     "first": Quantity("first", "", "restitution", label="restitution"),
@@ -82,13 +80,7 @@ def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, pi
     from rocking.studies._overturning_map import MapArrays
 
     axes = problem.document.axes
-    sizes = [axis.values.size for axis in axes]
-    if math.prod(sizes) > MOST_CELLS:
-        raise InvalidValueError(
-            "a map must have at most {limit} cells, got {x} x {y}", limit=MOST_CELLS, x=sizes[0], y=sizes[1],
-            hint="rocking campaign computes more",
-        )  # fmt: skip
-    if picture and min(sizes) < 2:
+    if picture and min(axis.values.size for axis in axes) < 2:
         raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
     result = problem.answer(progress, threads)
     if len(problem.restitutions) == 1:

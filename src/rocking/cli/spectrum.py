@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from rocking.dynamics.settings import Settings
 
-_MOST = 10_000_000  # histories; more are a campaign
-
 
 @options.takes(options.keys(SpectrumTable, "scale"), before="units")
 @options.takes(
@@ -67,13 +65,6 @@ def spectrum(
             problem = problem_of(
                 "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table
             )
-    blocks = problem.document.spectrum
-    total = len(problem.motions) * blocks.slenderness_angles.size * blocks.periods.size
-    if total > _MOST:
-        raise InvalidValueError(
-            "spectra must take at most {limit} histories, got {count}", limit=_MOST, count=total,
-            hint="rocking campaign does more",
-        )  # fmt: skip
     with bar("histories", quiet=as_json) as progress:
         answer = SpectrumAnswer(problem.answer(progress, threads), problem.settings)
     deliver(answer, exports, as_json=as_json)

@@ -1,5 +1,6 @@
 """What the commands of many histories have in common: their document, its problem, and the head of their pages."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 TABLES = ("body", "motion", "restitution", "settings")
 """Tables of which `--set` changes a key, beside the one that a study has of its own."""
+MOST_HISTORIES = 10_000_000
+"""A larger study is a campaign."""
 _OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
 
 
@@ -64,7 +67,19 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
                 "{parameter} is for files of rocking campaign: leave it out, or compute this with it",
                 parameter=f"{name}.{odd[0]}",
             )  # fmt: skip
-    return StudyProblem.of(document, files)
+    problem = StudyProblem.of(document, files)
+    if (count := histories_in(problem)) > MOST_HISTORIES:
+        raise InvalidValueError(
+            "there must be at most {limit} histories, got {count}", limit=MOST_HISTORIES, count=count,
+            hint="rocking campaign computes more",
+        )  # fmt: skip
+    return problem
+
+
+def histories_in(problem: StudyProblem) -> int:
+    """Return the number of histories with all files of folders; of an adaptive study that of the first round."""
+    document = problem.document
+    return math.prod(document.sizes) * len(problem.motions) // document.motion_count
 
 
 def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str]) -> StudyProblem:
