@@ -22,7 +22,10 @@ const REPAIRS = [["", "what is safe"], ["none", "nothing (\"none\"): refuse what
 const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")"], ["hull", "the hull of its points (\"hull\")"]];
 const INNER = [["", "refused, and named (\"refuse\")"], ["solid", "solid (\"solid\")"], ["cavity", "cavities (\"cavity\")"]];
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
-const LAWS = [["ked-3d", "kinetic energy distribution (ked-3d)"], ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"]];
+const LAWS = [
+  ["ked-3d", "kinetic energy distribution (ked-3d)"], ["calibrated-3d", "calibrated model (calibrated-3d)"],
+  ["housner-3d", "Housner's (housner-3d)"], ["", "a coefficient"],
+];
 
 const OWN = "project"; // chosen in place of a scan
 const FIRST = {
