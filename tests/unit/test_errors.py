@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
+import rocking.app.errors
+import rocking.campaigns.disk
 from rocking.errors import _EXTRAS, BodyFileError, InvalidValueError, RecordError, RockingError, located
 from rocking.messages import Amount, Index, Message, Option, Range, by_key
 
@@ -160,8 +162,12 @@ def test_every_template_has_its_facts():
             assert fields <= names | {"parameter", "value", "allowed"}, (path.name, call.lineno)
 
 
-ROOMS = ("bodies", "motions", "statistics", "identification", "evidence", "restitution", "dynamics")
-FAMILY = {name for name, kind in vars(rk.errors).items() if isinstance(kind, type) and issubclass(kind, RockingError)}
+FAMILY = {
+    name
+    for module in (rk.errors, rocking.app.errors, rocking.campaigns.disk)
+    for name, kind in vars(module).items()
+    if isinstance(kind, type) and issubclass(kind, RockingError)
+}
 
 
 def sentences(tree):
@@ -177,7 +183,7 @@ def sentences(tree):
 
 def test_errors_are_made_of_facts():
     """A value is a fact of the error, or the refused value: no sentence has it alone."""
-    paths = [path for room in ROOMS for path in (SOURCE / room).rglob("*.py")]
+    paths = SOURCE.rglob("*.py")
     made = {str(path.relative_to(SOURCE)): sentences(ast.parse(path.read_text(encoding="utf-8"))) for path in paths}
     assert {name: lines for name, lines in made.items() if lines} == {}
     # negative control

@@ -150,7 +150,7 @@ def guarded(
 def ledger_damaged(folder: Path, why: str) -> CampaignDamagedError:
     """Return the error of a damaged ledger."""
     hint = "run the campaign again: its shards make it anew"
-    return CampaignDamagedError(f"ledger.sqlite is damaged ({why})", hint=hint).at(str(folder))
+    return CampaignDamagedError("ledger.sqlite is damaged ({reason})", reason=why, hint=hint).at(str(folder))
 
 
 _ADVICE = "make room or allow writing, then run the campaign again: it goes on where it stopped"

@@ -82,9 +82,12 @@ class StudyQuestion(JobTable):
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
         if key == "body":
-            return InvalidValueError(f"[body] makes no sense: {cls.without_body}")
+            return InvalidValueError("[body] makes no sense: {reason}", reason=cls.without_body)
         if any(key in question.model_fields for question in QUESTIONS.values()):
-            return InvalidValueError(f'[{key}] does not go with kind = "{cls.kind}", which takes [{cls.own_table()}]')
+            return InvalidValueError(
+                '[{table}] does not go with kind = "{kind}", which takes [{expected}]', table=key, kind=cls.kind,
+                expected=cls.own_table(),
+            )  # fmt: skip
         return super()._unknown(key)
 
     @property

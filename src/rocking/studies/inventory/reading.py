@@ -210,14 +210,15 @@ def _no_header(source: str, tried: Sequence[tuple[FoundHeader | None, Sequence[R
     if best and len(best.known) > 1:
         titles = ", ".join(f"{each.title!r:.40} as {each.stem}" for each in best.columns if each)
         return InvalidValueError(
-            f"{source}: no {' and no '.join(best.missing)} in the header, only {titles}; say what another column is, "
-            f'as in columns "Maß B=width_cm"'
-        )
+            "no {missing} in the header, only {titles}", missing=" and no ".join(best.missing), titles=titles,
+            hint='say what another column is, as in columns "Maß B=width_cm"',
+        ).at(source)  # fmt: skip
     first = next((text_of(cell) for _, rows in tried for _, row in rows[:1] for cell in row), "")
     return InvalidValueError(
-        f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft; or "
-        f"their words in {', '.join(WORDS['headers'])}) with commas, semicolons or tabs between, got {first[:99]!r}"
-    )
+        "the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft; or their "
+        "words in {languages}) with commas, semicolons or tabs between, got {line!r}",
+        languages=", ".join(WORDS["headers"]), line=first[:99],
+    ).at(source)  # fmt: skip
 
 
 @dataclass
