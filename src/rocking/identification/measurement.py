@@ -139,12 +139,9 @@ def _row(name: str, values: object, unit: str, size: int | None = None) -> Float
     if not np.isfinite(row).all():
         bad = int(np.flatnonzero(~np.isfinite(row))[0])
         raise InvalidValueError(
-            "{name} must be finite [{unit}], got {sample} at index {index}",
-            name=name,
-            unit=unit,
-            sample=row[bad],
-            index=bad,
-        )
+            "{parameter} must be {allowed}, got {value} at index {index}", parameter=name, allowed=f"finite [{unit}]",
+            value=float(row[bad]), index=bad,
+        )  # fmt: skip
     row.setflags(write=False)
     return row
 
