@@ -142,7 +142,6 @@ NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
     "rocking.dynamics.plane.reference", "rocking.dynamics.plane.batch", "rocking.dynamics.plane.energy_balance",
     "rocking.tables",
-    "rocking.restitution.plastic_winkler", "rocking.restitution.ked",
 }  # fmt: skip
 SCRIPT = """
 import sys
@@ -163,7 +162,7 @@ def loaded(more: str = "") -> set[str]:
 
 @built
 def test_the_first_response_loads_what_it_needs() -> None:
-    """A response of the fast engine loads no files, tables, other models or engines; asked for, these are loaded."""
+    """A response of the fast engine loads no files, tables or other engines; asked for, these are loaded."""
     found = loaded()
     assert {"rocking.dynamics._engine", "rocking.restitution.housner"} <= found
     assert not found & NOT_NEEDED
