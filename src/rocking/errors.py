@@ -111,8 +111,10 @@ class RockingError(Exception):
         if not self._name:
             return Message(self.text, self.facts)
         parameter = Parameter(self.parameter, self._name)
-        stated = {"parameter": parameter, "allowed": self.allowed, "value": _shown(self.value), **self.facts}
-        return Message(self.text or "{parameter} must be {allowed}, got {value}", stated)
+        text = self.text or "{parameter} must be {allowed}, got {value}"
+        refused = {"allowed": self.allowed, "value": _shown(self.value)}
+        stated = {name: fact for name, fact in refused.items() if f"{{{name}}}" in text}
+        return Message(text, {"parameter": parameter, **stated, **self.facts})
 
     @property
     def sentence(self) -> Message:

@@ -112,6 +112,7 @@ def test_value_and_limits_are_data():
         True, None, "nan", "[0.5]",
     ]  # fmt: skip
     assert RecordError("there is no such file").data()["allowed"] is None
+    assert list(InvalidValueError("{parameter} is missing", parameter="width").data()["facts"]) == ["parameter"]
 
 
 # texts of other libraries, or of processes, which have no parts
