@@ -79,7 +79,7 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
 def histories_in(problem: StudyProblem) -> int:
     """Return the number of histories with all files of folders; of an adaptive study that of the first round."""
     document = problem.document
-    return math.prod(document.sizes) * len(problem.motions) // document.motion_count
+    return int(math.prod(document.sizes) * len(problem.motions) // document.motion_count)
 
 
 def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str]) -> StudyProblem:
