@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import UNITS
+from rocking.conventions import UNITS, percent
 from rocking.messages import messages_of
 from rocking.quantities import QUANTITIES, Quantity, quantity
 
@@ -177,7 +177,7 @@ class Display:
         if isinstance(value, bool):
             return "yes" if value else "no"
         if isinstance(value, str):
-            return entry.spelled.get(value, value.replace("_", " "))
+            return entry.spelled.get(value, value.replace("_", " ") if entry.codes else value)
         if isinstance(value, (list, tuple)):
             return ("-" if entry.is_text else ", ").join(self.cell(name, each) for each in value)
         if entry.words is not None:
@@ -187,6 +187,8 @@ class Display:
         size = UNITS.get(entry.unit, {}).get(self.unit(entry), 1.0)
         if isinstance(value, int) and size == 1.0:
             return str(value)
+        if entry.digits == "%":
+            return percent(round(value, 4))
         return format(value / size + 0.0, entry.digits).replace("%", " %")
 
     def text(self, name: str, value: Any) -> str:
@@ -232,7 +234,7 @@ class Display:
         [('observed', ['0.50']), ('95 %', ['0.25 to 0.75'])]
         """
         rows = rows if isinstance(rows, AnswerRows) else AnswerRows.of_records(rows)
-        ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high")}
+        ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high", "_95")}
         shown = names or [name for name in rows.columns if name not in ends]
         return [each for name in shown if name in rows.columns for each in self._columns(name, rows)]
 
@@ -240,13 +242,18 @@ class Display:
         values, lows, highs = (rows.columns.get(f"{name}{end}") for end in ("", "_low", "_high"))
         if any(isinstance(each, Mapping) for each in values or ()):
             values, lows, highs = ([each[key] for each in values or ()] for key in ("value", "low", "high"))
+        if pairs := rows.columns.get(f"{name}_95"):
+            lows, highs = zip(*(each or (None, None) for each in pairs), strict=True)
         entry, cells = self.entry(name), [self.cell(name, each) for each in values or ()]
-        yield ShownColumn(self.heading(name), cells, entry.is_text or entry.words is not None)
+        yield ShownColumn(self.heading(name), cells, entry.is_text or entry.words is not None, name)
         if self._is_beside_g(name):
             yield ShownColumn(f"{entry.heading} [g]", [self._in_g(name).cell(name, each) for each in values or ()])
         if lows is not None and highs is not None:
-            ends = ([self.cell(f"{name}_low", each) for each in column] for column in (lows, highs))
-            texts = ["-" if "-" in pair else " to ".join(pair) for pair in zip(*ends, strict=True)]
+            end = f"{name}_low" if f"{name}_low" in self.own else name
+            ends = ([self.cell(end, each) for each in column] for column in (lows, highs))
+            # an end that does not exist is open
+            texts = [" to ".join("open" if end == "-" else end for end in pair) for pair in zip(*ends, strict=True)]
+            texts = ["-" if text == "open to open" else text for text in texts]
             yield from [ShownColumn("95 %", texts)] if {*texts} != {"-"} else []
 
     def _is_beside_g(self, name: str) -> bool:
@@ -264,3 +271,4 @@ class ShownColumn:
     heading: str
     cells: list[str]
     is_text: bool = False  # whether its cells are words, set flush left
+    name: str = ""  # of its quantity

@@ -22,7 +22,7 @@ class Quantity:
     codes: dict[int, str] = field(default_factory=dict)  # what whole numbers stand for
     standard_name: str = ""  # its name in the table of the CF conventions, which knows nothing that rocks
     label: str = ""  # heading of a column or a line for readers; the name, if empty
-    digits: str = ".4g"  # how a number is written for readers
+    digits: str = ".4g"  # how a number is written for readers; % in percent, with as many digits as a reader needs
     spelled: dict[str, str] = field(default_factory=dict)  # words for readers in place of short ones
     words: Callable[[int], str] | None = None  # of numbers that readers see as words
 
@@ -81,7 +81,8 @@ def quantity(name: str, own: Mapping[str, Quantity] = MappingProxyType({})) -> Q
         return entry
     end = next((each for each in _ENDS if name.endswith(each)), "")
     entry = quantity(name.removesuffix(end), own) if end else None
-    return entry and replace(entry, name=name, meaning=f"{entry.meaning}, {_ENDS[end]}", label="")
+    label = f"{entry.heading} {end[1:]}" if entry else ""
+    return entry and replace(entry, name=name, meaning=f"{entry.meaning}, {_ENDS[end]}", label=label)
 
 
 def _words(members: Iterable[Any]) -> dict[int, str]:
@@ -246,7 +247,7 @@ _BODY = (
     Quantity("base_contact", "m", "stretches of the base that touch the ground, from x to x"),
     Quantity("base_centre", "m", "centre x, y of a round base", digits=".5g"),
     Quantity("base_radius", "m", "radius of a round base", digits=".5g"),
-    Quantity("gravity", "m/s2", "acceleration of gravity"),
+    Quantity("gravity", "m/s2", "acceleration of gravity", digits=".6g"),
     Quantity("slenderness_ratio", "1", "slenderness h/b", label="h/b"),
     Quantity("slenderness_angle", "rad", "slenderness angle alpha = atan(b/h)"),
     Quantity("semi_diagonal", "m", "distance R of the centre of mass from the foot", label="R", digits=".5g"),
@@ -318,7 +319,7 @@ _STUDIES = (
     Quantity("states", "1", "limit states: peak rotation over the slenderness angle"),
     Quantity("trials", "1", "number of histories at each level"),
     Quantity("reached", "1", "number of histories that reach a state"),
-    Quantity("dispersion", "1", "logarithmic standard deviation"),
+    Quantity("dispersion", "1", "logarithmic standard deviation", digits=".3g"),
     Quantity("dispersion_95", "1", "95 % interval of the dispersion"),
     Quantity("failures", "1", "number of failures"),
     Quantity("observations", "1", "number of observations"),
@@ -342,7 +343,7 @@ _DECISIONS = (
     Quantity("probability", "1", "probability"),
     Quantity("beside", "1", "probability of overturning with another restitution model"),
     Quantity("sliding_beyond", "m", "sliding distance of which the probability is given"),
-    Quantity("per_motion", "1", "probability under each motion"),
+    Quantity("per_motion", "1", "probability under each motion", digits="%"),
     Quantity("first", "1", "first-order index of the variance of overturning", label="alone", digits=".2f"),
     Quantity("total", "1", "total index of the variance of overturning", label="with the others", digits=".2f"),
     Quantity("input_low", "1", "mean of the input in the lowest fifth of its samples, in the unit of the input"),
@@ -355,14 +356,14 @@ _DECISIONS = (
     Quantity("relative_change", "1", "relative change of the peak over that of the motion, median"),
     Quantity("motions", "1", "number of motions"),
     Quantity("record_index", "1", "index of the record of each motion"),
-    Quantity("uplift_factors", "1", "scale factor of each motion at uplift"),
+    Quantity("uplift_factors", "1", "scale factor of each motion at uplift", label="uplift factor"),
     Quantity("factors", "1", "smallest scale factor of each motion with overturning, for both polarities"),
-    Quantity("min_factor", "1", "smallest scale factor with overturning"),
+    Quantity("min_factor", "1", "smallest scale factor with overturning", label="smallest factor", digits=".3g"),
     Quantity("min_factor_in_plane", "1", "smallest scale factor with overturning of the plane body"),
     Quantity("plane_azimuth", "rad", "direction of the plane body, from x towards y"),
     Quantity("barrier_energy", "J", "energy that topples the body"),
     Quantity("barrier_azimuth", "rad", "direction of the smallest energy barrier, from x towards y"),
-    Quantity("code_methods", "1", "scale factor that a code method allows"),
+    Quantity("code_methods", "1", "scale factor that a code method allows", label="up to factor", digits=".3g"),
     Quantity("margin", "1", "margin that is required"),
     Quantity("tension", "N", "tension of anchors on each edge"),
     Quantity("shear", "N", "shear of anchors"),
@@ -371,9 +372,9 @@ _DECISIONS = (
     Quantity("isolation_period", "s", "shortest period of isolation"),
     Quantity("isolation_displacement", "m", "displacement of that isolation"),
     Quantity("levels", "1", "levels of the motions"),
-    Quantity("safe", "1", "number of histories that are called safe"),
+    Quantity("safe", "1", "number of histories that are called safe", label="rated safe"),
     Quantity("histories_known", "1", "number of histories with a result"),
-    Quantity("limit_ratio", "1", "level over that which the method allows"),
+    Quantity("limit_ratio", "1", "level over that which the method allows", label="D/C", digits=".3g"),
     Quantity("share_95", "1", "95 % interval of the share"),
     Quantity("median", "1", "median"),
     Quantity("median_95", "1", "95 % interval of the median"),
@@ -442,8 +443,8 @@ _RESPONSE = (
     Quantity("start_velocity", "m/s", "velocity at the start, upwards last"),
     Quantity("friction", "1", "coefficient of friction between body and ground"),
     Quantity("friction_assumed", "1", "whether the coefficient of friction is assumed"),
-    Quantity("friction_of_motion", "1", "friction demand while rocking", digits=".3f"),
-    Quantity("friction_of_impacts", "1", "friction demand at impacts", digits=".3f"),
+    Quantity("friction_of_motion", "1", "friction demand while rocking", label="friction while rocking", digits=".3f"),
+    Quantity("friction_of_impacts", "1", "friction demand at impacts", label="friction at impacts", digits=".3f"),
     Quantity("bounce", "1", "coefficient of normal restitution"),
     Quantity("bounce_law", "", "law of the coefficient of normal restitution"),
     Quantity("uplift_times", "s", "times of the uplifts from rest"),

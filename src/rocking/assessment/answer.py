@@ -465,16 +465,31 @@ class BodyAssessment:
         return tuple(found)
 
     @property
-    def code_rows(self) -> list[tuple[str, int, int, int, float]]:
-        """Method, motions in its domain in all directions, of these safe, of these overturn, least factor it allows."""
+    def model_rows(self) -> list[dict[str, Any]]:
+        """Result of each restitution, by quantity; without friction, last that of the history that may slide."""
+        sliding = {} if self.standing else {f"{self.lowest.model}, friction {self.friction:.3g}": self.sliding}
+        return [
+            {
+                "restitution": name, **{f"coefficient_{foot}": r for foot, r in each.coefficients.items()},
+                "overturned": f"{self.falls(each)} of {self.fallen.size}", "min_factor": each.lowest,
+            }
+            for name, each in (*self.models.items(), *sliding.items())
+        ]  # fmt: skip
+
+    @property
+    def code_rows(self) -> list[dict[str, Any]]:
+        """Result of each code method, by quantity: motions called safe, of these overturned, scale factor allowed."""
         rows = []
         for name, each in self.capacities.items():
             capacity = self.by_record(each, np.minimum)  # NaN where one direction is outside the domain
             known = np.isfinite(capacity)
             safe = known & (capacity * AT_MOST >= 1.0)
-            least = float(capacity[known].min()) if known.any() else math.nan
-            fell = int((safe & (self.fallen > 0.0)).sum())
-            rows.append((name, int(known.sum()), int(safe.sum()), fell, least))
+            counts: dict[str, Any] = {"safe": self.outside_words(name), "overturned": None, "code_methods": None}
+            if known.any():
+                fell = int((safe & (self.fallen > 0.0)).sum())
+                least = float(capacity[known].min())
+                counts = {"safe": f"{safe.sum()} of {known.sum()}", "overturned": fell, "code_methods": least}
+            rows.append({"method": name, **counts})
         return rows
 
     @property

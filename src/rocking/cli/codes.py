@@ -14,6 +14,7 @@ from rocking.cli.numbers import row
 from rocking.cli.page import Page, bar, deliver
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError
+from rocking.quantities import Quantity, closely
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -43,6 +44,12 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
 
 
 EXPORTS = {"csv": Export((".csv",), _csv)}
+_SHOWN = ("method", "safe", "limit_ratio", "share", "median", "scatter")
+_OWN = {
+    "share": Quantity("share", "1", "fraction of these that overturn", label="these overturn", digits="%"),
+    "median": Quantity("median", "1", "median of capacity over truth", label="capacity/truth", digits=".3g"),
+    **closely(scatter=".2g"),
+}
 
 
 @options.takes(options.SIZES, options.SEVERAL_SIZES)
@@ -173,8 +180,8 @@ class CodesAnswer:
             ("histories", f"{int(fell.sum())} of {fell.size} overturned, restitution {found.restitution}"),
         ])  # fmt: skip
         page.line()
-        head = ("method", "safe", "D/C", "these overturn", "capacity/truth", "scatter")
-        page.table(head, [_row(found, one.name) for one in found.methods], head[:1], whole={0, 3, 4})
+        rows = [_row(found, one.name) for one in found.methods]
+        page.rows(rows, _SHOWN, Display(own=_OWN), most=len(rows), dense=False)
         if len(found.bodies) * len(found.levels) > 1:
             page.line("\nOverturned of those that are called safe", "bold")
             names = [one.name for one in found.methods]
@@ -187,10 +194,10 @@ class CodesAnswer:
         show_limits(page, found.methods, found)
         page.line()
         page.line(
-            "safe: rated safe, of the histories in the domain of the method. D/C: median of demand over capacity. "
+            "rated safe: of the histories in the domain of the method. D/C: median of demand over capacity. "
             "capacity/truth: median of capacity over the smallest intensity that overturns, above 1 where the method "
-            "is unsafe. scatter: that of the logarithm of capacity/truth. Brackets: 95 % interval. Sources, domains "
-            "and reliability of the readings: --json."
+            "is unsafe. scatter: that of the logarithm of capacity/truth. Sources, domains and reliability of the "
+            "readings: --json."
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
@@ -216,29 +223,21 @@ def show_limits(page: Page, methods: "Iterable[CodeMethod]", found: "BodyAssessm
             page.line(treatment)
 
 
-def _row(found: "CodeComparison", name: str) -> tuple[str, ...]:
+def _row(found: "CodeComparison", name: str) -> dict[str, Any]:
     called, bias = found.called_safe(name), found.bias(name)
     if not called.total:
-        return name, "outside", *["-"] * 4
-    share = "-" if called.interval is None else f"{_share(called)} ({_between(called.interval, 100.0)})"
+        return {"method": name, "safe": "outside"}
     fell = bias.count - bias.censored
-    median = f"{bias.median:.3g} ({_between(bias.interval)})" if bias.median > 0.0 else "few overturned"
-    if not fell:
-        median = "none overturned" if bias.count else "-"
-    said = ("yes" if called.safe else "no") if called.total == 1 else percent(round(called.safe / called.total, 3))
-    return (
-        name,
-        said,
-        f"{called.ratio:.3g}",
-        share,
-        median,
-        f"{bias.scatter:.2g}" if fell and bias.scatter == bias.scatter else "-",
-    )
+    none = "none overturned" if bias.count else None
+    median: float | str | None = (bias.median if bias.median > 0.0 else "few overturned") if fell else none
+    return {
+        "method": name,
+        "safe": called.safe == 1 if called.total == 1 else percent(round(called.safe / called.total, 3)),
+        "limit_ratio": called.ratio, "share": called.share, "share_95": called.interval if called.safe else None,
+        "median": median, "median_95": bias.interval if isinstance(median, float) else None,
+        "scatter": bias.scatter if fell else None,
+    }  # fmt: skip
 
 
 def _share(called: "CalledSafe") -> str:
     return percent(round(called.share, 3)) if called.safe else "-"
-
-
-def _between(ends: tuple[float, float], factor: float = 1.0) -> str:
-    return "-" if ends[0] != ends[0] else "-".join(f"{factor * end:.3g}" for end in ends)

@@ -104,14 +104,14 @@ class ListAnswer:
         ]})  # fmt: skip
 
     def show(self, page: Page) -> None:
-        rows = [
-            (
-                Path(each["name"]).name, str(each["measurements"]), "{:g} - {:g}".format(*each["slenderness_ratio"]),
-                "{:.3f} - {:.3f}".format(*each["coefficient"]), ", ".join(each["laboratories"]),
-            )
-            for each in self.answer()["sets"]
-        ]  # fmt: skip
-        page.table(("set", "n", "h/b", "r", "laboratories"), rows, ("set", "laboratories"))
+        from rocking.answers import Display
+
+        sets = self.answer()["sets"]
+        ranged = ("slenderness_ratio", "coefficient")
+        rows = [{**each, "set": Path(each["name"]).name, "laboratories": ", ".join(each["laboratories"]),
+                 **{name: " - ".join(Display().cell(name, end) for end in each[name]) for name in ranged}}
+                for each in sets]  # fmt: skip
+        page.rows(rows, ("set", "measurements", *ranged, "laboratories"), most=len(rows))
         page.line()
         page.facts(dict.fromkeys(("source", data.source) for _, data in self.sets))
         page.facts(dict.fromkeys(("own files", str(Path(name).parent)) for name, _ in self.sets if Path(name).suffix))

@@ -22,6 +22,7 @@ _MEASURED = (
     "levels", "median", "median_95", "median_interval", "crossings", "uplift_threshold", "lowest_uplift",
     "first_crossings", "interval",
 )  # fmt: skip
+_OF_CURVES = ("median", "dispersion", "median_95", "dispersion_95")
 
 
 @dataclass(eq=False)
@@ -181,74 +182,65 @@ class FragilityAnswer:
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines, subject_lines
 
+        answer = self.answer()
+        display = Display(
+            self.length, own=answer.quantities, units=dict.fromkeys(_MEASURED if self.written else (), self.written)
+        )
         first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
-        page.facts(subject_lines(self.problem, Display(self.length)))
+        page.facts(subject_lines(self.problem, display))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
             *source_lines(self.sources),
             ("restitution", ", ".join(labels)),
             ("measure", f"{first.subject.measure.name}, {first.subject.measure_words}"),
-            ("rocking", self._uplift()),
+            ("rocking", self._uplift(display)),
         ])  # fmt: skip
         page.line(sentence(first.definition))
         page.line()
         for label, result in self.results.items():
-            head, rows = self._curve_rows(label if self.compared is not None else "state", result)
-            page.table(head, rows, head[:1])
+            page.rows(self._curve_rows(label if self.compared is not None else "state", result), (), display)
             page.line()
-        for line in self._sentences():
+        for line in self._sentences(display):
             page.line(line)
 
-    def _uplift(self) -> str:
-        check = self.first.uplift
-        unit, factor = self.unit
-        lowest = self.first.subject.lowest_uplift
+    def _uplift(self, display: Display) -> str:
+        check, lowest = self.first.uplift, self.first.subject.lowest_uplift
         if check.threshold is None:
-            return str(check.verdict) + ("" if lowest is None else f"; impossible below {lowest / factor:.4g} {unit}")
+            below = "" if lowest is None else f"; impossible below {display.text('lowest_uplift', lowest)}"
+            return f"{check.verdict}{below}"
         return (
-            f"certain above {check.threshold / factor:.4g} {unit}, impossible below; "
+            f"certain above {display.text('uplift_threshold', check.threshold)}, impossible below; "
             f"{check.contradictions} of {check.checked} histories contradict it"
         )
 
-    def _curve_rows(self, first: str, result: Any) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        unit, factor = self.unit
-        rows: list[tuple[str, ...]] = []
-        adjusted = self._adjusted()
+    def _curve_rows(self, first: str, result: Any) -> list[dict[str, Any]]:
+        """Return the curve of each state; without an interval where there are too few motions for one."""
+        adjusted, rows = self._adjusted(), []
         for name, fit in result.fits.items():
-            if name in adjusted:
-                curve = adjusted[name]
-                rows.append((name, f"{curve.median / factor:.4g}", "", f"{curve.dispersion:.3g}", ""))
-                continue
-            summary = fit.summary()
-            median = "none" if fit.median is None else f"{fit.median / factor:.4g}"
-            spread = "none" if fit.dispersion is None else f"{fit.dispersion:.3g}"
-            known = fit.exists and not _too_few(fit)
-            ends = (summary["median_95"], factor), (summary["dispersion_95"], 1.0)
-            middle, wide = (_interval(*each) if known else "" for each in ends)
-            rows.append((name, median, middle, spread, wide))
-        return (first, f"median [{unit}]", "95 %", "dispersion", "95 %"), rows
+            curve = _curve_facts(fit.summary(), adjusted.get(name))
+            known = name not in adjusted and fit.exists and not _too_few(fit)
+            rows.append({first: name, **{each: curve[each] for each in (_OF_CURVES if known else _OF_CURVES[:2])}})
+        return rows
 
     def _adjusted(self) -> dict[str, "FragilityCurve"]:
         """Return the curves that are not those of each state alone, by state."""
         return {} if self.shown is None else self.shown.shared
 
-    def _alone(self) -> list[str]:
+    def _alone(self, display: Display) -> list[str]:
         """Return why curves are not those of each state alone, and these with their intervals."""
         if self.shown is None or not self.shown.adjusted:
             return []
-        unit, factor = self.unit
-        lines = [self.shown.adjusted]
+        lines = [str(self.shown.adjusted)]
         for name in self._adjusted():
-            summary = self.first.fits[name].summary()
-            median, spread = _interval(summary["median_95"], factor), _interval(summary["dispersion_95"], 1.0)
-            lines.append(
-                f"{name} alone: median {summary['median'] / factor:.4g} {unit}, 95 % {median}; "
-                f"dispersion {summary['dispersion']:.3g}, 95 % {spread}"
-            )
+            summary, texts = self.first.fits[name].summary(), []
+            for each in _OF_CURVES[:2]:
+                ends = display.table([summary], [each])[-1]
+                texts.append(f"{each} {display.text(each, summary[each])}, {ends.heading} {ends.cells[0]}")
+            lines.append(f"{name} alone: {'; '.join(texts)}")
         return lines
 
-    def _sentences(self) -> list[str]:
-        lines = self._alone()
+    def _sentences(self, display: Display) -> list[str]:
+        lines = self._alone(display)
         for label, result in self.results.items():
             before = f"{label}, " if self.compared is not None else ""
             lines += [f"{before}{text}" for text in _verdicts(result)]
@@ -259,7 +251,7 @@ class FragilityAnswer:
                 lines.append(f"! {before}{contact}")
         lines += [_regression(self.first)] if self.kind == "cloud" else self._intervals()
         if isinstance(self.first, IncrementalDynamicAnalysis):
-            lines += self._transitions(self.first)
+            lines += self._transitions(self.first, display)
         if self.compared is not None:
             lines.append(self.compared.told(self.unit))
         return lines
@@ -283,14 +275,12 @@ class FragilityAnswer:
         )
         return [*lines, f"Intervals: {how}, since a motion serves at every level."]
 
-    def _transitions(self, analysis: IncrementalDynamicAnalysis) -> list[str]:
-        unit, factor = self.unit
+    def _transitions(self, analysis: IncrementalDynamicAnalysis, display: Display) -> list[str]:
         first = analysis.first_crossing_fit
-        curve = (
-            "too few motions overturn it for a curve"
-            if first is None
-            else f"median {first.median / factor:.4g} {unit}, dispersion {first.dispersion:.3g}"
-        )
+        curve = "too few motions overturn it for a curve"
+        if first is not None:
+            median, spread = display.text("median", first.median), display.text("dispersion", first.dispersion)
+            curve = f"median {median}, dispersion {spread}"
         return [
             sentence(f"{analysis.definitions['first crossing']}: {curve}"),
             analysis.resurrection,
@@ -336,11 +326,6 @@ def _motions_line(facts: dict[str, Any]) -> str:
     return f"{facts['count']} {kind}: {', '.join(' '.join(name.split()) for name in facts['names'][:4])}" + (
         ", ..." if facts["count"] > 4 else ""
     )
-
-
-def _interval(ends: list[float | None], factor: float) -> str:
-    low, high = ("open" if end is None else f"{end / factor:.3g}" for end in ends)
-    return f"{low} to {high}"
 
 
 def _too_few(fit: "LognormalFit") -> str:

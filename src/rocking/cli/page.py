@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rocking.reports.document import ReportTable
 
 Facts = Iterable[tuple[str, str]]
+_LEAST_WIDTH = 24  # to which columns of text are folded
 MOST_ROWS = 12  # rows of a table of an answer that are printed
 
 
@@ -79,12 +80,18 @@ class Page:
         from rich.text import Text
 
         table = Table(box=None, pad_edge=False, collapse_padding=dense, header_style="bold")
+        cells, width = [list(row) for row in rows], 0
         for k, name in enumerate(head):
+            longest = max(map(len, [*name.split("\n"), *(row[k] for row in cells)]))
+            width += 2 + (longest if k in whole else min(longest, _LEAST_WIDTH))
             how = {"no_wrap": True} if k in whole else {"overflow": "fold"}
             table.add_column(Text(name), justify="left" if name in left else "right", **how)
-        for k, row in enumerate(rows):
+        for k, row in enumerate(cells):
             table.add_row(*map(Text, row), style="bold" if k in bold else None)
+        usual = self._console.width
+        self._console.width = max(width, usual)  # wider than the terminal rather than without a digit
         self._console.print(table)
+        self._console.width = usual
 
     def reported(self, table: "ReportTable") -> None:
         """Write a table of a report."""
@@ -108,9 +115,10 @@ class Page:
         left = [column.heading for column in columns if column.is_text]
         head, numbers = [each.heading for each in columns], [k for k, each in enumerate(columns) if not each.is_text]
         widths = [max([1, *map(len, column.cells)]) for column in columns]
-        if sum(max(len(name), width) + 2 for name, width in zip(head, widths, strict=True)) > self._console.width:
-            head = [wrap(name, widths[k]) if k in numbers else name for k, name in enumerate(head)]
         layout = {"dense": True, "whole": numbers, **layout}
+        gap = 1 if layout["dense"] else 2
+        if sum(max(len(name), width) + gap for name, width in zip(head, widths, strict=True)) > self._console.width:
+            head = [wrap(name, widths[k]) if k in numbers else name for k, name in enumerate(head)]
         self.table(head, cells[:most], left, bold=bold, **layout)
         if len(cells) > most:
             self.line(f"... and {len(cells) - most} more; --json has them all", style="dim")

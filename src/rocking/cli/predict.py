@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.codes import show_limits
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
@@ -17,6 +17,7 @@ from rocking.cli.page import Page, bar, deliver
 from rocking.cli.study import source_lines
 from rocking.errors import located
 from rocking.prediction.likelihood import scale_words
+from rocking.quantities import closely
 
 if TYPE_CHECKING:
     from rocking.assessment import BodyAssessment
@@ -31,6 +32,7 @@ COUNT, SEED = 20, 1
 
 
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
+_R = Display(own=closely(coefficient=".3f"))
 
 
 @options.takes(options.SIZES)
@@ -213,19 +215,12 @@ class AssessmentAnswer:
         for words, style in zip(found.sentences[:3], ("bold", "bold", None), strict=True):
             page.line(words, style=style)
         page.line()
-        head = ("restitution", "r left, right", "overturns under", "least factor")
-        rows = [*found.models.items()]
-        if found.standing is None:
-            rows.append((f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding))
-        page.table(head, [_row(found, name, each) for name, each in rows], head[:1])
+        page.rows(found.model_rows, (), _R, most=len(found.models) + 1, dense=False)
         page.warn(f"{name}: {why}" for name, why in found.refused.items())
         page.line()
-        method = "code method" if found.standing is None else "code method, plane body"
-        head = (method, "calls safe", "these overturn", "up to factor")
-        page.table(head, [
-            (name, *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else ("outside its domain", "-", "-")))
-            for name, of, safe, fell, least in found.code_rows
-        ], head[:1])  # fmt: skip
+        if found.standing is not None:
+            page.line("Code methods: of the plane body")
+        page.rows(found.code_rows, (), most=len(found.capacities), dense=False)
         show_limits(page, (CODE_METHODS[name] for name in found.capacities), found)
         for title, sentences in (("What governs", found.governs), ("What to do", found.to_do)):
             page.line()
@@ -238,8 +233,3 @@ class AssessmentAnswer:
         assumed = "; ".join(found.prediction.assumptions)
         page.line(f"Assumed: {assumed}. Reasons and all references: --out report.pdf, or --json.")
         page.warn(found.prediction.repairs)
-
-
-def _row(found: "BodyAssessment", name: str, each: Any) -> tuple[str, ...]:
-    r = ", ".join(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right"))
-    return name, r, f"{found.falls(each)} of {found.fallen.size}", f"{each.lowest:.3g}"

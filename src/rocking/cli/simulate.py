@@ -124,6 +124,9 @@ def simulate(
     deliver(answer, exports, as_json=as_json)
 
 
+_TILTS = ("peak_rotation", "peak_tilt")
+
+
 def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
     response = arguments.table("response", arguments.values(ResponseTable))
@@ -215,14 +218,14 @@ class SeveralAnswer:
         page.line(f"It overturns under {self._overturned} of {count} motion{'s' * (count != 1)}.", "bold")
         page.line()
         acceleration = peak_names(map(support_of, self.motions))[0]
-        head = ("motion", f"{acceleration} {display.acceleration}", "outcome", f"peak {display.angle}", "impacts")
-        rows = []
-        for row in self.answer()["motions"]:
-            name = "peak_tilt" if "peak_tilt" in row else "peak_rotation"
-            peak = "-" if row["outcome"] == "overturned" else display.cell(name, row[name])
-            pga = display.cell("peak_ground_acceleration", row["peak_ground_acceleration"])
-            rows.append((row["name"], pga, display.cell("outcome", row["outcome"]), peak, f"{row['impacts']}"))
-        page.table(head, rows, ("motion", "outcome"), dense=True)
+        peak = display.entry("peak_ground_acceleration")
+        rows = [
+            {**row.values, "motion": row["name"]} | (dict.fromkeys(_TILTS) if row["outcome"] == "overturned" else {})
+            for row in self.answer()["motions"]
+        ]
+        named = replace(display, own={peak.name: replace(peak, label=acceleration)})
+        shown = [name for name in _TILTS if any(row.get(name) is not None for row in rows)]
+        page.rows(rows, ("motion", peak.name, "outcome", *shown, "impacts"), named, most=count)
         page.line()
         page.facts(source_lines([MotionSummary.of(motion) for motion in self.motions]))
         page.line(

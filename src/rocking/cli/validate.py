@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 TABLES = ("body", "motion", "settings", "predict")
 NOTE = "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
-_SCORES = {"brier": "Brier", "logarithmic": "logarithmic", "balanced_accuracy": "balanced accuracy"}
+_SCORES = ("forecast", "brier", "logarithmic", "balanced_accuracy")
 
 
 EXPORTS = {**REPORTED, "csv": CSV}
@@ -95,17 +95,15 @@ class ValidationAnswer:
         return reliability_picture(next(iter(self.found.found.values())))
 
     def show(self, page: Page) -> None:
-
         for each in self.found.found.values():
             page.line(each.verdict, style="bold")
             for line in each.sentences[1:]:
                 page.line(line)
             page.line()
-            several = each.forecasts.values()
-            rows = [(words, *(interval(getattr(one, name)) for one in several)) for name, words in _SCORES.items()]
-            page.table(("score", *each.forecasts), rows, ("score",), whole=(1, 2, 3))
+            answer = each.answer()
+            page.rows(({"forecast": name, **scores} for name, scores in answer["scores"].items()), _SCORES)
             page.line()
-            page.rows(each.answer()["reliability"], ("predicted", "observed", "count"))
+            page.rows(answer["reliability"], ("predicted", "observed", "count"))
             page.line()
         page.line(NOTE)
         page.facts([("assumed", each) for each in self.found.prediction.assumed])
@@ -113,10 +111,3 @@ class ValidationAnswer:
             page.line(f"Columns that were not read: {', '.join(self.found.ignored)}")
         page.warn(self.found.repairs)
         page.warn(f"{self.found.source}, line {each.line}: {each.reason}" for each in self.found.refused)
-
-
-def interval(score: Any) -> str:
-    """Return a score with its interval; a dash where it does not exist."""
-    if score.value != score.value:
-        return "-"
-    return f"{score.value:.3f}" + ("" if score.low != score.low else f" ({score.low:.2f} to {score.high:.2f})")

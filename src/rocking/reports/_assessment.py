@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rocking.assessment import BodyAssessment, ModelMargin
+from rocking.assessment import BodyAssessment
 from rocking.assessment._assess import DIRECTIONS, POINTS, REACH
 from rocking.assessment.answer import StandingSolid, just_above
-from rocking.conventions import FEET, g
+from rocking.conventions import FEET
 from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.components import leading
@@ -26,7 +26,6 @@ from rocking.prediction.likelihood import scale_words
 from rocking.reports.body_blocks import repairs_of
 from rocking.reports.document import (
     Block,
-    Cell,
     Content,
     Document,
     Pair,
@@ -34,9 +33,10 @@ from rocking.reports.document import (
     Picture,
     ReportSection,
     ReportTable,
+    answer_table,
     table,
 )
-from rocking.reports.motion_sources import motion_sources, peak_heads
+from rocking.reports.motion_sources import motion_sources, peak_display
 from rocking.reports.response_document import body_table
 from rocking.restitution import models
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
@@ -161,20 +161,15 @@ def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str]
 
 
 def _models(found: BodyAssessment) -> ReportTable:
-    rows = [
-        (name, *(f"{each.coefficients[foot]:.3f}" for foot in ("left", "right")),
-         Cell(f"{found.falls(each)} of {found.fallen.size}", "bad" if found.falls(each) else "good"),
-         f"{each.lowest:.3g}")
-        for name, each in (*found.models.items(), *_with_friction(found))
-    ]  # fmt: skip
+    rows = found.model_rows
     note = (
-        "r: velocity after an impact over velocity before. Least factor: on any motion, either way round; inf where "
-        "none that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
+        "r: velocity after an impact over velocity before. Smallest factor: on any motion, either way round; infinite "
+        "where none that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
     )
     if found.standing is not None:
         note += f" Histories in space with a friction of {found.friction:.3g}; r: in the plane of its {_PLANE}."
-    head = ["restitution", "r left [-]", "r right [-]", "overturns under", "least factor [-]"]
-    return table("With each model of restitution", head, rows, note)
+    marks = {"overturned": ["good" if row["overturned"].startswith("0 ") else "bad" for row in rows]}
+    return answer_table("With each model of restitution", rows, (), note, marks=marks)
 
 
 def _motions(found: BodyAssessment) -> ReportTable:
@@ -182,29 +177,26 @@ def _motions(found: BodyAssessment) -> ReportTable:
     worst = [min(np.flatnonzero(found.records == k).tolist(), key=lambda j: np.nan_to_num(least[j], nan=np.inf))
              for k in np.unique(found.records)]  # fmt: skip
     count = len(found.models)
+    ranked = sorted(zip(worst, found.fallen, strict=True), key=lambda pair: least[pair[0]])
     rows = [
-        (found.motions[j].name, f"{found.motions[j].peak / g:.3g}", f"{_pgv(found.motions[j]):.3g}",
-         f"{found.lifts[j]:.3g}", f"{least[j]:.3g}",
-         Cell(f"{fallen * count:.0f} of {count}", "bad" if fallen > 0.0 else "good"))
-        for j, fallen in sorted(zip(worst, found.fallen, strict=True), key=lambda pair: least[pair[0]])
+        {
+            "motion": found.motions[j].name, "pga": found.motions[j].peak, "pgv": _pgv(found.motions[j]),
+            "uplift_factors": found.lifts[j], "min_factor": least[j], "overturned": f"{fallen * count:.0f} of {count}",
+        }
+        for j, fallen in ranked
     ]  # fmt: skip
     note = (
         "Factors on the motion as it is; of two components in the direction of the least. Overturns at: the least "
         "factor with any model; what overturns under less may stand under the motion as it is, where no model then "
         "falls, and that is no margin."
     )
-    head = ["lifts at [-]", "overturns at [-]", "models that fall at 1"]
-    return table("Under each motion", ["motion", *peak_heads(found.prediction.motions), *head], rows, note)
+    marks = {"overturned": ["bad" if fallen > 0.0 else "good" for _, fallen in ranked]}
+    display = peak_display(found.prediction.motions)
+    return answer_table("Under each motion", rows, (), note, display=display, marks=marks)
 
 
 def _pgv(motion: Any) -> float:
     return measure("pgv").of(sampled(leading(motion)))
-
-
-def _with_friction(found: BodyAssessment) -> list[tuple[str, ModelMargin]]:
-    """Return the row of the history that slides; none of a solid, of which all may."""
-    row = f"{found.lowest.model}, friction {found.friction:.3g}", found.sliding
-    return [row] if found.standing is None else []
 
 
 def _led(words: str) -> Paragraph:
@@ -214,20 +206,17 @@ def _led(words: str) -> Paragraph:
 
 
 def _codes(found: BodyAssessment) -> ReportTable:
+    methods = [CODE_METHODS[row["method"]] for row in found.code_rows]
     rows = [
-        (
-            CODE_METHODS[name].title,
-            *((f"{safe} of {of}", str(fell), f"{least:.3g}") if of else (found.outside_words(name), "-", "-")),
-            CODE_METHODS[name].vertical.value,
-        )
-        for name, of, safe, fell, least in found.code_rows
+        {**row, "method": each.title, "vertical motion": each.vertical.value}
+        for row, each in zip(found.code_rows, methods, strict=True)
     ]
     note = (
-        "Of these overturn: with some model. Up to: the least factor on any motion that it still calls safe. Vertical "
-        f"motion: in {found.vertical} of {len(found.motions)} motions. Left out: "
+        "Overturned: of those rated safe, with some model. Up to factor: the least on any motion that it still calls "
+        f"safe. Vertical motion: in {found.vertical} of {len(found.motions)} motions. Left out: "
         f"{'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
     )
-    return table("", ["method", "calls safe", "of these overturn", "up to [-]", "vertical motion"], rows, note)
+    return answer_table("", rows, (), note)
 
 
 def _about(found: BodyAssessment) -> list[Block]:

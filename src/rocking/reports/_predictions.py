@@ -22,10 +22,7 @@ from rocking.version import SOFTWARE
 
 _MARKS = ((0.05, "good"), (0.5, "fair"))
 _MARKS_OF_FINDINGS = {"better": "good", "not resolved": "fair", "mixed": "fair", "worse": "bad"}
-_SCORES = {
-    "brier": "Brier [-]", "logarithmic": "logarithmic [nat]", "balanced_accuracy": "balanced accuracy [-]",
-    "bias": "bias [-]",
-}  # fmt: skip
+_SCORES = ("forecast", "brier", "logarithmic", "balanced_accuracy", "bias")
 _PREDICTED = (
     "Bodies are sampled from the distributions of the uncertain inputs. Each body is simulated under every motion, and "
     "the bodies that overturn are counted. All motions are equally likely. Intervals are of 95 %, for these motions."
@@ -103,8 +100,5 @@ def _event(event: str, found: Validation) -> ReportSection:
 
 
 def _scores(found: Validation) -> ReportTable:
-    rows = []
-    for name, each in found.forecasts.items():
-        scores = [getattr(each, measure) for measure in _SCORES]
-        rows.append((name, *(f"{s.value:.3f} ({s.low:.3f} to {s.high:.3f})" for s in scores)))
-    return table("Scores of each forecast", ["forecast", *_SCORES.values()], rows)
+    rows = [{"forecast": name, **scores} for name, scores in found.answer()["scores"].items()]
+    return answer_table("Scores of each forecast", rows, _SCORES)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from rocking.answers import Display
 from rocking.bodies import Body, Solid
 from rocking.bodies.body import assumed_rows
 from rocking.plots.body import body_picture
@@ -32,12 +33,9 @@ def solid_table(solid: Solid, gravity: float) -> ReportTable:
     """Return the data of a solid as it stands under a gravity [m/s2]."""
     found = solid.equilibria()
     pose = found.settling((0.0, 0.0, -1.0))
-    size = found.hull.vertices.max(axis=0) - found.hull.vertices.min(axis=0)
-    rows = [
-        ("size", " x ".join(f"{each:.4g}" for each in size) + " m"),
-        ("mass", f"{solid.mass:.5g} kg"),
-        *assumed_rows(solid),
-        ("centre of mass", f"{pose.height:.4g} m above the base"),
-        ("energy barrier", f"{solid.mass * gravity * pose.barrier:.4g} J, a rise by {1e3 * pose.barrier:.4g} mm"),
-    ]
-    return table("", ["quantity", "value"], rows)
+    values = {
+        "size": found.hull.vertices.max(axis=0) - found.hull.vertices.min(axis=0), "mass": solid.mass,
+        "centre_height": pose.height, "barrier_energy": solid.mass * gravity * pose.barrier, "barrier": pose.barrier,
+    }  # fmt: skip
+    size, mass, *lines = Display().lines(values, [*values], in_full=True)
+    return table("", ["quantity", "value"], [size, mass, *assumed_rows(solid), *lines])

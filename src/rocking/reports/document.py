@@ -179,12 +179,12 @@ def table(
 
 def answer_table(
     caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = "",
-    stem: str = "",
+    stem: str = "", *, display: Display | None = None, marks: Mapping[str, Sequence[str]] | None = None,
 ) -> ReportTable:  # fmt: skip
-    """Return a table of an answer; names: its columns."""
-    columns = Display().table(rows, names)
-    cells = zip(*(each.cells for each in columns), strict=True)
-    return table(caption, [each.heading for each in columns], cells, note, stem)
+    """Return a table of an answer; names: its columns; marks: of the cells of a column, by its name."""
+    columns = (display or Display()).table(rows, names)
+    marked = (map(Cell, each.cells, (marks or {}).get(each.name) or ["plain"] * len(each.cells)) for each in columns)
+    return table(caption, [each.heading for each in columns], zip(*marked, strict=True), note, stem)
 
 
 def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:

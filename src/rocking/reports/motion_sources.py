@@ -1,11 +1,13 @@
 """Ground motions in reports: intensity, source and processing steps."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from rocking.conventions import g, percent
+from rocking.answers import Display
 from rocking.motions.summary import MotionSummary, peak_names, provenance_rows
 from rocking.prediction import Prediction
-from rocking.reports.document import ReportTable, table
+from rocking.quantities import QUANTITIES, Quantity, closely
+from rocking.reports.document import ReportTable, answer_table, table
 
 _MOST = 200
 
@@ -17,18 +19,22 @@ def motion_sources(found: Sequence[MotionSummary]) -> ReportTable:
     return table("", ["motion", "source and processing steps, in order"], rows[:_MOST], note)
 
 
-def peak_heads(found: Sequence[MotionSummary]) -> list[str]:
-    """Return the heads of the columns of peak acceleration and velocity, on the ground or on a floor."""
-    acceleration, velocity = peak_names(each.support for each in found)
-    return [f"{acceleration} [g]", f"{velocity} [m/s]"]
+def peak_display(found: Sequence[MotionSummary], **own: Quantity) -> Display:
+    """Return the display of peaks in g, on the ground or on a floor; own: quantities of the table alone."""
+    labels = zip(("pga", "pgv"), peak_names(each.support for each in found), strict=True)
+    peaks = {name: replace(QUANTITIES[name], label=label, digits=".3g") for name, label in labels}
+    return Display(acceleration="g", own=peaks | own)
 
 
 def motion_table(found: Prediction) -> ReportTable:
     """Return motions with the probabilities under each."""
     rows = [
-        (motion.name, f"{motion.peak / g:.3g}", f"{motion.peak_velocity:.3g}", f"{motion.duration:.3g}",
-         *(percent(round(float(chance.per_motion[k]), 4)) for chance in found.chances.values()))
+        {
+            "motion": motion.name, "pga": motion.peak, "pgv": motion.peak_velocity, "duration": motion.duration,
+            **{name: float(chance.per_motion[k]) for name, chance in found.chances.items()},
+        }
         for k, motion in enumerate(found.motions)
     ]  # fmt: skip
-    head = ["motion", *peak_heads(found.motions), "duration [s]", *found.chances]
-    return table("Probabilities under each motion", head, rows)
+    chances = {name: replace(QUANTITIES["per_motion"], name=name) for name in found.chances}
+    display = peak_display(found.motions, duration=closely(duration=".3g")["duration"], **chances)
+    return answer_table("Probabilities under each motion", rows, display=display)

@@ -1,17 +1,17 @@
 """The report of one body under one motion: what it is, what an impact costs, how it rocks, and how to do it again."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rocking import checks
+from rocking.answers import AnswerRows, Display
 from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
-from rocking.conventions import DEFAULT_FRICTION, FEET, Assumed, Foot, g, given_or_assumed
+from rocking.conventions import DEFAULT_FRICTION, Assumed, Foot, given_or_assumed
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
-from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
+from rocking.evidence._coefficient_table import CALIBRATED
 from rocking.motions.intensity import Measure
 from rocking.motions.pulse import Motion
 from rocking.motions.summary import MotionSummary, support_of
@@ -20,10 +20,9 @@ from rocking.plots.body import body_picture, coefficient_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.labels import fine_samples
 from rocking.plots.response import response_picture
-from rocking.reports.body_facts import ImpactAnswer
+from rocking.reports.body_facts import CLOSELY, ImpactAnswer
 from rocking.reports.document import (
     Block,
-    Cell,
     Content,
     Document,
     Listing,
@@ -32,10 +31,11 @@ from rocking.reports.document import (
     Picture,
     ReportSection,
     ReportTable,
+    answer_table,
 )
 from rocking.reports.document import table as report_table
 from rocking.reports.motion_sources import motion_sources
-from rocking.reports.response_facts import ModelAgreement, measures_of, restitution_words
+from rocking.reports.response_facts import ModelAgreement, measure_quantities, measures_of, restitution_words
 from rocking.version import SOFTWARE
 
 _OUTCOMES = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
@@ -43,6 +43,7 @@ _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: 
 _KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
 _LONGEST_LISTING = 12_000
 _MOST_IMPACTS = 24
+_FRICTION = ("friction_of_motion", "friction_of_impacts")
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,8 @@ def response_document(results: ResponseReport) -> Document:
     first = next(iter(results.responses.values()))
     body = Picture("body", "The body on its feet O and O', with its centre of mass C")
     gravity = results.impact.gravity
-    stated = ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}")
     sections = [
-        ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity, stated))]),
+        ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity))]),
         ReportSection("What an impact costs", _impact(results)),
         ReportSection("The ground motion", _ground(results)),
         ReportSection("The response", _response(results)),
@@ -98,35 +98,16 @@ def _verdict(results: ResponseReport) -> list[Paragraph]:
     return [own, Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain")]
 
 
-def body_table(title: str, body: Body, gravity: float, *more: tuple[str, str]) -> ReportTable:
+_OF_BODY = (
+    "mass", "centre", "foot_positions", "moment_of_inertia", "slenderness_ratio", "slenderness_angle", "semi_diagonal",
+    "frequency_parameter", "uplift_acceleration", "gravity",
+)  # fmt: skip
+
+
+def body_table(title: str, body: Body, gravity: float) -> ReportTable:
     """Return what a body is under a gravity [m/s2]."""
-    x, y = body.centre
-    rows = [
-        ("mass", f"{body.mass:.5g} kg"),
-        *assumed_rows(body),
-        ("centre of mass", f"x = {x:.4g} m, y = {y:.4g} m"),
-        ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
-        ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
-        *_sides(body, gravity),
-        *more,
-    ]
-    return report_table(title, ["quantity", "value"], rows)
-
-
-def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
-    rows: list[tuple[str, str]] = []
-    for foot in FEET if not body.is_symmetric else FEET[-1:]:
-        side = body.side(foot, gravity)
-        on = "" if body.is_symmetric else f", {foot} foot"
-        angle, uplift = side.slenderness_angle, side.uplift_acceleration
-        rows += [
-            (f"slenderness h/b{on}", f"{side.slenderness_ratio:.4g}"),
-            (f"slenderness angle{on}", f"{angle:.5g} rad = {math.degrees(angle):.4g}\N{DEGREE SIGN}"),
-            (f"semi-diagonal R{on}", f"{side.semi_diagonal:.5g} m"),
-            (f"frequency parameter p{on}", f"{side.frequency_parameter:.5g} rad/s"),
-            (f"lifts from{on}", f"{uplift:.4g} m/s\N{SUPERSCRIPT TWO} = {uplift / g:.3g} g"),
-        ]
-    return rows
+    lines = [*Display().lines(body.answer(gravity).values, _OF_BODY, in_full=True)]
+    return report_table(title, ["quantity", "value"], [lines[0], *assumed_rows(body), *lines[1:]])
 
 
 def _impact(results: ResponseReport) -> list[Block]:
@@ -181,79 +162,59 @@ def _how(first: Response) -> str:
 
 
 def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
-    header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
-    rows = map(_coefficient, answer.tables[foot])
+    rows = [
+        {**row.answer().values, "model": restitution_words(row.name),
+         "notes": "see below" if row.warnings else "fitted" if row.name == CALIBRATED else ""}
+        for row in answer.tables[foot]
+    ]  # fmt: skip
     note = (
         "r: velocity after the impact over velocity before. The interval is that of one measured body, from each "
         "model's misfit to the published measurements. k: place of the impulse over half the base."
     )
     where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
-    return report_table(f"Coefficient of restitution{where}", header, rows, note)
+    names = ("model", "coefficient", "impulse_ratio", "energy_loss", "friction_demand", "notes")
+    marks = {"notes": ["fair"] * len(rows)}
+    caption = f"Coefficient of restitution{where}"
+    return answer_table(caption, rows, names, note, display=Display(own=CLOSELY), marks=marks)
 
 
 def _measures(measures: Mapping[str, Measure]) -> ReportTable:
-    rows = [
-        (one.name, f"{one.value:.5g}", one.unit, f"{one.value / g:.4g}" if one.unit == "m/s2" else "")
-        for one in measures.values()
-    ]
-    return report_table("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
+    display = Display(own=measure_quantities(measures))
+    lines = display.lines({name: one.value for name, one in measures.items()}, [*measures], in_full=True)
+    return report_table("Intensity of the motion", ["measure", "value"], lines)
 
 
 def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable:
-    header = [
-        "restitution", "r left", "r right", "outcome", "peak [deg]", "peak / \N{GREEK SMALL LETTER ALPHA} [-]",
-        "impacts", "friction taken [-]", "friction at impacts [-]",
-    ]  # fmt: skip
-    rows = [_outcome(label, response, friction) for label, response in responses.items()]
+    rows = [_outcome(label, response) for label, response in responses.items()]
     note = (
-        "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction taken: largest ratio of "
-        "horizontal to vertical force while the body stands on one foot; "
+        "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction demand: largest ratio "
+        "of horizontal to vertical force; while rocking, the body stands on one foot; "
         f"{friction:g} was {given_or_assumed(friction)}."
     )
-    return report_table("How it ends", header, rows, note)
+    marks = {name: ["bad" if row[name] > friction else "plain" for row in rows] for name in _FRICTION}
+    marks["outcome"] = [_MARKS.get(response.outcome, "plain") for response in responses.values()]
+    return answer_table("How it ends", rows, (), note, marks=marks)
 
 
 def _impacts(label: str, response: Response) -> ReportTable:
-    header = ["impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r [-]", "onto"]
-    shown = response.impacts[:_MOST_IMPACTS].tolist()
-    rows = [
-        (k, f"{time:.6f}", _signed(before), _signed(after), f"{r:.6f}", onto)
-        for k, (time, before, after, r, onto) in enumerate(shown, start=1)
-    ]
-    rest = response.impacts.size - len(shown)
-    note = f"{rest} more, smaller and smaller; the table of impacts has them all." if rest > 0 else ""
-    return report_table(f"Impacts with {restitution_words(label)}", header, rows, note)
+    shown = response.impacts[:_MOST_IMPACTS]
+    rows = AnswerRows({"number": [*range(1, shown.size + 1)], **AnswerRows.of(shown).columns})
+    left = response.impacts.size - shown.size
+    note = f"{left} more, smaller and smaller; the table of impacts has them all." if left > 0 else ""
+    return answer_table(f"Impacts with {restitution_words(label)}", rows, (), note, display=Display(own=CLOSELY))
 
 
-def _coefficient(row: CoefficientRow) -> list[object]:
-    fact, note = row.implication, "see below" if row.warnings else "fitted" if row.name == CALIBRATED else ""
-    implied = f"{fact.impulse_ratio:.3f}", f"{100.0 * fact.energy_loss:.2f} %", f"{fact.friction_demand:.3f}"
-    interval = f"{row.low:.3f} to {row.high:.3f}"
-    return [restitution_words(row.name), f"{row.coefficient:.5f}", interval, *implied, Cell(note, "fair")]
-
-
-def _outcome(label: str, response: Response, friction: float) -> list[object]:
-    facts, contact = response.outcome_answer(), response.contact
+def _outcome(label: str, response: Response) -> dict[str, Any]:
+    answer, contact = response.outcome_answer(), response.contact
     fell = response.outcome is Outcome.OVERTURNED
-    word = _OUTCOMES[response.outcome] + (f" to the {facts['side']}" if fell else "")
-    peaks = math.degrees(response.peak_rotation), facts["peak_ratio"]
-    return [
-        restitution_words(label),
-        *(f"{side.coefficient:.4f}" for side in (response.parameters.left, response.parameters.right)),
-        Cell(word, _MARKS.get(response.outcome, "plain")),
-        *("-" if fell else f"{peak:.4g}" for peak in peaks),
-        response.impacts.size,
-        *(_friction(value, friction) for value in (contact.friction_of_motion, contact.friction_of_impacts)),
-    ]
-
-
-def _friction(value: float, given: float) -> Cell:
-    words = f"{value:.3f}" if math.isfinite(value) else "no surface has it"
-    return Cell(words, "bad" if value > given else "plain")
-
-
-def _signed(value: float) -> str:
-    return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
+    return {
+        "restitution": restitution_words(label),
+        **{f"coefficient_{foot}": r for foot, r in answer["coefficient"].items()},
+        "outcome": _OUTCOMES[response.outcome] + (f" to the {answer['side']}" if fell else ""),
+        **{name: None if fell else answer[name] for name in ("peak_rotation", "peak_ratio")},
+        "impacts": answer["impacts"],
+        **{name: getattr(contact, name) for name in _FRICTION},
+    }
 
 
 def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:

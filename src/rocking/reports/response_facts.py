@@ -99,13 +99,18 @@ def measures_of(
     return measures | {key: replace(measures[key], value=value) for key, value in exact.items()}
 
 
+def measure_quantities(measures: Mapping[str, Measure]) -> dict[str, Quantity]:
+    """Return the quantities of intensity measures."""
+    return {
+        name: Quantity(name, "1" if one.unit == "-" else one.unit, one.name, digits=".5g")
+        for name, one in measures.items()
+    }
+
+
 def record_answer(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> Answer:
     """Return what a motion is and how strong."""
     record = isinstance(motion, GroundMotion)
     metadata = motion.metadata if isinstance(motion, GroundMotion) else {}
-    quantities = {
-        name: Quantity(name, "1" if one.unit == "-" else one.unit, one.name) for name, one in measures.items()
-    }
     return Answer(
         {
             "kind": "record" if record else "pulse",
@@ -121,7 +126,7 @@ def record_answer(motion: GroundMotion | Pulse, samples: GroundMotion, measures:
             "peak_vertical_acceleration": None if samples.vertical is None else samples.peak_vertical,
             "intensity": {name: one.value for name, one in measures.items()},
         },
-        quantities,
+        measure_quantities(measures),
     )
 
 

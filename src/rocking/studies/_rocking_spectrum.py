@@ -11,20 +11,18 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
-from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
-from rocking.messages import plain_texts
 from rocking.motions.pulse import Motion
-from rocking.outcome import contact_words, flags
-from rocking.quantities import HISTORY, attributes
-from rocking.studies.histories import Product, results_of
-from rocking.studies.motion_sets import MotionList
-from rocking.studies.question import Question, modes_of, peak_ratio
+from rocking.outcome import contact_words
+from rocking.studies.histories import Product
+from rocking.studies.motion_sets import MotionList, MotionSet
+from rocking.studies.question import Question
+from rocking.studies.sensitivity.restitutions import sampled
+from rocking.studies.study_plan import Study, along, labels_along, motions_along
+from rocking.tables import Column
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_DIMENSIONS = ("motion", "slenderness_angle", "period")
 
 
 def rocking_spectrum(
@@ -82,42 +80,59 @@ def rocking_spectrum(
     >>> dict(found.sizes), found["mode"].sel(slenderness_angle=0.3).values.tolist()
     ({'motion': 1, 'slenderness_angle': 2, 'period': 4}, [[-2, -2, -2, -2]])
     """
-    xarray = extra("xarray", "rocking_spectrum")
+    extra("xarray", "rocking_spectrum")
     scale = checks.within("scale", options.pop("scale", 1.0), -1e6, 1e6)
     engine = options.pop("engine", "auto")
     settings = study_settings(None, options, gravity)
     angles = _row("slenderness_angles", slenderness_angles, "rad")
     times = _row("periods", periods, "s")
-    sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
     all_motions = MotionList(motions, plane=True)
-    blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
-    question = Question(blocks[0], all_motions[0], restitution, settings, threads, engine)
-    sides = sides_of([question.parameters_of(block) for block in blocks])
-    histories = Product(
-        all_motions, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
-        law=question.law, settings=settings, engine=engine,
-    )  # fmt: skip
-    results = results_of(histories, threads=threads, progress=progress)
-    shape = (len(all_motions), angles.size, times.size)
-    alpha = np.tile(sides["alpha_right"], len(all_motions))
-    results |= {"mode": modes_of(results), **flags(results)}
-    results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
-    data = {name: (_DIMENSIONS, results[name].reshape(shape), attributes(name)) for name in HISTORY}
-    constant = isinstance(question.law, ConstantRestitution)
-    coefficient = np.where(constant, sides["r_right"], np.nan).reshape(shape[1:])
-    labelled: xr.Dataset = xarray.Dataset(
-        data,
-        coords={
-            "motion": [all_motions[k].name for k in range(len(all_motions))],
-            "slenderness_angle": ("slenderness_angle", angles, {"units": "rad", "long_name": "slenderness angle"}),
-            "period": ("period", times, {"units": "s", "long_name": "2 pi / p"}),
-            "semi_diagonal": ("period", sizes, {"units": "m", "long_name": "semi-diagonal R of the block"}),
-            "coefficient": (_DIMENSIONS[1:], coefficient, {"units": "1", "long_name": "coefficient of restitution"}),
-        },
-        attrs=plain_texts(_attributes(question, settings, scale, all_motions))
-        | {"contact": contact_words(results["lost_contact"])},
+
+    def product_of(blocks: list[Block]) -> tuple[Product, dict[str, Any]]:
+        question = Question(blocks[0], all_motions[0], restitution, settings, threads, engine)
+        sides = sides_of([question.parameters_of(block) for block in blocks])
+        columns = {name: values[:, None] for name, values in sides.items()}
+        product = Product(
+            all_motions, columns, np.array([scale]), law=question.law, settings=settings, engine=engine
+        )  # fmt: skip
+        return product, _attributes(question)
+
+    study = spectrum_study(product_of, all_motions, angles, times, gravity=settings.gravity, scale=scale)
+    dataset: xr.Dataset = study.computed(progress, threads)
+    dataset.attrs["contact"] = str(contact_words(dataset["lost_contact"].values))
+    return dataset
+
+
+def spectrum_study(
+    product_of: Callable[[list[Block]], tuple[Product, dict[str, Any]]], motions: MotionSet, angles: FloatArray,
+    times: FloatArray, *, gravity: float, scale: float, restitutions: Sequence[str] = (),
+) -> Study:  # fmt: skip
+    """Return the study over motion, slenderness angle and period, and several restitutions.
+
+    product_of: returns the histories of blocks, and attributes.
+    """
+    sizes = 0.75 * gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
+    product, attributes = product_of(
+        [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
     )
-    return labelled
+    dims = {"motion": len(motions), "slenderness_angle": angles.size, "period": times.size}
+    coordinates = {
+        "motion": motions_along(motions),
+        "slenderness_angle": along("slenderness_angle", angles, "rad", "slenderness angle"),
+        "period": along("period", times, "s", "2 pi / p"),
+        "semi_diagonal": along("period", sizes, "m", "semi-diagonal R of the block"),
+    }
+    if len(restitutions) > 1:
+        dims["restitution"] = len(restitutions)
+        coordinates["restitution"] = labels_along("restitution", restitutions, "restitution")
+    # a law changes it from impact to impact: there is no one coefficient to tell
+    coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
+    coefficient = coefficient.reshape([*dims.values()][1:])
+    coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])
+    attributes["scale"] = scale
+    if isinstance(motions, MotionList):
+        attributes["motion_sha256"] = "; ".join(item["sha256"] for item in motions.description()["motions"])
+    return Study(sampled(product), dims, coordinates, attributes)
 
 
 def _row(name: str, row: Any, unit: str) -> FloatArray:
@@ -130,8 +145,7 @@ def _row(name: str, row: Any, unit: str) -> FloatArray:
     return values
 
 
-def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:
+def _attributes(question: Question) -> dict[str, Any]:
     kept = question.attributes({})
     about = {k: v for k, v in kept.items() if k in {"software", "seed", "restitution_file"} or k.startswith("setting_")}
-    hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
-    return {**about, "restitution": question.parameters.label, "scale": scale, "motion_sha256": hashes}
+    return {**about, "restitution": question.parameters.label}

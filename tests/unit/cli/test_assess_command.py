@@ -78,7 +78,7 @@ def test_a_solid(printed, answered, tmp_path):
     quick = (file, *QUICK, "sine:amplitude=4,period=0.8", "--set", "predict.azimuth=0.3")
     page = printed(*quick)
     for words in (
-        "code method, plane body",
+        "Code methods: of the plane body",
         "It is weakest towards 0 deg",
         "of 1 motion, with",
         "r = 0.85",

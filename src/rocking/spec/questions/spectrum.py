@@ -59,12 +59,7 @@ class SpectrumQuestion(StudyQuestion):
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the study over motion, slenderness angle and period, and several restitutions."""
         from rocking import checks
-        from rocking.bodies import Block
-        from rocking.dynamics.impact_laws import ConstantRestitution
-        from rocking.studies.motion_sets import MotionList
-        from rocking.studies.sensitivity.restitutions import sampled
-        from rocking.studies.study_plan import Study, along, labels_along, motions_along
-        from rocking.tables import Column
+        from rocking.studies._rocking_spectrum import spectrum_study
 
         table = self.spectrum
         angles = checks.positive_array("spectrum.slenderness_angles", table.slenderness_angles.numbers(), "rad")
@@ -77,29 +72,11 @@ class SpectrumQuestion(StudyQuestion):
             raise InvalidValueError(
                 parameter="spectrum.periods", allowed=f"up to {_LONGEST:g} s", value=float(times.max())
             )
-        sizes = 0.75 * problem.settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
         with located("spectrum"):
-            blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
-            product, attributes = problem.product(blocks, np.array([scale]))
-        dims = {"motion": len(problem.motions), "slenderness_angle": angles.size, "period": times.size}
-        # a law changes it from impact to impact: there is no one coefficient to tell
-        coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
-        coordinates = {
-            "motion": motions_along(problem.motions),
-            "slenderness_angle": along("slenderness_angle", angles, "rad", "slenderness angle"),
-            "period": along("period", times, "s", "2 pi / p"),
-            "semi_diagonal": along("period", sizes, "m", "semi-diagonal R of the block"),
-        }
-        if len(problem.restitutions) > 1:
-            dims["restitution"] = len(problem.restitutions)
-            coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
-        coefficient = coefficient.reshape([*dims.values()][1:])
-        coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])
-        attributes["scale"] = scale
-        if isinstance(problem.motions, MotionList):
-            hashes = (item["sha256"] for item in problem.motions.description()["motions"])
-            attributes["motion_sha256"] = "; ".join(hashes)
-        return Study(sampled(product), dims, coordinates, attributes)
+            return spectrum_study(
+                lambda blocks: problem.product(blocks, np.array([scale])), problem.motions, angles, times,
+                gravity=problem.settings.gravity, scale=scale, restitutions=[*problem.restitutions],
+            )  # fmt: skip
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
         """Draw the spectra."""
