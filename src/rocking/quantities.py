@@ -537,6 +537,28 @@ _LEAGUE = (
     Quantity("printed", "1", "values that the paper prints"),
     Quantity("recomputed", "1", "values that are recomputed"),
 )
+_CAMPAIGN = (
+    Quantity("histories_done", "1", "number of histories that are recorded"),
+    Quantity("all_histories", "1", "number of histories of all rounds"),
+    Quantity("verified", "1", "number of histories that were read and are what was written"),
+    Quantity("missing", "1", "first and last number of histories that are missing"),
+    Quantity("later", "1", "usual range of the number of histories of later rounds"),
+    Quantity("chunk", "1", "number of histories of a chunk"),
+    Quantity("chunks", "1", "number of chunks"),
+    *(Quantity(f"{done}_chunks", "1", f"number of chunks {done}") for done in ("computed", "resumed", "adopted")),
+    Quantity("chunks_done", "1", "number of chunks that are recorded"),
+    Quantity("rounds", "1", "number of rounds"),
+    Quantity("rounds_begun", "1", "number of rounds that have begun"),
+    Quantity("retried", "1", "number of chunks that were computed again"),
+    Quantity("worker_seconds", "s", "computing time of all workers"),
+    Quantity("run_seconds", "s", "duration of the run"),
+    Quantity("seconds", "s", "estimated duration"),
+    Quantity("between", "s", "range of the estimated duration"),
+    Quantity("rate", "1/s", "histories per second of one worker"),
+    *(Quantity(name, "B", f"{name} that is needed") for name in ("memory", "disk")),
+    Quantity("free", "B", "disk that is free"),
+    Quantity("bytes", "B", "size of the file"),
+)
 QUANTITIES: dict[str, Quantity] = {
     each.name: each
     for each in (
@@ -547,6 +569,7 @@ QUANTITIES: dict[str, Quantity] = {
         *_IDENTIFICATION,
         *_SCORES,
         *_LEAGUE,
+        *_CAMPAIGN,
         *_INVENTORY,
         *_MOTION,
         *_RESPONSE,

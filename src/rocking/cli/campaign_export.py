@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from rocking.answers import Answer
 from rocking.campaigns import CampaignStorageError, Progress, disk, jobs
 from rocking.campaigns.jobs import JobFolder, assessment
 from rocking.campaigns.jobs.exporting import ENDINGS, checked, exports_of, write_provenance
@@ -50,7 +51,7 @@ def write(
             _file(opened, path, what, restitution, crossing, quiet=as_json)
         facts += [_facts(opened, each, what) for each in written]
     if as_json:
-        print_json(facts[0] if len(facts) == 1 else facts)
+        print_json(*map(Answer, facts))
         return
     for each in facts:
         print(f"wrote {each['file']} ({each['bytes']} bytes, {_words(each['what'], each)})")

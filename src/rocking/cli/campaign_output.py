@@ -9,6 +9,7 @@ from typing import Any
 
 import typer
 
+from rocking.answers import Answer
 from rocking.campaigns import (
     CampaignBusyError,
     CampaignDamagedError,
@@ -24,6 +25,7 @@ from rocking.campaigns.jobs.folder import JOB, JobStatus
 from rocking.campaigns.jobs.rounds import resume_hint
 from rocking.cli.page import lines, print_json
 from rocking.errors import InvalidValueError
+from rocking.quantities import Quantity
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes beside 0 (done) and 2 (bad input)
 
@@ -79,7 +81,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
         "run_seconds": done.seconds,
     }
     if as_json:
-        print_json(facts)
+        print_json(Answer(facts))
         return
     print(_sentence(status))
     for sentence in (*done.set_aside, *done.retries):
@@ -93,7 +95,7 @@ def show_status(folder: Path, as_json: bool) -> None:
     job_status = status_of(folder)
     status = job_status.status
     if as_json:
-        print_json(_facts(job_status))
+        print_json(Answer(_facts(job_status)))
     else:
         print(_sentence(job_status))
         for sentence in (*status.damaged, *status.broken) if status else ():
@@ -106,7 +108,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
     """Print what was found when everything that a campaign has was read."""
     check = verified(folder)
     if as_json:
-        print_json({"folder": str(folder), "whole": check.whole, **vars(check)})
+        print_json(Answer({"folder": str(folder), "whole": check.whole, **vars(check)}))
     else:
         share = f"{check.verified} of {check.histories} histories were read and are what was written"
         print(f"{folder}: {share}, in {_chunks(check.chunks)}{'' if check.whole else ' and pieces of others'}")
@@ -134,7 +136,7 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         **({"first_round_only": True, "later": estimate.later} if job.document.is_adaptive else {}),
     }
     if as_json:
-        print_json(facts)
+        print_json(Answer(facts, {name: Quantity(name, "1", "size of a dimension") for name in job.study.dims}))
     else:
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         files = "1 input file" if len(job.inputs) == 1 else f"{len(job.inputs)} input files"

@@ -134,18 +134,17 @@ def sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def print_json(facts: Any) -> None:
-    """Print plain values as JSON, with null where there is no finite number."""
-    from rocking.answers import plain
-
-    print(json.dumps(plain(facts), indent=1, allow_nan=False))
+def print_json(*answers: "Answer") -> None:
+    """Print an answer as JSON, several as a list, with null where there is no finite number."""
+    trees = [answer.plain() for answer in answers]
+    print(json.dumps(trees[0] if len(trees) == 1 else trees, indent=1, allow_nan=False))
 
 
 def deliver(answer: CommandAnswer, exports: "Exports | None" = None, *, as_json: bool) -> None:
     """Write the files that were asked for, and print an answer."""
     written: list[Path] = [] if exports is None else exports.write(answer)
     if as_json:
-        print_json(answer.answer().plain())
+        print_json(answer.answer())
         return
     answer.show(Page())
     for path in written:

@@ -27,7 +27,7 @@ def paper(
     with bar("recomputing tables and claims", quiet=as_json):
         result = reproduce(selected(which)) if which else reproduce()
     if as_json:
-        print_json(result.answer().plain())
+        print_json(result.answer())
     if out is None:
         if not as_json:
             _show(result)

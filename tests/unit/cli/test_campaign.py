@@ -49,6 +49,7 @@ def test_check(run, printed, job, tmp_path):
     told = json.loads(printed("check", path, "--json", "--workers", 2))
     assert (told["histories"], told["chunks"], told["chunk"]) == (600, 6, 100)
     assert {"rate", "seconds", "memory", "disk", "free"} <= set(told)
+    assert (told["units"]["memory"], told["units"]["seconds"]) == ("B", "s")
     assert not (tmp_path / "c").exists()
 
 
@@ -70,12 +71,12 @@ def test_run_status_resume_export(run, job, tmp_path):
     assert (code, "all 600 histories" in out) == (0, True)
     code, out, _ = run("resume", folder, "--json", "--executor", "serial", "--workers", 1)
     told = json.loads(out)
-    assert (code, list(told)) == (0, STATUS + RUN)
+    assert (code, list(told)) == (0, [*STATUS, *RUN, "units"])
     assert (told["complete"], told["computed_chunks"], told["resumed_chunks"]) == (True, 0, 6)
     code, out, _ = run("status", folder, "--json")
-    assert (code, list(json.loads(out))) == (0, STATUS)
+    assert (code, list(json.loads(out))) == (0, [*STATUS, "units"])
     code, out, _ = run("export", folder, "--out", tmp_path / "r.csv", "--json")
-    assert (code, list(json.loads(out))) == (0, ["file", "what", "histories", "bytes", "sha256"])
+    assert (code, list(json.loads(out))) == (0, ["file", "what", "histories", "bytes", "sha256", "units"])
     assert len((tmp_path / "r.csv").read_text().splitlines()) == 601
     code, out, _ = run("export", folder, "--out", tmp_path / "r.mat")
     assert (code, "wrote" in out) == (0, True)
@@ -240,7 +241,7 @@ def test_killed_before_it_began(run, job, tmp_path):
     code, out, _ = run("status", folder)
     assert (code, "nothing is computed yet; go on with: rocking campaign resume" in out) == (0, True)
     told = json.loads(run("status", folder, "--json")[1])
-    assert (list(told), told["chunks"], told["complete"]) == (STATUS, None, False)
+    assert (list(told), told["chunks"], told["complete"]) == ([*STATUS, "units"], None, False)
     assert run("resume", folder)[0] == 0
 
 
