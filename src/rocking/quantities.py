@@ -527,7 +527,7 @@ _LEAGUE = (
     Quantity("leave_group_out", "1", "RMSE of groups left out one by one", label="LOG", digits=".4f"),
     Quantity("bic", "1", "Bayesian information criterion", label="BIC", digits=".1f"),
     Quantity("by_group", "1", "root mean square error of each group"),
-    Quantity("by_band", "1", "root mean square error in each band of h/b"),
+    Quantity("by_band", "1", "root mean square error in each band of h/b", digits=".3f"),
     Quantity("ahead_of_ked", "1", "error of KED beyond that of the model: value, low, high"),
     Quantity("fitted", "1", "fitted parameters of a model"),
     Quantity("shares", "1", "shares of the scatter"),

@@ -1,6 +1,6 @@
 """`rocking evidence`: measurements of one's own beside the published ones, and what all of them say of the models."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -158,13 +158,12 @@ def _different(words: tuple[str, ...]) -> list[str]:
 
 def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
     """Print how all models fare."""
+    from rocking.answers import Display
+    from rocking.quantities import QUANTITIES
+
     page.line(f"\nLeague: RMSE of r over {count} measurements, in bands of h/b; log error of the energy loss", "bold")
-    rows = [
-        (
-            f"  {row.name}", f"{row.rmse:.4f}", f"{row.bias:+.3f}", *(f"{value:.3f}" for value in row.by_band.values()),
-            f"{row.log_loss_rmse:.3f}", f"{row.bic:.1f}",
-        )
-        for row in league
-    ]  # fmt: skip
-    head = ("  model", "RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC")
-    page.table(head, rows, head[:1], bold={k for k, row in enumerate(league) if row.name in {"ked", "housner"}})
+    bands = {band: replace(QUANTITIES["by_band"], name=band) for band in league[0].by_band}
+    rows = [{**row.answer().values, "model": row.name, **row.by_band} for row in league]
+    bold = {k for k, row in enumerate(league) if row.name in {"ked", "housner"}}
+    names = ("model", "rmse", "bias", *bands, "log_loss_rmse", "bic")
+    page.rows(rows, names, Display(own=bands), bold=bold, most=len(rows), dense=False)

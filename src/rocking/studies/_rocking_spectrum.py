@@ -98,7 +98,8 @@ def rocking_spectrum(
         return product, _attributes(question)
 
     study = spectrum_study(product_of, all_motions, angles, times, gravity=settings.gravity, scale=scale)
-    dataset: xr.Dataset = study.computed(progress, threads)
+    names = [all_motions[k].name for k in range(len(all_motions))]
+    dataset: xr.Dataset = study.computed(progress, threads).assign_coords(motion=names)
     dataset.attrs["contact"] = str(contact_words(dataset["lost_contact"].values))
     return dataset
 
