@@ -606,7 +606,7 @@ _PARTS = """
     plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies resolved
     restitution_drawn results rigid rings scores section sensitivity sentence sentences sets sides slow software
     solid source sources spacing spectrum stable stages standing starts_overturned stated stored tables target
-    target_spectrum test text threads title to too_sure traces unit uplift_threshold values varied verdict
+    target_spectrum test text threads title to too_sure traces unit uplift_threshold values varied verdict whole
     vertical_component with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
