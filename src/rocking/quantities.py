@@ -598,8 +598,8 @@ _PARTS = """
     adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body
     by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
     components concerns converged crossing crossings curves decides definition designs died directions doubts edges
-    ends envelope errata event evidence examples facets file file_unit files finding first_corner forced from growth
-    hazard hierarchy identities ignored inputs intensity interfaces intervals inventory islands judged_by label
+    ends envelope errata event evidence examples facets file file_unit files finding first_corner folder forced from
+    growth hazard hierarchy identities ignored inputs intensity interfaces intervals inventory islands judged_by label
     laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest lowest_uplift
     mean measure measure_words messages method methods mirrored models motion motions_apart new not_assessed
     not_objects not_read not_sampled note notes objects one_by_one outside overturning passed_over passes
