@@ -90,7 +90,7 @@ def test_numbers_are_whole_in_a_narrow_terminal(run, monkeypatch):
     """`rocking motion` folds words, never a value."""
     monkeypatch.setenv("COLUMNS", "46")
     rows = run(*f"motion {PULSE}".split())[1].splitlines()
-    assert next(row for row in rows if row.startswith("  Peak ground velocity")).split()[-2:] == ["0.8149", "m/s"]
+    assert next(row for row in rows if row.startswith("  Peak ground velocity")).split()[-2:] == ["0.81487", "m/s"]
     assert [len(row.split()) for row in rows[-6:]] == [5] * 6
 
 

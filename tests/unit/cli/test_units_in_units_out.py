@@ -156,7 +156,7 @@ def test_accelerations_stand_in_the_unit_of_the_record_beside_g(printed, record)
     """A record in gal: its peak, its spectrum, and what lifts and overturns a block are in gal; one in g, in m/s2."""
     out = printed("motion", record, "--units", "gal")
     assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
-    assert "0.33 gal (0.0003365 g)" in out
+    assert "0.33 gal (0.00033651 g)" in out
     assert "PSA [m/s2]" in printed("motion", record, "--units", "g")
     out = printed("minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
     assert "lifts it:     245.166 gal (0.25 g)" in out  # g tan(alpha) = 980.665 / 4
