@@ -12,7 +12,7 @@ from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
-from rocking.cli.numbers import recommendation_values, show_recommendation
+from rocking.cli.numbers import SIDE, body_line, recommendation_values, show_recommendation
 from rocking.cli.page import Page, deliver
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, located
@@ -169,13 +169,12 @@ class PlaneAnswer:
         ])  # fmt: skip
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import SIDE, body_words
         from rocking.evidence._coefficient_table import outside_evidence
 
         body, answer = self.impact.body, self.answer()
         display = Display(self.length, own=answer.quantities)
         names = ("centre", "slenderness_ratio", *SIDE, "uplift_acceleration")
-        page.line(body_words(body, answer["body"], display, names))
+        page.line(body_line(body, answer["body"], display, names))
         for line in body.assumed:
             page.line(line)
         if body.is_symmetric and (outside := outside_evidence(body)):

@@ -1,11 +1,12 @@
 """Numbers with units, as they are typed, and as they are printed."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from rocking import checks
+from rocking.bodies import Block
 from rocking.cli.page import Page
 from rocking.conventions import UNITS, FloatArray
 from rocking.errors import InvalidValueError
@@ -13,6 +14,11 @@ from rocking.spec.fields import Values, kinds_of, meaning_and_unit
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
+
+    from rocking.answers import Answer, Display
+
+SIDE = ("slenderness_angle", "semi_diagonal", "frequency_parameter")
+"""Quantities of a body at the head of a page."""
 
 MOST_VALUES = 100_000  # no row of values has more
 
@@ -146,3 +152,14 @@ def show_recommendation(page: Page, found: Any) -> None:
         page.line(sentence)
     for sentence in found.advice:
         page.line(sentence, "bold")
+
+
+def body_line(body: Any, answer: "Answer", display: "Display", names: Sequence[str] = SIDE[:1]) -> str:
+    """Return size, mass and some quantities of a body in one line."""
+    line = answer["name"] or "Solid" if "name" in answer else answer["kind"]
+    if isinstance(body, Block):
+        line += f" {display.cell('size', body.width)} x {display.text('size', body.height)}"
+    elif "size" in answer:
+        line += f", {' x '.join(display.cell('size', side) for side in answer['size'])} {display.length}"
+    listed = (f"{label} {text}" for label, text in display.lines(answer.values, names))
+    return ", ".join([line, display.text("mass", answer["mass"]), *listed])

@@ -101,10 +101,10 @@ class ResponseAnswer:
         return answer | more
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import body_words
+        from rocking.cli.numbers import body_line
 
         answer, display = self.answer(), self.display
-        page.line(f"{body_words(self.problem.body, answer['body'], display)}; {self._moved(answer)}")
+        page.line(f"{body_line(self.problem.body, answer['body'], display)}; {self._moved(answer)}")
         page.line(f"Restitution: {self._restitution(answer)}")
         if "friction" in answer and not self.problem.mechanics.is_compared:
             page.line(f"Contact: {', '.join(self._contact(answer))}")

@@ -216,9 +216,9 @@ def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
 
 def show_body(page: Page, body: Answer, display: Display) -> None:
     """Write mass, centre, base and repairs of a body in space."""
-    from rocking.cli.study import body_words
+    from rocking.cli.numbers import body_line
 
-    page.line(body_words(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre", "centre_height")))
+    page.line(body_line(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre", "centre_height")))
     base = _rounded(body["base"])
     if corners := base.get("base_vertices"):
         listed = ", ".join(f"({display.cell('base_vertices', each)})" for each in corners[:_MOST])

@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking.answers import Answer, Display
-from rocking.bodies import Block, Body
+from rocking.answers import Display
+from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, document_file, parsed_sets, with_sets
+from rocking.cli.numbers import SIDE, body_line
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
 from rocking.errors import InvalidValueError, located
 from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
@@ -174,27 +175,12 @@ def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str
     return [("contact", f"friction {friction}{bounce}: it may {moves} and fly")]
 
 
-SIDE = ("slenderness_angle", "semi_diagonal", "frequency_parameter")
-"""Quantities of the body in the head of a study."""
-
-
-def body_words(body: Any, answer: Answer, display: Display, names: Sequence[str] = SIDE[:1]) -> str:
-    """Return size, mass and some quantities of a body in one line."""
-    words = answer["name"] or "Solid" if "name" in answer else answer["kind"]
-    if isinstance(body, Block):
-        words += f" {display.cell('size', body.width)} x {display.text('size', body.height)}"
-    elif "size" in answer:
-        words += f", {' x '.join(display.cell('size', side) for side in answer['size'])} {display.length}"
-    listed = (f"{label} {text}" for label, text in display.lines(answer.values, names))
-    return ", ".join([words, display.text("mass", answer["mass"]), *listed])
-
-
 def subject_lines(problem: StudyProblem, display: Display, *, varied: bool = False) -> list[tuple[str, str]]:
     """Return what is printed of the body of a study, and of the ground under it."""
     body, settings = problem.bodies[0], problem.settings
     answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
-    words = body_words(body, answer, display, ("parts", "centre_height", *SIDE))
-    return [("body", words), *assumed_rows(body), *contact_lines(settings, varied=varied)]
+    line = body_line(body, answer, display, ("parts", "centre_height", *SIDE))
+    return [("body", line), *assumed_rows(body), *contact_lines(settings, varied=varied)]
 
 
 _GROUND = {"friction", "bounce", "bounce_law"}
