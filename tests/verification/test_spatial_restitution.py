@@ -27,6 +27,7 @@ PLANE = {
     "ked-3d-point": "ked",
     "housner-3d": "housner",
     "horizontal-momentum-3d": "horizontal-momentum",
+    "calibrated-3d": "calibrated",
 }
 ALONG = np.array([0.0, 1.0, 0.0])
 
