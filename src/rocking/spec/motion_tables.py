@@ -133,8 +133,8 @@ class MotionTable(_Along, MotionKeys):
 
     @property
     def size(self) -> int:
-        """How many motions there are; of a folder, a pattern or a list, how many names."""
-        return self.count or len(self.records or self.pulse or [])
+        """Number of motions; of a folder, a pattern or a list, number of names; 1 for components along x, y and z."""
+        return self.count or len(self.records or self.pulse or [1])
 
     @property
     def file_options(self) -> dict[str, dict[str, Any]]:
