@@ -146,6 +146,7 @@ def test_both_engines_with_friction_agree():
     assert fast["peak_tilt"].values.item() == pytest.approx(slow["peak_tilt"].values.item(), rel=1e-6, abs=0.0)
 
 
+@pytest.mark.verifies("invariant", "the position on the base of the solid", within="1e-9")
 def test_the_base_of_a_hull_is_that_of_its_solid():
     """A hull of vertices alone has the same position in every direction as the solid; a leaning one is refused."""
     of_solid = HullBody.of(LEANING)
@@ -159,6 +160,7 @@ def test_the_base_of_a_hull_is_that_of_its_solid():
         position_on_base(leaning)
 
 
+@pytest.mark.verifies("invariant", "the response of the solid", within="1e-9")
 def test_a_body_of_known_moments_needs_no_distribution_of_mass():
     """Where KED is refused the calibrated model gives a response, also of a body described by its base alone."""
     body = tower(0.6, 0.5, 2.0, 0.05)
