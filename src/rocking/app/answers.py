@@ -218,8 +218,8 @@ AllowedData: Any = shape(
     "AllowedData",
     "The allowed values of a parameter; low and high are null where a range has no end.",
     sentence=str,
-    low=(float | None, Field(None)),
-    high=(float | None, Field(None)),
+    low=(float | None, Field(None, description="lower end, in the unit of the refusal")),
+    high=(float | None, Field(None, description="upper end, in the unit of the refusal")),
     low_open=(bool, False),
     high_open=(bool, False),
 )

@@ -93,10 +93,10 @@ KeyFacts: Any = shape(
     usual=(str, "as it is written; empty where there is none"),
     needed=bool,
     choices=(list[str], "all that may be said, where these are few"),
-    ge=(float | None, Field(None, description="lowest value that it may have")),
-    gt=(float | None, Field(None, description="value that it must be above")),
-    le=(float | None, Field(None, description="highest value that it may have")),
-    lt=(float | None, Field(None, description="value that it must be below")),
+    ge=(float | None, Field(None, description="lowest value, in the unit of the key")),
+    gt=(float | None, Field(None, description="lower limit, not included, in the unit of the key")),
+    le=(float | None, Field(None, description="highest value, in the unit of the key")),
+    lt=(float | None, Field(None, description="upper limit, not included, in the unit of the key")),
 )
 StepFacts: Any = shape(
     "StepFacts", "A step, or a spectrum.", words=str, one=(bool, "only one key is given"), keys=dict[str, KeyFacts]
