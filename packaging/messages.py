@@ -1,6 +1,7 @@
 """Extract the messages of sources and page, update the catalogues, and compile them: `make messages`."""
 
 import ast
+import builtins
 import html
 import io
 import re
@@ -23,6 +24,13 @@ LABEL = (
 """Attributes of a template that are read."""
 STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
 
+# packages whose errors the page shows
+OF_PAGE = {
+    "app", "assessment", "bodies", "checks.py", "identification", "motions", "prediction", "restitution", "spec",
+    "studies",
+}  # fmt: skip
+REFUSALS = {"Busy", "NotFound", "Refused"}  # errors without "Error" in their name
+
 Key = tuple[str, str, str]
 """A message: its text, its text where the count is not 1, and its context; the last two may be empty."""
 
@@ -40,6 +48,18 @@ def messages_of(tree: ast.AST) -> Iterator[Key]:
         many = named.get("many", call.args[place] if len(call.args) > place else None)
         for text in _texts(call.args[0]):
             yield text, next(_texts(many), ""), next(_texts(named.get("context") if name == "Message" else None), "")
+
+
+def messages_of_errors(tree: ast.AST) -> Iterator[Key]:
+    """Yield the messages of the errors of a module: SomeError(text, hint=text)."""
+    for call in ast.walk(tree):
+        if not isinstance(call, ast.Call):
+            continue
+        name = getattr(call.func, "id", getattr(call.func, "attr", ""))
+        if name in REFUSALS or (name.endswith("Error") and not hasattr(builtins, name)):
+            hints = [keyword.value for keyword in call.keywords if keyword.arg == "hint"]
+            for node in [*call.args[:1], *hints]:
+                yield from ((text, "", "") for text in _texts(node) if text)
 
 
 def _texts(node: ast.AST | None) -> Iterator[str]:
@@ -138,6 +158,8 @@ def extracted() -> tuple[set[Key], set[str]]:
     for path in SOURCE.rglob("*.py"):
         tree = ast.parse(path.read_text("utf-8"))
         messages.update(messages_of(tree))
+        if path.relative_to(SOURCE).parts[0] in OF_PAGE:
+            messages.update(messages_of_errors(tree))
         literals.update((*names_of(tree), *descriptions_of(tree)))
         literals.update(
             node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)

@@ -212,7 +212,7 @@ def test_the_contact_bed(impact: Any) -> None:
     bed.get_by_text("From where to where").click()
     bed.get_by_label("from", exact=True).fill("-1")
     bed.get_by_role("button", name="Compute").click()
-    expect(bed.get_by_role("alert")).to_contain_text("Damping must be >= 0")
+    expect(bed.get_by_role("alert")).to_contain_text("Damping must be at least 0; it is \u22121.")
     bed.get_by_label("from", exact=True).fill("")
     density = bed.get_by_role("textbox", name="density")
     density.fill("-3")
