@@ -56,7 +56,9 @@ def messages_of_errors(tree: ast.AST) -> Iterator[Key]:
         if not isinstance(call, ast.Call):
             continue
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
-        if name in REFUSALS or (name.endswith("Error") and not hasattr(builtins, name)):
+        if name in REFUSALS or (
+            name.endswith("Error") and not name.startswith("Pydantic") and not hasattr(builtins, name)
+        ):
             hints = [keyword.value for keyword in call.keywords if keyword.arg == "hint"]
             for node in [*call.args[:1], *hints]:
                 yield from ((text, "", "") for text in _texts(node) if text)

@@ -90,9 +90,11 @@ class Section(Body):
         self._origin_x = 0.5 * float(low[0] + high[0])
         self._size = float((high - low).max())
         if abs(float(low[1]) - self._ground) > GROUND_TOLERANCE * self._size:
-            verb, lowest = "floats above" if low[1] > self._ground else "reaches below", float(low[1])
+            lowest = float(low[1])
             raise GeometryError(
-                "the body {verb} the ground: its lowest point is y = {y}, the ground {ground}", verb=verb,
+                "the body floats above the ground: its lowest point is y = {y}, the ground {ground}"
+                if lowest > self._ground
+                else "the body reaches below the ground: its lowest point is y = {y}, the ground {ground}",
                 y=Amount(lowest, "m", ".9g"), ground=Amount(self._ground, "m", ".9g"),
                 hint=Message("pass {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
             )  # fmt: skip

@@ -219,7 +219,7 @@ def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
     size = float(box.max())
     likely = [unit for unit in LENGTH_UNITS if 0.1 <= size * length_unit(unit) / length_unit(units) <= 10.0]
     hint = " or ".join(f'units="{unit}"' for unit in likely)
-    likelier = f"{hint or 'another'} is likelier"
+    likelier = Message("{unit} is likelier", {"unit": hint}) if hint else Message("another is likelier")
     if not _LOWEST <= size <= _HIGHEST:
         raise BodyFileError(
             "describes a body of {size} m, read in {units}; is that the file's unit? {likelier}", size=words,

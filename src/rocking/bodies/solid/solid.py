@@ -113,11 +113,16 @@ class Solid:
         if base_tolerance is not None:
             tolerance = checks.positive("base_tolerance", base_tolerance, "m")
         if abs(low[2] - self._ground) > max(tolerance, 8.0 * np.spacing(abs(self._ground))):
-            verb, lowest = "floats above" if low[2] > self._ground else "reaches below", float(low[2])
+            lowest = float(low[2])
             raise GeometryError(
-                "the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {ground:.9g} m; pass "
-                "ground={lowest:.9g} or move the parts", verb=verb, lowest=lowest, ground=self._ground,
-            )  # fmt: skip
+                "the body floats above the ground: its lowest point is z = {lowest:.9g} m, the ground {ground:.9g} m; "
+                "pass ground={lowest:.9g} or move the parts"
+                if lowest > self._ground
+                else "the body reaches below the ground: its lowest point is z = {lowest:.9g} m, the ground "
+                "{ground:.9g} m; pass ground={lowest:.9g} or move the parts",
+                lowest=lowest,
+                ground=self._ground,
+            )
         middle = 0.5 * (low + high)
         self.origin: FloatArray = np.array([middle[0], middle[1], self._ground])
         self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
