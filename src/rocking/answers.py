@@ -236,7 +236,11 @@ class Display:
         rows = rows if isinstance(rows, AnswerRows) else AnswerRows.of_records(rows)
         ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high", "_95")}
         shown = names or [name for name in rows.columns if name not in ends]
-        return [each for name in shown if name in rows.columns for each in self._columns(name, rows)]
+        columns = [each for name in shown if name in rows.columns for each in self._columns(name, rows)]
+        intervals = [k for k, column in enumerate(columns) if column.heading == "95 %"]
+        for k in intervals if len(intervals) > 1 else ():  # each with the heading of its quantity
+            columns[k] = replace(columns[k], heading=f"{columns[k - 1].heading.partition(' [')[0]} 95 %")
+        return columns
 
     def _columns(self, name: str, rows: AnswerRows) -> "Iterator[ShownColumn]":
         values, lows, highs = (rows.columns.get(f"{name}{end}") for end in ("", "_low", "_high"))

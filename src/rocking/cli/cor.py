@@ -173,8 +173,10 @@ class PlaneAnswer:
 
         body, answer = self.impact.body, self.answer()
         display = Display(self.length, own=answer.quantities)
-        names = ("centre", "slenderness_ratio", *SIDE, "uplift_acceleration")
-        page.line(body_line(body, answer["body"], display, names))
+        names = ("slenderness_ratio", *SIDE, "uplift_acceleration")
+        page.line(body_line(body, answer["body"], display, ("centre", *(names if body.is_symmetric else ()))))
+        for foot, side in {} if body.is_symmetric else answer["body"]["sides"].items():
+            page.line(f"{foot} foot: {', '.join(f'{label} {text}' for label, text in display.lines(side, names))}")
         for line in body.assumed:
             page.line(line)
         if body.is_symmetric and (outside := outside_evidence(body)):

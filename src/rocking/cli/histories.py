@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 COUNT, SEED = 20, 1  # synthetic motions by default
+_OF_FILES = {"body", "motion_provenance"}  # coordinates that files alone have
+_PLURALS = {"body": "bodies"}
 _BODY: options.Options = {"body": (options.BodyFile, None)}
 _MOTIONS: options.Options = {
     "record": (options.SeveralRecords, None),
@@ -92,11 +94,17 @@ class HistoriesAnswer:
 
     def answer(self) -> Answer:
         """Return every history, and the share of each mode."""
-        dataset = self.dataset
+        from rocking.motions.summary import motion_answer
+
+        dataset, problem = self.dataset, self.problem
+        names = [str(name) for name in (*dataset.coords, *dataset.data_vars) if name not in _OF_FILES]
         return Answer({
-            "restitution": list(self.problem.restitutions),
-            "gravity": self.problem.settings.gravity,
-            **{str(name): dataset[name].values.tolist() for name in (*dataset.coords, *dataset.data_vars)},
+            "bodies": [str(body) for body in problem.bodies],
+            "assumed": list(dict.fromkeys(text for body in problem.bodies for text in getattr(body, "assumed", ()))),
+            "motions": [motion_answer(motion) for motion in problem.kept_motions],
+            "restitution": list(problem.restitutions),
+            "gravity": problem.settings.gravity,
+            **{name: dataset[name].values.tolist() for name in names},
             "modes": mode_shares(dataset["mode"].values),
             "contact": contact_words(lost_contact(dataset)),
         })  # fmt: skip
@@ -110,9 +118,11 @@ class HistoriesAnswer:
             page.facts(subject_lines(problem, Display(self.length)))
         page.facts([("restitution", ", ".join(answer["restitution"]))])
         page.facts(source_lines(summaries_of(problem.kept_motions)))
-        page.line(
-            f"histories:    {' x '.join(f'{size} {name}' for name, size in self.dataset['mode'].sizes.items())}\n"
-        )
+        counts = [
+            f"{size} {name if size == 1 else _PLURALS.get(str(name), f'{name}s')}"
+            for name, size in self.dataset["mode"].sizes.items()
+        ]
+        page.line(f"histories:    {' x '.join(counts)}\n")
         page.rows(answer["modes"], ("mode", "count", "share"), dense=False)
         page.warn(filter(None, [answer["contact"]]))
 

@@ -1,7 +1,7 @@
 """`rocking map`: how a body ends over two parameters of it and its motion."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,6 +27,12 @@ _LINE = 1e-4  # how closely the boundary of a picture is bisected: finer than a 
 _RESTITUTIONS = {
     "first": Quantity("first", "", "restitution", label="restitution"),
     "second": Quantity("second", "", "restitution that is compared with it", label="against"),
+}
+_OUTCOMES = {"count": Quantity("count", "1", "number of cells", label="cells")}
+_CHANGES = {
+    "count": Quantity("count", "1", "number of cells with different outcomes", label="flips"),
+    "only_second": Quantity("only_second", "1", "overturning with the second alone", label="only with the second"),
+    "only_first": Quantity("only_first", "1", "overturning with the first alone", label="only with the first"),
 }
 _FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
 _LAST = 3  # overturning after more impacts than that is printed together; JSON parts it
@@ -266,17 +272,19 @@ class MapAnswer:
             span = _span(display, which, (values[0], values[-1])).replace(" ", ", ", 1)
             page.line(f"{which}:            {span}, {values.size} values")
         page.line()
-        page.rows(_grouped(answer["modes"]), ("mode", "count", "share"), display, dense=False)
+        counted = replace(display, own={**answer.quantities, **_OUTCOMES})
+        page.rows(_grouped(answer["modes"]), ("mode", "count", "share"), counted, dense=False)
         page.line()
         page.line(_begins(display, answer["overturning"]))
         for line in _islands_sentences(display, answer["islands"]):
             page.line(line)
         page.warn(filter(None, [answer["contact"]]))
-        if self.arrays.points is not None:
+        if self.arrays.points is not None and self.problem.document.map.refine:
             page.line(f"Refined along boundaries: {self.arrays.points} points.")
         if self.compared is not None:
             page.line()
-            page.rows(answer["sensitivity"]["pairs"], _FLIPS, display, dense=False)
+            changed = replace(display, own={**answer.quantities, **_CHANGES})
+            page.rows(answer["sensitivity"]["pairs"], _FLIPS, changed, dense=False)
             page.line(self.compared.verdict)
 
 

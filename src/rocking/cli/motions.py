@@ -152,7 +152,13 @@ class SetAnswer:
             if self.chosen is not None and len(self.chosen.factors) == len(self.flatfile.table):
                 shown |= {"scale": self.chosen.factors[k], "misfit": self.chosen.misfits[k]}
             rows.append(shown)
-        own = {name: Quantity(name, columns[f"{name}_x"].unit, "") for name in _SHOWN if name not in QUANTITIES}
+        from rocking.motions.intensity import MEASURES
+
+        own = {
+            name: Quantity(name, columns[f"{name}_x"].unit, "", label=MEASURES[name].symbol)
+            for name in _SHOWN
+            if name not in QUANTITIES
+        }
         page.rows(rows, (), Display(acceleration=beside_g(self.acceleration), own=own), most=len(rows))
         page.line()
         page.line(f"{len(rows)} records; the component with the largest peak is shown, files have all of them.")

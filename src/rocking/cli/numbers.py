@@ -161,5 +161,7 @@ def body_line(body: Any, answer: "Answer", display: "Display", names: Sequence[s
         line += f" {display.cell('size', body.width)} x {display.text('size', body.height)}"
     elif "size" in answer:
         line += f", {' x '.join(display.cell('size', side) for side in answer['size'])} {display.length}"
-    listed = (f"{label} {text}" for label, text in display.lines(answer.values, names))
-    return ", ".join([line, display.text("mass", answer["mass"]), *listed])
+    parts = answer.values.get("parts") if "parts" in names else None
+    count = [f"{parts} part{'s' * (parts != 1)}"] if parts is not None else []
+    listed = (f"{label} {text}" for label, text in display.lines(answer.values, [n for n in names if n != "parts"]))
+    return ", ".join([line, display.text("mass", answer["mass"]), *count, *listed])

@@ -126,7 +126,7 @@ class Page:
 
 def wrap(name: str, width: int) -> str:
     """Return a heading over as many lines as the width of its column needs; no word is cut."""
-    return "\n".join(textwrap.wrap(name, width, break_long_words=False))
+    return "\n".join(textwrap.wrap(name, max(width, 8), break_long_words=False))
 
 
 def sentence(text: str) -> str:

@@ -218,7 +218,7 @@ def show_body(page: Page, body: Answer, display: Display) -> None:
     """Write mass, centre, base and repairs of a body in space."""
     from rocking.cli.numbers import body_line
 
-    page.line(body_line(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre", "centre_height")))
+    page.line(body_line(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre")))
     base = _rounded(body["base"])
     if corners := base.get("base_vertices"):
         listed = ", ".join(f"({display.cell('base_vertices', each)})" for each in corners[:_MOST])

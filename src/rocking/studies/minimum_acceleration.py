@@ -167,7 +167,9 @@ class Cases:
         if bad.size:
             k = bad[0]
             raise InvalidValueError(
-                "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2 for body {index}",
+                "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2 for body {index}"
+                if low.size > 1
+                else "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2",
                 lowest=Parameter("minimum.lowest", "lowest"), highest=Parameter("minimum.highest", "highest"),
                 low=low[k], high=high[k], index=k,
             )  # fmt: skip
