@@ -94,14 +94,14 @@ class HistoriesAnswer:
 
     def answer(self) -> Answer:
         """Return every history, and the share of each mode."""
-        from rocking.motions.summary import motion_answer
+        from rocking.motions.summary import summaries_of
 
         dataset, problem = self.dataset, self.problem
         names = [str(name) for name in (*dataset.coords, *dataset.data_vars) if name not in _OF_FILES]
         return Answer({
             "bodies": [str(body) for body in problem.bodies],
             "assumed": list(dict.fromkeys(text for body in problem.bodies for text in getattr(body, "assumed", ()))),
-            "motions": [motion_answer(motion) for motion in problem.kept_motions],
+            "motions": [summary.answer() for summary in summaries_of(problem.kept_motions)],
             "restitution": list(problem.restitutions),
             "gravity": problem.settings.gravity,
             **{name: dataset[name].values.tolist() for name in names},

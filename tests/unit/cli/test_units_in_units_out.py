@@ -145,7 +145,7 @@ def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     out = printed(command, str(path), *ground)
     assert "500 x 600 x 2000 mm" in out
     if command == "cor":
-        assert "centre height 1000 mm" in out
+        assert "centre of mass 0, 0, 1000 mm" in out
         assert "(-250, -300)" in out
     if command == "cor":
         assert "R [mm]" in out
