@@ -227,13 +227,13 @@ class ImpulsePositionModel(SpatialModel):
         """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
         step, axis = _step(impact), impact.edge
         k = min(self.position(impact).of_step(step), self.highest)
-        made = _kept(impact, step, k)
-        if k < 1.0 and _push(impact, made) < 0.0:
-            made = _kept(impact, step, 1.0)
-        after = 0.5 * dot(made, applied(impact.inertia, made))
+        velocity = _kept(impact, step, k)
+        if k < 1.0 and _push(impact, velocity) < 0.0:
+            velocity = _kept(impact, step, 1.0)
+        after = 0.5 * dot(velocity, applied(impact.inertia, velocity))
         if after > impact.energy:
-            made = made * math.sqrt(impact.energy / after)
-        return made if axis is None else dot(made, axis) * axis
+            velocity = velocity * math.sqrt(impact.energy / after)
+        return velocity if axis is None else dot(velocity, axis) * axis
 
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return whether the contact force would be tensile."""
