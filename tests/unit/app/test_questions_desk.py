@@ -1,5 +1,6 @@
 """Questions in a process of their own: answered as the command line does, with what was sent and nothing else."""
 
+import asyncio
 import json
 import sys
 import time
@@ -56,6 +57,27 @@ def test_the_answer_is_that_of_the_command_line(desk, tmp_path, run):
     assert desk.file(asked.id, "report.pdf").read_bytes().startswith(b"%PDF")
     with pytest.raises(NotFound, match="has no file"):
         desk.file(asked.id, "state.json")
+
+
+def test_a_question_that_ends_while_it_is_read(desk, monkeypatch):
+    """State and answer are of one moment: a page that saw "done" without an answer would not look again."""
+    from types import SimpleNamespace
+
+    from rocking.app.questions import router
+
+    asked = desk.ask("predict", TABLES, {})
+    real = desk.tables
+
+    def tables(question):
+        ended(desk, question)  # between the two readings of its state
+        return real(question)
+
+    monkeypatch.setattr(desk, "tables", tables)
+    monkeypatch.setattr(router, "_desk", lambda _: desk)
+    for state in ("running", "done"):
+        wait_for(lambda: desk.get(asked.id).state != "waiting")
+        answered = json.loads(asyncio.run(router.get_question(SimpleNamespace(), asked.id)).body)
+        assert (answered["state"] == "done") == (answered["answer"] is not None), state
 
 
 def test_a_list_that_was_sent_is_assessed(desk):

@@ -100,9 +100,11 @@ async def get_question(request: Request, question: str) -> JsonAnswer:
 
     def whole() -> dict[str, Any]:
         desk = _desk(request)
-        answer = desk.answer(question)
-        told = {"toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)}
-        return {**_facts(desk.get(question)), **told}
+        known = desk.get(question)  # once: it may be done a moment later
+        answer = desk.answer(question) if known.state == "done" else None
+        return {
+            **_facts(known), "toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)
+        }  # fmt: skip
 
     return JsonAnswer(await run_in_threadpool(whole))
 
