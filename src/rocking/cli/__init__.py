@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
         refusal = error.without_file(unnamed_file)
     except click_exception as error:
         refusal = _refusal(error)
-        refusal.add_hint("see rocking --help")
+        refusal.add_hint(_help_of(error))
     except OSError as error:
         refusal = RockingError(
             "{fault}: {file}" if error.filename else "{fault}", fault=error.strerror or str(error), file=error.filename
@@ -66,6 +66,14 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     as_data = {"error": {**refusal.data(), "message": sentence}} if "--json" in arguments else None
     print(json.dumps(as_data) if as_data else f"rocking: {sentence}", file=sys.stderr)
     sys.exit(2)
+
+
+def _help_of(error: Any) -> str:
+    """Return the reference to the help of the command whose options were wrong."""
+    from rocking.messages import Message
+
+    context = getattr(error, "ctx", None)
+    return Message("see {command} --help", {"command": "rocking" if context is None else context.command_path})
 
 
 def _refusal(error: Any) -> "RockingError":

@@ -22,13 +22,13 @@ def example(
         str | None,
         typer.Argument(help="One example; all are listed if left out.", autocompletion=completion.examples),
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="Only say what it would write and run.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="List the files and commands; run nothing.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,
 ) -> None:
     """Run `rocking example`."""
     known = examples.catalogue()
-    if name is None or listed or as_json:
+    if name is None or dry_run or as_json:
         chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}
         deliver(_Listed(chosen, whole=name is None), as_json=as_json)
         return

@@ -68,8 +68,8 @@ def motions(
         typer.Option(help=r"Periods of the spectra, with commas between \[s]; 30 from 0.02 to 10 if not given."),
     ] = None,
     sets: options.Set = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Processes that read and measure; as many as processors if not given.")
+    workers: Annotated[
+        int | None, typer.Option(help=r"Number of processes \[default: number of processors, at most 8].")
     ] = None,
     out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
     as_json: options.AsJson = False,
@@ -86,14 +86,14 @@ def motions(
 
     exports = Exports.of(out, EXPORTS)
     arguments = Arguments(context, "motion")
-    beside = ("record", "damping", "periods", "threads")
+    beside = ("record", "damping", "periods", "workers")
     file = document_file(context, record[0], ("motions",), beside) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
         raise InvalidValueError("{file:.200}: no such file or folder", file=missing[0])
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     wanted = PERIODS if periods is None else parsed_periods(periods)
-    workers = min(processors(), _MOST_PROCESSES) if threads is None else checks.whole("--threads", threads, 1, 256)
+    count = min(processors(), _MOST_PROCESSES) if workers is None else checks.whole("--workers", workers, 1, 256)
     if file is None:
         values = {"records": list(record), "units": arguments.acceleration}
         table = checked(MotionTable, arguments.table("motion", values, {"records": record[0]}))
@@ -101,9 +101,9 @@ def motions(
         tables = with_sets(tables_in(file) or {}, arguments.sets, lists=True)
         (table,) = checked(RecordSetDocument, tables).motions
     with bar("files", quiet=as_json) as progress:
-        found, chosen = record_set(table, files, workers, progress)
+        found, chosen = record_set(table, files, count, progress)
     with bar("records", len(found), quiet=as_json) as progress:
-        measured = flatfile(found, wanted, damping, workers=workers, progress=progress)
+        measured = flatfile(found, wanted, damping, workers=count, progress=progress)
     left_out = (*found.left_out, *measured.left_out)
     deliver(SetAnswer(measured, chosen, left_out, arguments.acceleration or "m/s2"), exports, as_json=as_json)
 

@@ -35,7 +35,7 @@ def test_the_list(printed, answered):
     page = printed()
     for name in ALL:
         assert f"\n{name} " in page
-    assert printed("--list") == page
+    assert printed("--dry-run") == page
     assert [each["name"] for each in answered()["examples"]] == list(ALL)
     (one,) = answered("stele")["examples"]
     assert one["writes"] == ["stele.toml", "far-field.csv"]
@@ -43,9 +43,9 @@ def test_the_list(printed, answered):
 
 
 def test_one_is_only_listed(printed, tmp_path, monkeypatch):
-    """Nothing is written by --list and --json."""
+    """Nothing is written by --dry-run and --json."""
     monkeypatch.chdir(tmp_path)
-    assert "writes bust.toml, three-components.csv, and by its commands bust.png" in printed("bust", "--list")
+    assert "writes bust.toml, three-components.csv, and by its commands bust.png" in printed("bust", "--dry-run")
     assert json.loads(printed("bust", "--json"))["examples"][0]["outputs"] == ["bust.png"]
     assert list(tmp_path.iterdir()) == []
 

@@ -34,7 +34,7 @@ def test_a_folder_becomes_a_flatfile(run, folder, tmp_path):
     """One row a record in CSV, Excel and netCDF; the damaged file is named on the page, and in the workbook."""
     files = [tmp_path / f"flat{ending}" for ending in (".csv", ".xlsx", ".nc", ".png")]
     options = [word for file in files for word in ("--out", str(file))]
-    code, out, err = run("motions", folder, "--periods", "0.2,1", "--threads", 1, *options)
+    code, out, err = run("motions", folder, "--periods", "0.2,1", "--workers", 1, *options)
     assert (code, err) == (0, "")
     assert "left out" in out
     assert "damaged.at2" in out
@@ -57,7 +57,7 @@ def test_a_doubt_names_its_file_once(run, folder):
     """Whether the motion doubts it or the reader, who names it too."""
     rows = [f"{0.25 * k}, {60.0 * np.sin(k):.6f}" for k in range(60)]
     (folder / "odd.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
-    _, _, err = run("motions", folder / "odd.csv", "--threads", 1, "--periods", "1,2")
+    _, _, err = run("motions", folder / "odd.csv", "--workers", 1, "--periods", "1,2")
     lines = [line for line in err.splitlines() if "odd.csv" in line]
     assert len(lines) >= 2
     assert all(line.count("odd.csv") == 1 for line in lines)
@@ -69,7 +69,7 @@ def test_many_doubts_are_counted(run, tmp_path):
     rows = [f"{0.25 * k}, {30.0 * np.sin(k):.6f}" for k in range(60)]
     for k in range(7):
         (tmp_path / f"odd{k}.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
-    _, _, err = run("motions", tmp_path, "--threads", 1, "--periods", "1,2", "--out", tmp_path / "flat.csv")
+    _, _, err = run("motions", tmp_path, "--workers", 1, "--periods", "1,2", "--out", tmp_path / "flat.csv")
     said = [line for line in err.splitlines() if "odd" in line or "doubts more" in line]
     assert len(said) == 6
     assert "doubts more" in said[-1]
@@ -267,9 +267,9 @@ def test_options_of_single_files(run, mixed):
     )
     usual = ["--units", "m/s2", "--set", "motion.time_step=0.01", "--set", OPTIONS]
     for words in (
-        ["motions", question, "--threads", 1],
-        ["motions", "mixed", "other/c.txt", "--threads", 1, *usual],
-        ["motions", "mixed/a.txt", "mixed/b.txt", "other/c.txt", "--threads", 1, *usual],
+        ["motions", question, "--workers", 1],
+        ["motions", "mixed", "other/c.txt", "--workers", 1, *usual],
+        ["motions", "mixed/a.txt", "mixed/b.txt", "other/c.txt", "--workers", 1, *usual],
     ):
         code, out, err = run(*words, "--periods", "1", "--json")
         assert code == 0, err
