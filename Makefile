@@ -93,6 +93,7 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python packaging/prose.py
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
 # Nothing else needs node, which may be missing.
