@@ -74,7 +74,7 @@ def test_steps_say_what_they_take():
     assert [key for one in described for key, each in one["keys"].items() if not each["words"]] == []
     assert steps()["bandpass"]["keys"]["high"]["unit"] == "Hz"
     assert steps()["bandpass"]["keys"]["pads"]["choices"] == ["cut", "keep"]
-    with pytest.raises(InvalidValueError, match="step taper: it takes fraction"):
+    with pytest.raises(InvalidValueError, match="step taper: allowed keys are fraction"):
         steps_of("taper:low=1")
 
 

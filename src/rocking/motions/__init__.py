@@ -1,7 +1,7 @@
-"""What shakes: records, pulses, synthetic motions, and what is measured on them."""
+"""Ground motions: records, pulses, synthetic motions, and their intensity measures."""
 
 from lazy_loader import attach_stub
 
-from rocking.motions.segments import Segments as Segments  # what engines integrate
+from rocking.motions.segments import Segments as Segments
 
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

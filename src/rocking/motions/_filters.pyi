@@ -7,7 +7,7 @@ def recurrence(m00: float, m01: float, m10: float, m11: float, first: Any, secon
 def resonances(
     noise: Any,
     omega: Any,
-    place: Any,
+    position: Any,
     shared: bool,
     cosine: Any,
     sine: Any,

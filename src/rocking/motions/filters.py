@@ -1,8 +1,8 @@
-"""Linear filters, and elementary functions of sums and products alone, so that a seed has the same bits everywhere.
+"""Linear filters and elementary functions with the same bits on every processor.
 
-NumPy and the C library choose other approximations of exp, log, sin and cos on other processors; sums and products are
-rounded alike everywhere. The compiled module does the same in the same order, and recurrences some hundred times as
-fast; without it these functions serve, with the same bits. (`rocking.portable` keeps vectors and matrices so.)
+The approximations of exp, log, sin and cos in NumPy and the C library depend on the processor; sums and products do
+not. The compiled module computes the same sums and products in the same order, recurrences about 100 times as fast.
+Without the compiled module, these functions return the same bits. (`rocking.portable` does this for matrices.)
 """
 
 import math
@@ -18,13 +18,13 @@ _INVERSE = tuple(1.0 / math.factorial(k) for k in range(19))
 _LOG2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
 _HALF_PI = (1.57079632673412561417e00, 6.07710050650619224932e-11)
 _LANES = 4
-NEIGHBOURS = 10  # oscillators that share an impulse; the compiled module has the same number
-LEAST_CYCLES = 1e-6  # smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding
+NEIGHBOURS = 10  # oscillators excited by one impulse; equal to the constant of the compiled module
+MIN_CYCLES = 1e-6  # smallest corner of the high pass [cycles per step]: below, rounding errors dominate
 
 
 @cache
 def compiled() -> ModuleType | None:
-    """Return the compiled module, or None where it was not built."""
+    """Return the compiled module; None if it was not built."""
     try:
         from rocking.motions import _filters
     except ImportError:
@@ -33,7 +33,7 @@ def compiled() -> ModuleType | None:
 
 
 def exponential(x: FloatArray) -> FloatArray:
-    """Return the exponential function, to about a unit of the last digit."""
+    """Return the exponential function, accurate to about one unit in the last place."""
     if (module := compiled()) is not None:
         out = np.empty(x.shape)
         module.exponentials(x.ravel(), out.ravel())
@@ -48,7 +48,7 @@ def exponential(x: FloatArray) -> FloatArray:
 
 
 def logarithm(x: FloatArray) -> FloatArray:
-    """Return the natural logarithm, to about a unit of the last digit."""
+    """Return the natural logarithm, accurate to about one unit in the last place."""
     if (module := compiled()) is not None:
         out = np.empty(x.shape)
         module.logarithms(x.ravel(), out.ravel())
@@ -65,7 +65,7 @@ def logarithm(x: FloatArray) -> FloatArray:
 
 
 def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return cosine and sine, for arguments of up to some thousand turns [rad]."""
+    """Return cosine and sine, for arguments up to about 1000 turns [rad]."""
     if (module := compiled()) is not None:
         c, s = np.empty(x.shape), np.empty(x.shape)
         module.cosines_sines(x.ravel(), c.ravel(), s.ravel())
@@ -86,7 +86,7 @@ def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
 def recurrence(
     move: FloatArray, start: tuple[float, float], first: FloatArray, second: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return two states that a matrix moves on, with something added to each after every step.
+    """Return two states over time: each step multiplies them by a matrix and adds an input.
 
     >>> turn = np.array([[0.0, -1.0], [1.0, 0.0]])
     >>> [x.tolist() for x in recurrence(turn, (1.0, 0.0), np.array([0.5, 0.0]), np.zeros(2))]
@@ -109,35 +109,37 @@ def recurrence(
 def resonances(
     noise: FloatArray,
     omega: FloatArray,
-    place: FloatArray,
+    position: FloatArray,
     shared: bool,
     nodes: tuple[FloatArray, FloatArray],
     lasting: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the sum of impulses into damped oscillators of fixed frequencies, and the sum of squared responses.
+    """Return the summed response of damped oscillators with fixed frequencies, and the sum of squared responses.
 
-    Each impulse, `noise` times the frequency `omega` [rad/s] that it is meant for, goes into one oscillator, or is
-    shared between `NEIGHBOURS` of them by Lagrange's weights. `place` counts from the first one that it feeds, plus
-    what is beyond the interval in the middle of its neighbours, and never falls; `nodes` are decayed cosine and
-    sine of one step. At every sample the decayed sines are summed, and twice their squares.
+    Each impulse is `noise` times its frequency `omega` [rad/s]. It excites one oscillator, or `NEIGHBOURS` of them with
+    Lagrange's weights. `position` is the index of the first excited oscillator plus the fraction within the middle
+    interval, and never decreases. `nodes` are the decayed cosine and sine of one step. At every sample, the decayed
+    sines are summed, and twice their squares.
 
-    >>> one = np.ones(1)
-    >>> total, squares = resonances(one, one, np.zeros(1), False, (0.8 * one, 0.6 * one), 9.0 * one)
+    >>> unit = np.ones(1)
+    >>> total, squares = resonances(unit, unit, np.zeros(1), False, (0.8 * unit, 0.6 * unit), 9.0 * unit)
     >>> total.tolist(), squares.round(12).tolist()
     ([0.0, 0.6], [0.0, 0.72])
     """
-    total, squares = np.zeros(place.size + 1), np.zeros(place.size + 1)
+    total, squares = np.zeros(position.size + 1), np.zeros(position.size + 1)
     cosine, sine = nodes
     if (module := compiled()) is not None:
-        module.resonances(noise, omega, place, shared, cosine, sine, lasting.astype(np.int64), total, squares)
+        module.resonances(noise, omega, position, shared, cosine, sine, lasting.astype(np.int64), total, squares)
         return total, squares
     width = NEIGHBOURS if shared else 1
     padding = (0, -cosine.size % _LANES)
     c, s = np.pad(cosine, padding), np.pad(sine, padding)
     q, cc, ss = c * c + s * s, c * c - s * s, 2.0 * (c * s)
     u, v, e, f, g = (np.zeros(c.size) for _ in range(5))
-    fed, base = np.zeros(c.size, np.int64), place.astype(np.int64)
-    kicks = (noise[: base.size] * omega[: base.size])[:, np.newaxis] * (weights := _shares(place - base, width))
+    fed, base = np.zeros(c.size, np.int64), position.astype(np.int64)
+    kicks = (noise[: base.size] * omega[: base.size])[:, np.newaxis] * (
+        weights := _lagrange_weights(position - base, width)
+    )
     gains = (omega[: base.size] * omega[: base.size])[:, np.newaxis] * weights
     low = high = 0
     for n, b in enumerate(base.tolist()):
@@ -159,7 +161,7 @@ def resonances(
 
 
 def transition(omega: float, damping: float, step: float) -> FloatArray:
-    """Return the matrix that takes displacement and velocity of free vibration over a step [rad/s, -, s]."""
+    """Return the transition matrix of displacement and velocity in free vibration over a step [rad/s, -, s]."""
     rate = omega * math.sqrt(1.0 - damping * damping)
     cosine, sine = cosine_sine(np.array([rate * step]))
     # sin(x)/rate has a limit at critical damping
@@ -170,13 +172,13 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
 
 
 def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> FloatArray:
-    """Return the acceleration of a critically damped oscillator that a motion from rest drives [m/s2, s, Hz]."""
-    # The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come back
-    # to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
-    low, high = LEAST_CYCLES / time_step, 0.5 / time_step
+    """Return the acceleration of a critically damped oscillator under a motion from rest [m/s2, s, Hz]."""
+    # The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement return
+    # to zero (Rezaeian & Der Kiureghian 2008). The samples are exact for straight lines between them.
+    low, high = MIN_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)
     move = transition(w, 1.0, time_step)
-    # against the moving equilibrium of a line a + b t, only free vibration is left
+    # relative to the moving equilibrium of a line a + b t, the motion is a free vibration
     w2, lag = 1.0 / (w * w), 2.0 / w**3
     a, slope = acceleration[:-1], np.diff(acceleration) / time_step
     rest, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope
@@ -185,10 +187,10 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     return acceleration - 2.0 * w * v - w * w * z  # Eq. 168
 
 
-def _shares(place: FloatArray, width: int) -> FloatArray:
-    """Return Lagrange's weights of neighbours at whole places around, a row for each place from 0 to 1."""
-    at = place + (width - 1) // 2
-    weights = np.ones((place.size, width))
+def _lagrange_weights(position: FloatArray, width: int) -> FloatArray:
+    """Return Lagrange's weights of `width` neighbours, one row per position from 0 to 1."""
+    at = position + (width - 1) // 2
+    weights = np.ones((position.size, width))
     for i in range(width):
         for k in range(i):
             weights[:, i] *= at - k

@@ -1,4 +1,4 @@
-"""The motion of a storey: a simple elastic building that shears, driven by a record."""
+"""Motion of a floor of an elastic shear building under a record."""
 
 import math
 
@@ -10,26 +10,26 @@ from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.spectrum import oscillators, states
 
 DAMPING = Assumed(0.05)
-"""Damping ratio of every mode where nobody gave one [-]."""
+"""Default damping ratio of every mode [-]."""
 
 
 def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, damping: float = DAMPING) -> GroundMotion:
-    """Return the horizontal motion of a floor of an elastic building; its vertical part stays as it is.
+    """Return the horizontal motion of a floor of an elastic building; the vertical part is unchanged.
 
-    The building has storeys of one mass and one stiffness, all modes the same damping; nothing stands on it, the ground
-    does not give way, and nothing yields. It is exact at the samples for a record that is straight between them, and
-    ends with the record: pad the record to keep what goes on after it.
+    All storeys have equal mass and equal stiffness, all modes equal damping. The building carries no other load, and
+    the ground is rigid. The samples are exact for straight lines between the samples of the record. The floor motion
+    ends with the record: pad the record to include the free vibration after it.
 
     Parameters
     ----------
     motion : GroundMotion
-        What moves the base.
+        Motion of the base.
     number : int
-        The floor, from 1 for the first above the ground up to the number of storeys for the roof.
+        Floor, from 1 for the first above the ground to the number of storeys for the roof.
     storeys : int
-        How many storeys the building has, up to 100.
+        Number of storeys, up to 100.
     period : float
-        Its fundamental period [s].
+        Fundamental period of the building [s].
     damping : float
         Damping ratio of every mode [-].
 
@@ -46,18 +46,18 @@ def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, dam
     periods = period * math.sin(0.5 * angle[0]) / np.sin(0.5 * angle)  # Eq. 315
     floors = np.arange(1, storeys + 1)
     shape = np.sin(np.outer(angle, floors))
-    share = shape.sum(axis=1) / (shape**2).sum(axis=1) * shape[:, number - 1]  # Eq. 316
+    participation = shape.sum(axis=1) / (shape**2).sum(axis=1) * shape[:, number - 1]  # Eq. 316
     rates = oscillators(motion, periods, damping)[2]
-    found = states(motion, rates)
-    u = found.imag / rates.imag[:, None]
-    v = found.real + rates.real[:, None] * u
+    response = states(motion, rates)
+    u = response.imag / rates.imag[:, None]
+    v = response.real + rates.real[:, None] * u
     absolute = 2.0 * rates.real[:, None] * v - (np.abs(rates) ** 2)[:, None] * u
     stated = f"{100.0 * damping:g} % damping of every mode ({given_or_assumed(damping)})"
     support = f"floor {number} of {storeys}"
-    what = f"{support} of an elastic shear building of equal storeys, fundamental period {period:g} s, {stated}"
+    action = f"{support} of an elastic shear building of equal storeys, fundamental period {period:g} s, {stated}"
     if motion.vertical is not None:
-        what += "; vertical motion as on the ground"
+        action += "; vertical motion as on the ground"
     return motion.changed(
-        what, acceleration=(share[:, None] * absolute).sum(axis=0), name=f"{motion.name}, {support}",
+        action, acceleration=(participation[:, None] * absolute).sum(axis=0), name=f"{motion.name}, {support}",
         metadata={**motion.metadata, "support": support},
     )  # fmt: skip

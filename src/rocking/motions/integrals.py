@@ -1,8 +1,8 @@
-"""Integrals of a motion: velocity and displacement of the ground, their peaks, Arias intensity and when it comes.
+"""Integrals of a motion: velocity and displacement of the ground, their peaks, Arias intensity, significant duration.
 
-Velocity and displacement are exact for the straight lines between the samples that also drive bodies. The squared
-samples are summed by the trapezoidal rule, as the field does: a record is band-limited, for which this sum is the
-integral of the square (Parseval) but for half of the end samples; straight lines would lose up to a third of it.
+Velocity and displacement are exact for straight lines between the samples, as in simulations. The squared samples are
+summed by the trapezoidal rule, as is usual. A record is band-limited: by Parseval's theorem this sum is the integral
+of the square, except for half of the end samples. Straight lines would give up to one third less.
 """
 
 import math
@@ -22,7 +22,7 @@ def ground_velocity(motion: GroundMotion) -> FloatArray:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
 
     Returns
     -------
@@ -61,12 +61,12 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
 
 
 def peak_ground_velocity(motion: GroundMotion) -> float:
-    """Return the peak ground velocity PGV, also between the samples: the extreme of quadratic pieces.
+    """Return the peak ground velocity PGV, including extremes between the samples.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion, from rest; correct its baseline first if it drifts.
+        Motion, from rest; correct the baseline of a drifting record first.
 
     Returns
     -------
@@ -81,18 +81,18 @@ def peak_ground_velocity(motion: GroundMotion) -> float:
     v, a = ground_velocity(motion), motion.acceleration
     turns = np.flatnonzero((a[:-1] < 0.0) != (a[1:] < 0.0))
     before, after = a[turns], a[turns + 1]
-    # dividing first keeps the fraction within [0, 1] whatever the size of the samples
+    # division first: the fraction stays within [0, 1] for samples of any size
     inside = v[turns] + 0.5 * motion.time_step * before * (before / (before - after))
     return _largest(v, inside)
 
 
 def peak_ground_displacement(motion: GroundMotion) -> float:
-    """Return the peak ground displacement PGD, also between the samples: the extreme of cubic pieces.
+    """Return the peak ground displacement PGD, including extremes between the samples.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion, from rest; correct its baseline first if it drifts.
+        Motion, from rest; correct the baseline of a drifting record first.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def peak_ground_displacement(motion: GroundMotion) -> float:
     start, rise = a[:-1], np.diff(a)
     inside = [u]
     for tau in quadratic_roots(0.5 * h * rise, h * start, v[:-1]):
-        # outside (0, 1) the ends of the step are the extremes, and these are in u already
+        # outside (0, 1) the extremes are at the ends of the step, which u contains
         t = np.where((tau > 0.0) & (tau < 1.0), tau, 0.0)
         inside.append(u[:-1] + h * t * (v[:-1] + h * t * (0.5 * start + rise * t / 6.0)))
     return _largest(*inside)
@@ -123,14 +123,14 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     gravity : float
         Acceleration of gravity [m/s2].
 
     Returns
     -------
     float
-        The intensity, by the trapezoidal rule [m/s].
+        Arias intensity, by the trapezoidal rule [m/s].
 
     Examples
     --------
@@ -142,21 +142,21 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
 
 
 def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> float:
-    """Return the significant duration, between two percentages of the Arias intensity.
+    """Return the significant duration between two percentages of the Arias intensity.
 
     Trifunac & Brady (1975), Bulletin of the Seismological Society of America 65:581, for 5 to 95 %.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     start, end : float
-        Percentages: 5 and 95, or 5 and 75, are common [%].
+        Percentages, usually 5 and 95 or 5 and 75 [%].
 
     Returns
     -------
     float
-        The duration [s].
+        Significant duration [s].
 
     Examples
     --------
@@ -168,16 +168,16 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
 
 
 def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> tuple[float, float]:
-    """Return the times at which two percentages of the Arias intensity are reached, also inside steps.
+    """Return the times of two percentages of the Arias intensity, interpolated between samples.
 
-    Husid (1969), Revista del IDIEM 8:21; straight lines between the samples of his plot.
+    Husid (1969), Revista del IDIEM 8:21; linear interpolation of the Husid plot.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     start, end : float
-        Percentages, the second one larger [%].
+        Percentages; `end` is larger [%].
 
     Returns
     -------
@@ -187,13 +187,13 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     motion = checked_motion(motion)
     start = checks.within("start", start, 0.0, 100.0, unit="%")
     end = checks.within("end", end, start, 100.0, unit="%", open_low=True, hint="end must be above start")
-    total = _husid(motion)
-    if not total[-1] > 0.0:
+    husid = _husid(motion)
+    if not husid[-1] > 0.0:
         raise InvalidValueError(
-            "the motion must have energy {allowed}, got {value}", parameter="energy", value=float(total[-1]),
-            allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint=Message("zero throughout?"),
+            "the motion must have energy {allowed}, got {value}", parameter="energy", value=float(husid[-1]),
+            allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint=Message("check for a record of zeros"),
         )  # fmt: skip
-    return _crossing(motion, total, 0.01 * start), _crossing(motion, total, 0.01 * end)
+    return _crossing(motion, husid, 0.01 * start), _crossing(motion, husid, 0.01 * end)
 
 
 def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:
@@ -202,7 +202,7 @@ def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:
 
 
 def quadratic_roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return both real roots of many quadratic equations, without cancellation; not finite where there is none."""
+    """Return both real roots of many quadratic equations, without cancellation; not finite for missing roots."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         q = -0.5 * (first + np.copysign(np.sqrt(first * first - 4.0 * second * zeroth), first))
         return q / second, zeroth / q
@@ -214,12 +214,12 @@ def _husid(motion: GroundMotion) -> FloatArray:
     return _summed(0.5 * motion.time_step * (squares[:-1] + squares[1:]))  # Eq. 141
 
 
-def _crossing(motion: GroundMotion, total: FloatArray, fraction: float) -> float:
-    wanted = fraction * float(total[-1])
-    i = min(max(int(np.searchsorted(total, wanted)), 1), len(motion) - 1)
-    rise = float(total[i] - total[i - 1])
-    share = (wanted - float(total[i - 1])) / rise if rise > 0.0 else 0.0
-    return (i - 1 + min(share, 1.0)) * motion.time_step
+def _crossing(motion: GroundMotion, husid: FloatArray, fraction: float) -> float:
+    target = fraction * float(husid[-1])
+    i = min(max(int(np.searchsorted(husid, target)), 1), len(motion) - 1)
+    rise = float(husid[i] - husid[i - 1])
+    position = (target - float(husid[i - 1])) / rise if rise > 0.0 else 0.0
+    return (i - 1 + min(position, 1.0)) * motion.time_step
 
 
 def _summed(increments: FloatArray) -> FloatArray:
@@ -227,4 +227,4 @@ def _summed(increments: FloatArray) -> FloatArray:
 
 
 def _largest(*values: FloatArray) -> float:
-    return max(float(np.abs(part).max(initial=0.0)) for part in values)
+    return max(float(np.abs(array).max(initial=0.0)) for array in values)

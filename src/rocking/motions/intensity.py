@@ -1,8 +1,8 @@
-"""How strong a motion is: intensity measures, by the definitions and rules of the field.
+"""Intensity measures of motions, by the usual definitions.
 
-Energies and areas take the trapezoidal rule of the samples, velocities and spectra the straight lines that also drive
-bodies. An entry in `MEASURES` is all that a measure needs: `rocking motion`, fragility, scaling, pictures and
-OpenQuake's files read it there.
+Energies and areas use the trapezoidal rule over the samples; velocities and spectra use straight lines between them,
+as in simulations. An entry in `MEASURES` is sufficient to add a measure to `rocking motion`, fragility, scaling,
+plots and the files of OpenQuake.
 """
 
 import math
@@ -31,7 +31,7 @@ from rocking.portable import trapezoid
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of Housner's spectrum intensity [s]: every 0.01 s
 
 SAMPLES_PER_PERIOD = 4000
-"""Samples of the shortest period of a pulse: its measures are off by less than 1e-6, its PGA by nothing."""
+"""Samples per shortest period of a pulse: relative error below 1e-6, PGA exact."""
 
 _NUMBER = r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*"
 _SPECTRAL = re.compile(rf"sa\({_NUMBER}(?:,{_NUMBER})?\)")
@@ -44,11 +44,11 @@ class Measure:
     Parameters
     ----------
     name : str
-        What it is called.
+        Name in full.
     value : float
-        Its value in `unit`.
+        Value in `unit`.
     unit : str
-        Its unit, of the SI; ``-`` if it has none.
+        SI unit; ``-`` if dimensionless.
     """
 
     name: str
@@ -57,12 +57,12 @@ class Measure:
 
 
 def peak_ground_acceleration(motion: GroundMotion) -> float:
-    """Return the peak ground acceleration PGA, the largest magnitude of a sample, as the field does.
+    """Return the peak ground acceleration PGA, the largest magnitude of a sample.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def cumulative_absolute_velocity(motion: GroundMotion) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
 
     Returns
     -------
@@ -102,14 +102,14 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     damping : float
         Damping ratio, from 0 to below 1 [-].
 
     Returns
     -------
     float
-        The intensity, by the trapezoidal rule with 0.01 s [m].
+        Spectrum intensity, by the trapezoidal rule with 0.01 s [m].
     """
     pseudo = response_spectrum(motion, HOUSNER_PERIODS, damping).pseudo_velocity
     return trapezoid(pseudo, np.diff(HOUSNER_PERIODS))  # Eq. 144
@@ -118,12 +118,12 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
 def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:
     """Return the pseudo-spectral acceleration PSA at one period.
 
-    This is what ground-motion models predict; the true absolute acceleration is in `response_spectrum`.
+    Ground-motion models predict PSA; `response_spectrum` returns the absolute acceleration.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     period : float
         Undamped natural period of the oscillator [s].
     damping : float
@@ -138,12 +138,12 @@ def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 
 
 
 def normalised_acceleration(motion: GroundMotion, slenderness_angle: float, gravity: float = g) -> float:
-    """Return PGA over ``g tan(alpha)``: a body at rest rocks if this is above 1.
+    """Return PGA over ``g tan(alpha)``: a body at rest rocks if the ratio is above 1.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     slenderness_angle : float
         Angle alpha of the body, between 0 and pi/2 [rad].
     gravity : float
@@ -152,7 +152,7 @@ def normalised_acceleration(motion: GroundMotion, slenderness_angle: float, grav
     Returns
     -------
     float
-        The ratio [-].
+        Ratio [-].
     """
     return peak_ground_acceleration(motion) / _threshold(slenderness_angle, gravity)  # Eq. 145
 
@@ -160,12 +160,12 @@ def normalised_acceleration(motion: GroundMotion, slenderness_angle: float, grav
 def normalised_velocity(
     motion: GroundMotion, slenderness_angle: float, frequency_parameter: float, gravity: float = g
 ) -> float:
-    """Return ``p PGV / (g tan(alpha))``, the measure that knows how large the body is.
+    """Return ``p PGV / (g tan(alpha))``, a velocity measure that depends on the size of the body.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     slenderness_angle : float
         Angle alpha of the body, between 0 and pi/2 [rad].
     frequency_parameter : float
@@ -176,36 +176,36 @@ def normalised_velocity(
     Returns
     -------
     float
-        The ratio [-].
+        Ratio [-].
     """
     p = checks.positive("frequency_parameter", frequency_parameter, "rad/s")
     return p * peak_ground_velocity(motion) / _threshold(slenderness_angle, gravity)  # Eq. 146
 
 
 def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
-    """Return the intensity measures that need no body.
+    """Return the intensity measures that are independent of a body.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts. One that is zero throughout is refused: it has no duration.
+        Motion; only its horizontal part is used. A motion of zeros raises an error: it has no duration.
 
     Returns
     -------
     dict of str to Measure
-        By short name, in the order of a table.
+        Measures by short name, in the order of tables.
 
     Examples
     --------
     >>> intensity_measures(GroundMotion([0.0, 1.0, -1.0, 0.0], 0.1))["pga"]
     Measure(name='peak ground acceleration', value=1.0, unit='m/s2')
     """
-    shown = [one for one in MEASURES.values() if one.is_listed and not one.needs_body]
-    return {one.name: Measure(one.words, one.of(motion), one.unit) for one in shown}
+    listed = [item for item in MEASURES.values() if item.is_listed and not item.needs_body]
+    return {item.name: Measure(item.words, item.of(motion), item.unit) for item in listed}
 
 
 def key_with_unit(name: str, unit: str) -> str:
-    """Return a name with its unit, as keys of JSON have them.
+    """Return a name with its unit, as in JSON keys.
 
     >>> key_with_unit("pgv", "m/s"), key_with_unit("pga/(g tan alpha)", "-")
     ('pgv_m_s', 'pga/(g tan alpha)')
@@ -214,7 +214,7 @@ def key_with_unit(name: str, unit: str) -> str:
 
 
 def _threshold(slenderness_angle: float, gravity: float) -> float:
-    """Return the ground acceleration that lifts a body [m/s2]."""
+    """Return the ground acceleration at uplift [m/s2]."""
     alpha = checks.within(
         "slenderness_angle", slenderness_angle, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
     )
@@ -223,14 +223,14 @@ def _threshold(slenderness_angle: float, gravity: float) -> float:
 
 @dataclass(frozen=True)
 class RockingScale:
-    """What of a body some measures are divided by; without a body, gravity alone.
+    """Quantities of a body for dimensionless measures; without a body only gravity.
 
     Parameters
     ----------
     threshold : float
-        Ground acceleration that lifts it: g tan(alpha), or g alpha of the slender-linear equations [m/s2].
+        Uplift acceleration: g tan(alpha), or g alpha of the slender-linear equations [m/s2].
     frequency_parameter : float
-        p of the side that lifts first [rad/s].
+        p of the side with the smallest uplift acceleration [rad/s].
     gravity : float
         Acceleration of gravity [m/s2].
     """
@@ -242,31 +242,31 @@ class RockingScale:
 
 @dataclass(frozen=True)
 class IntensityMeasure:
-    """One measure of how strong a motion is.
+    """An intensity measure of motions.
 
     Parameters
     ----------
     name : str
-        Its short name.
+        Short name.
     words : str
-        What it is.
+        Name in full.
     unit : str
-        Its unit, of the SI; ``-`` if it has none.
+        SI unit; ``-`` if dimensionless.
     power : int
-        It grows with this power of a factor on the motion: 1, 2 (Arias intensity) or 0 (ratios and durations).
+        Exponent of a factor on the motion: 1, 2 (Arias intensity) or 0 (ratios and durations).
     of_motion : callable
-        Its value, of a record and what is known of the body.
+        Function of a record and a `RockingScale`; returns the value.
     symbol : str
-        How it is written in short; the name, if empty.
+        Symbol; the name, if empty.
     needs_body : bool
-        Whether a motion alone does not tell it.
+        True if the measure requires a body.
     is_listed : bool
-        Whether it stands in the table of a motion, where ratios of what stands there would say nothing new.
+        True if tables of motions contain the measure; they omit ratios of other rows.
     openquake : tuple of str, str and float, optional
-        Name in OpenQuake, unit there, and one SI unit in that unit; None if OpenQuake has no such measure.
+        Name and unit in OpenQuake, and one SI unit in that unit; None if OpenQuake has no such measure.
     uplift : callable, optional
-        Its value above which every horizontal motion lifts a body with equal sides and below which none does, of what
-        is known of the body; None if there is none.
+        Value of the measure at uplift of a body with equal sides, as a function of a `RockingScale`; None if it
+        depends on the motion.
 
     Examples
     --------
@@ -291,71 +291,69 @@ class IntensityMeasure:
         Parameters
         ----------
         motion : GroundMotion
-            The motion; its horizontal part counts.
+            Motion; only its horizontal part is used.
         body : RockingScale, optional
-            What of the body counts; a measure that needs it is refused without.
+            Quantities of the body; required if `needs_body`.
 
         Returns
         -------
         float
-            The value [unit of the measure].
+            Value [unit of the measure].
         """
         if self.needs_body and body is None:
-            raise InvalidValueError(
-                "{measure} is known of a motion and a body, got the motion alone", measure=self.name
-            )
+            raise InvalidValueError("{measure} requires a body", measure=self.name)
         return self.of_motion(motion, body or RockingScale())
 
     @property
     def key(self) -> str:
-        """Name and unit, as keys of JSON have them, such as ``pga_m_s2``."""
+        """Name and unit, as in JSON keys, such as ``pga_m_s2``."""
         return key_with_unit(self.name, self.unit)
 
     def values(self, motions: Any, body: RockingScale) -> FloatArray:
-        """Return the measure of every motion, all of which must be finite and above zero.
+        """Return the measure of every motion; every value must be finite and above zero.
 
         Parameters
         ----------
         motions : MotionSet
-            Records, or pulses, which are sampled finely; of several components the leading one counts.
+            Records or pulses; of several components, the leading one is used.
         body : RockingScale
-            What of the body counts.
+            Quantities of the body.
 
         Returns
         -------
         ndarray
-            One value a motion [unit of the measure].
+            One value per motion [unit of the measure].
         """
-        each = (sampled(leading(motions[k])) for k in range(len(motions)))
-        strong = (self.of_motion(motion, body) if motion.peak > 0.0 else 0.0 for motion in each)
-        found = np.fromiter(strong, np.float64, len(motions))
-        bad = np.flatnonzero(~((found > 0.0) & np.isfinite(found)))
+        records = (sampled(leading(motions[k])) for k in range(len(motions)))
+        results = (self.of_motion(motion, body) if motion.peak > 0.0 else 0.0 for motion in records)
+        values = np.fromiter(results, np.float64, len(motions))
+        bad = np.flatnonzero(~((values > 0.0) & np.isfinite(values)))
         if bad.size:
             raise InvalidValueError(
                 "{name} of every motion must be finite and > 0 {unit}, got {size:g} of motion "
-                "{index}, {motion}; zero throughout?",
+                "{index}, {motion}; check for a record of zeros",
                 name=self.name,
                 unit=self.unit,
-                size=found[bad[0]],
+                size=values[bad[0]],
                 index=bad[0],
                 motion=f"{motions[int(bad[0])].name!r:.60}",
             )
-        return found
+        return values
 
     def scaled(self, values: FloatArray, factor: Any) -> FloatArray:
-        """Return what the measure becomes when motions are multiplied by a factor.
+        """Return the measure of scaled motions.
 
         Parameters
         ----------
         values : ndarray
-            Of the motions as they are [unit of the measure].
+            Values of the unscaled motions [unit of the measure].
         factor : float or array_like
             Factor on the motions [-].
 
         Returns
         -------
         ndarray
-            Of the scaled motions [unit of the measure].
+            Values of the scaled motions [unit of the measure].
 
         Examples
         --------
@@ -365,27 +363,27 @@ class IntensityMeasure:
         return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)  # Eq. 229
 
     def check_grows(self) -> None:
-        """Refuse a measure that no factor on the motion changes: one of power zero."""
+        """Refuse a measure of power zero, which no scale factor changes."""
         if self.power == 0:
             raise InvalidValueError(
-                "{parameter} must be one that grows with the motion, got {value}, which no factor changes",
-                parameter="measure", value=self.name, hint='analysis="cloud" takes it',
+                "{parameter} must grow with the scale factor, got {value}",
+                parameter="measure", value=self.name, hint='use analysis="cloud"',
             )  # fmt: skip
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
-        """Return the factors that bring every motion to every target; a measure must grow with the motion for that.
+        """Return the factors that scale every motion to every target; `power` must not be zero.
 
         Parameters
         ----------
         values : ndarray, shape (motions,)
-            Of the motions as they are [unit of the measure].
+            Values of the unscaled motions [unit of the measure].
         targets : ndarray, shape (levels,)
-            Wanted values [unit of the measure].
+            Target values [unit of the measure].
 
         Returns
         -------
         ndarray, shape (motions, levels)
-            Factors [-].
+            Scale factors [-].
         """
         self.check_grows()
         return np.asarray((targets[None, :] / values[:, None]) ** (1.0 / self.power), dtype=np.float64)  # Eq. 229
@@ -404,7 +402,7 @@ def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
     Returns
     -------
     IntensityMeasure
-        Named ``sa(period)``, or ``sa(period,damping)`` if that is not 0.05.
+        Measure named ``sa(period)``, or ``sa(period,damping)`` unless `damping` is 0.05.
 
     Examples
     --------
@@ -423,12 +421,12 @@ def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
 
 
 def measures() -> dict[str, IntensityMeasure]:
-    """Return the measures that have names; ``sa(period)`` comes besides.
+    """Return the measures with fixed names, without ``sa(period)``.
 
     Returns
     -------
     dict of str to IntensityMeasure
-        By name, in the order of a table.
+        Measures by name, in the order of tables.
 
     Examples
     --------
@@ -444,12 +442,12 @@ def measure(name: Any) -> IntensityMeasure:
     Parameters
     ----------
     name : str or IntensityMeasure
-        A key of `measures`, ``sa(period)`` or ``sa(period,damping)`` [s, -], or a measure of one's own.
+        A key of `measures`, ``sa(period)`` or ``sa(period,damping)`` [s, -], or another measure.
 
     Returns
     -------
     IntensityMeasure
-        The measure.
+        Intensity measure.
 
     Examples
     --------
@@ -459,48 +457,48 @@ def measure(name: Any) -> IntensityMeasure:
     if isinstance(name, IntensityMeasure):
         return name
     if isinstance(name, str):
-        if (known := checks.spelling(name, MEASURES)) in MEASURES:
-            return MEASURES[known]
+        if (spelled := checks.spelling(name, MEASURES)) in MEASURES:
+            return MEASURES[spelled]
         if spectral := spectral_period(name):
             return spectral_measure(*spectral)
-    there, why = ", ".join(MEASURES), checks.nearest(name, MEASURES)
-    raise InvalidValueError(parameter="measure", allowed=f"one of {there}, or sa(period in s)", value=name, hint=why)
+    names, hint = ", ".join(MEASURES), checks.nearest(name, MEASURES)
+    raise InvalidValueError(parameter="measure", allowed=f"one of {names}, or sa(period in s)", value=name, hint=hint)
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:
-    """Return period [s] and damping ratio [-] of a spectral measure by its name; None of another kind."""
-    found = _SPECTRAL.fullmatch(name)
-    return None if found is None else (float(found[1]), float(found[2] or 0.05))
+    """Return period [s] and damping ratio [-] of a spectral measure by its name; None for other measures."""
+    match = _SPECTRAL.fullmatch(name)
+    return None if match is None else (float(match[1]), float(match[2] or 0.05))
 
 
 def exchange_unit(name: str, unit: str) -> tuple[str, float]:
-    """Return the unit in which other programs read a measure, and one SI unit in that unit.
+    """Return the unit of a measure for other programs, and one SI unit in that unit.
 
-    The unit of OpenQuake where OpenQuake has the measure; g for other accelerations; else the unit of the measure.
+    This is the unit of OpenQuake for its measures, g for other accelerations, else the unit of the measure.
 
     >>> exchange_unit("pgv", "m/s")
     ('cm/s', 100.0)
     """
     period = spectral_period(name)
-    known = MEASURES.get(name) if period is None else spectral_measure(*period)
-    if known is not None and known.openquake is not None:
-        return known.openquake[1:]
+    item = MEASURES.get(name) if period is None else spectral_measure(*period)
+    if item is not None and item.openquake is not None:
+        return item.openquake[1:]
     return ("g", 1.0 / g) if unit == "m/s2" else (unit, 1.0)
 
 
 def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6, its peak exact."""
+    """Return a motion as a record; the measures of a sampled pulse have errors below 1e-6, its peak is exact."""
     if not isinstance(motion, Pulse):
         return motion
     count = max(200, int(np.ceil(SAMPLES_PER_PERIOD * motion.fastest * motion.duration / (2.0 * np.pi))))
-    made = motion.sampled(motion.duration / count)
-    samples = np.array(made.acceleration)
+    record = motion.sampled(motion.duration / count)
+    samples = np.array(record.acceleration)
     top = int(np.argmax(np.abs(samples)))
     samples[top] = np.copysign(motion.peak, samples[top])
-    return made.changed("the largest sample raised to the peak of the pulse", acceleration=samples)
+    return record.changed("the largest sample set to the peak of the pulse", acceleration=samples)
 
 
-_NAMED = (
+_ITEMS = (
     IntensityMeasure(
         "pga", "peak ground acceleration", "m/s2", 1, lambda m, _: peak_ground_acceleration(m),
         symbol="PGA", openquake=("PGA", "g", 1.0 / g), uplift=lambda b: b.threshold,
@@ -514,12 +512,12 @@ _NAMED = (
         symbol="PGD", openquake=("PGD", "cm", 100.0),
     ),
     IntensityMeasure(
-        "pga/(g tan alpha)", "peak ground acceleration over the one that lifts", "-", 1,
+        "pga/(g tan alpha)", "peak ground acceleration over uplift acceleration", "-", 1,
         lambda m, b: peak_ground_acceleration(m) / b.threshold,  # Eq. 145
         symbol="PGA/(g tan alpha)", needs_body=True, uplift=lambda _: 1.0,
     ),
     IntensityMeasure(
-        "p pgv/(g tan alpha)", "peak ground velocity that knows how large the body is", "-", 1,
+        "p pgv/(g tan alpha)", "peak ground velocity normalised by the body", "-", 1,
         lambda m, b: b.frequency_parameter * peak_ground_velocity(m) / b.threshold,  # Eq. 146
         symbol="p PGV/(g tan alpha)", needs_body=True,
     ),
@@ -549,5 +547,5 @@ _NAMED = (
     ),
     IntensityMeasure("housner", "Housner intensity", "m", 1, lambda m, _: housner_intensity(m), symbol="Housner"),
 )  # fmt: skip
-MEASURES = {one.name: one for one in _NAMED}
-"""Every measure that has a name, in the order of a table; a new one is one more entry."""
+MEASURES = {item.name: item for item in _ITEMS}
+"""Measures with fixed names, in the order of tables."""

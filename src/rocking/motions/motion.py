@@ -1,4 +1,4 @@
-"""A ground motion: accelerations at equal steps, straight lines between them."""
+"""A ground motion: accelerations at equal time steps, with straight lines between them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,37 +13,37 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Range
 from rocking.motions.segments import Segments
 
-LARGEST_ACCELERATION = 1e6  # no ground moves harder than this [m/s2]: a larger number is a wrong unit or a damaged file
+LARGEST_ACCELERATION = 1e6  # [m/s2]: larger samples come from a wrong unit or a damaged file
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3  # allowed range of the time step [s]
 
 
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
-    """Acceleration of the ground, horizontal and if known vertical.
+    """Horizontal and optional vertical acceleration of the ground.
 
-    The first sample is at time zero; between samples the acceleration is a straight line, before the first and after
-    the last one it is zero.
+    The first sample is at time zero. The acceleration is linear between samples, and zero before the first and after
+    the last one.
 
     Parameters
     ----------
     acceleration : array_like
         Horizontal acceleration, positive to the right [m/s2].
     time_step : float
-        Step between samples [s].
+        Time step between samples [s].
     vertical : array_like, optional
         Vertical acceleration, positive upwards, of the same length [m/s2].
     name : str
-        What to call it in titles and tables.
+        Name for titles and tables.
     metadata : mapping of str to str
-        What the file or the generator said about it.
+        Facts from the file or the generator.
     provenance : tuple of str
-        Where it comes from and what was done to it since, one sentence each.
+        Source and processing steps, one sentence each.
 
     Raises
     ------
     InvalidValueError
-        If a sample is not finite or beyond 1e6 m/s2, there are fewer than two, the step is not above zero, or the
-        vertical part has another length; or if the name, metadata or provenance are of another kind.
+        If a sample is not finite or exceeds 1e6 m/s2, there are fewer than two samples, or the time step is not
+        above zero; if the vertical part has another length; if name, metadata or provenance have a wrong type.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class GroundMotion:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What can be computed with but was hardly meant, in words."""
+        """Warnings about implausible accelerations or time steps."""
         return plausibility.of_acceleration(max(self.peak, self.peak_vertical)) + plausibility.of_time_step(
             self.time_step
         )
@@ -92,11 +92,11 @@ class GroundMotion:
         return f"<GroundMotion {self.name!r}: {size}{both}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        """State that can be pickled: a mapping proxy cannot."""
+        """Return the state for pickle, without the mapping proxy."""
         return {**self.__dict__, "metadata": dict(self.metadata)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Restore, with the metadata read-only again."""
+        """Restore the state, with read-only metadata."""
         self.__dict__.update(state)
         object.__setattr__(self, "metadata", MappingProxyType(state["metadata"]))
         self.acceleration.setflags(write=False)
@@ -120,27 +120,27 @@ class GroundMotion:
 
     @property
     def peak_vertical(self) -> float:
-        """Peak of the vertical acceleration, zero if there is none [m/s2]."""
+        """Peak vertical acceleration, zero without a vertical part [m/s2]."""
         return 0.0 if self.vertical is None else float(np.abs(self.vertical).max())
 
     def segments(self) -> Segments:
-        """Return the motion as the polynomials that it is made of: one straight line a step.
+        """Return the motion as polynomials: one straight line per step.
 
         Returns
         -------
         Segments
-            Of degree 1.
+            Segments of degree 1.
 
         Raises
         ------
         InvalidValueError
-            If it is a vertical component of a record, or may be one.
+            If the motion is, or may be, the vertical component of a record.
         """
         checked_level(self)
         return self.upright_segments()
 
     def upright_segments(self) -> Segments:
-        """Return what `segments` returns, also for a vertical component, which is a motion along z.
+        """Return the segments, also for a vertical component: a motion along z.
 
         Returns
         -------
@@ -149,22 +149,22 @@ class GroundMotion:
         """
         return Segments.between_samples(self.time_step, self.acceleration, self.vertical)
 
-    def changed(self, what: str, **fields: Any) -> "GroundMotion":
+    def changed(self, action: str, **fields: Any) -> "GroundMotion":
         """Return a copy with some fields replaced and a line added to its provenance.
 
         Parameters
         ----------
-        what : str
-            What was done, as a sentence.
+        action : str
+            Processing step, as a sentence.
         **fields
-            New values of the constructor's parameters.
+            New values of constructor parameters.
 
         Returns
         -------
         GroundMotion
-            The new motion.
+            Changed motion.
         """
-        return replace(self, provenance=(*self.provenance, what), **fields)
+        return replace(self, provenance=(*self.provenance, action), **fields)
 
     def scaled(self, factor: float) -> "GroundMotion":
         """Return the motion with both components multiplied by a factor.
@@ -172,12 +172,12 @@ class GroundMotion:
         Parameters
         ----------
         factor : float
-            May be negative, which turns the motion round [-].
+            Scale factor; a negative one reverses the polarity [-].
 
         Returns
         -------
         GroundMotion
-            The scaled motion.
+            Scaled motion.
 
         Examples
         --------
@@ -186,70 +186,70 @@ class GroundMotion:
         """
         factor = checks.number("factor", factor)
         vertical = None if self.vertical is None else self.vertical * factor
-        what = f"multiplied by {factor!r}"
-        return self.changed(what, acceleration=self.acceleration * factor, vertical=vertical)
+        action = f"multiplied by {factor!r}"
+        return self.changed(action, acceleration=self.acceleration * factor, vertical=vertical)
 
 
-def checked_motion(given: Any, name: str = "motion") -> GroundMotion:
-    """Return a motion if it is a record; all functions of records ask this first.
+def checked_motion(motion: Any, name: str = "motion") -> GroundMotion:
+    """Return a motion if it is a record, else raise an error.
 
     >>> checked_motion(GroundMotion([0.0, 1.0], 0.1)).peak
     1.0
     """
-    if not isinstance(given, GroundMotion):
+    if not isinstance(motion, GroundMotion):
         raise InvalidValueError(
-            parameter=name, allowed="a GroundMotion", value=given, hint="a pulse becomes one by .sampled(time_step)"
+            parameter=name, allowed="a GroundMotion", value=motion, hint="convert a pulse with .sampled(time_step)"
         )
-    return given
+    return motion
 
 
 ORIENTATION = "orientation"
-"""Key of the metadata with the direction that a record states: up, down, unclear, or an azimuth [degree]."""
+"""Metadata key of the direction of a record: up, down, unclear, or an azimuth [degree]."""
 
 _UPRIGHT = {"up": "is vertical", "down": "is vertical", "unclear": "may be vertical or inclined"}
 
 
-def checked_level(given: Any) -> Any:
-    """Return a motion unless it is a vertical component of a record, or may be one.
+def checked_level(motion: Any) -> Any:
+    """Return a motion unless it is, or may be, the vertical component of a record.
 
     >>> checked_level(GroundMotion([0.0, 1.0], 0.1, metadata={"component": "UP", "orientation": "up"}))
     Traceback (most recent call last):
     rocking.errors.InvalidValueError: component UP of 'ground motion' is vertical and cannot be a horizontal motion; ...
     """
-    metadata = given.metadata if isinstance(given, GroundMotion) else {}
-    if (what := _UPRIGHT.get(metadata.get(ORIENTATION, ""))) is not None:
+    metadata = motion.metadata if isinstance(motion, GroundMotion) else {}
+    if (reason := _UPRIGHT.get(metadata.get(ORIENTATION, ""))) is not None:
         raise InvalidValueError(
             "component {component} of {file!r:.100} {orientation} and cannot be a horizontal motion",
-            component=metadata.get("component", ""), file=metadata.get("file", given.name), orientation=what,
-            hint="give it along z, and a horizontal component along x",
+            component=metadata.get("component", ""), file=metadata.get("file", motion.name), orientation=reason,
+            hint="use it along z, and a horizontal component along x",
         )  # fmt: skip
-    return given
+    return motion
 
 
 def _samples(name: str, values: Any) -> FloatArray:
-    given = np.array(checks.real_array(name, values, "m/s2"), dtype=np.float64)
-    if given.ndim != 1 or given.size < 2:
+    samples = np.array(checks.real_array(name, values, "m/s2"), dtype=np.float64)
+    if samples.ndim != 1 or samples.size < 2:
         raise InvalidValueError(
             "{parameter} must be {allowed}, got shape {shape}", parameter=name,
-            allowed="a row of at least 2 samples [m/s2]", shape=given.shape,
+            allowed="a row of at least 2 samples [m/s2]", shape=samples.shape,
         )  # fmt: skip
-    bad = np.flatnonzero(~(np.abs(given) <= LARGEST_ACCELERATION))
+    bad = np.flatnonzero(~(np.abs(samples) <= LARGEST_ACCELERATION))
     if bad.size:
         raise InvalidValueError(
             "{parameter} must be finite and within {limit:g} m/s2, got {value} at index {index}", parameter=name,
-            allowed=Range(-LARGEST_ACCELERATION, LARGEST_ACCELERATION, "m/s2"), value=float(given[bad[0]]),
-            limit=LARGEST_ACCELERATION, index=int(bad[0]), hint="wrong unit or damaged?",
+            allowed=Range(-LARGEST_ACCELERATION, LARGEST_ACCELERATION, "m/s2"), value=float(samples[bad[0]]),
+            limit=LARGEST_ACCELERATION, index=int(bad[0]), hint="check the unit and the file",
         )  # fmt: skip
-    given.setflags(write=False)
-    return given
+    samples.setflags(write=False)
+    return samples
 
 
-def _metadata(given: Any) -> Mapping[str, str]:
-    checks.of_kind("metadata", given, Mapping, "a mapping of strings to strings")
-    return MappingProxyType({str(k): str(v) for k, v in given.items()})
+def _metadata(metadata: Any) -> Mapping[str, str]:
+    checks.of_kind("metadata", metadata, Mapping, "a mapping of strings to strings")
+    return MappingProxyType({str(k): str(v) for k, v in metadata.items()})
 
 
-def _provenance(given: Any) -> tuple[str, ...]:
-    if isinstance(given, str) or not isinstance(given, Sequence) or not all(isinstance(line, str) for line in given):
-        raise InvalidValueError(parameter="provenance", allowed="a sequence of strings, one sentence each", value=given)
-    return tuple(given)
+def _provenance(lines: Any) -> tuple[str, ...]:
+    if isinstance(lines, str) or not isinstance(lines, Sequence) or not all(isinstance(line, str) for line in lines):
+        raise InvalidValueError(parameter="provenance", allowed="a sequence of strings, one sentence each", value=lines)
+    return tuple(lines)

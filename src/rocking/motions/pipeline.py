@@ -1,4 +1,4 @@
-"""One chain of steps that a record goes through, in words: the same in Python, job files and on the command line."""
+"""Chains of processing steps as text, the same in Python, input files and on the command line."""
 
 import inspect
 from collections.abc import Callable, Sequence
@@ -14,19 +14,19 @@ from rocking.motions.intensity import MEASURES, measure
 from rocking.motions.motion import GroundMotion, checked_motion
 
 Steps = list[tuple[str, dict[str, Any]]]
-LONGEST_PADDING = 3600.0  # [s] twelve times a record of 300 s, which is long: more is a wrong unit, and hours of work
+LONGEST_PADDING = 3600.0  # [s] 12 times a long record (300 s); larger values come from a wrong unit
 
 
 def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
-    """Return the motion multiplied by a factor, or to a measure.
+    """Return the motion scaled by a factor, or to an intensity measure.
 
     Parameters
     ----------
     factor : float
-        On all components [-].
+        Scale factor of all components [-].
     """
     if (factor is not None) + len(level) != 1:
-        raise InvalidValueError("scale takes factor=2, or one measure such as pga=3 [m/s2]")
+        raise InvalidValueError("scale accepts factor=2, or one measure such as pga=3 [m/s2]")
     if factor is not None:
         return motion.scaled(factor)
     ((name, target),) = level.items()
@@ -34,14 +34,14 @@ def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -
 
 
 def _without_response(motion: GroundMotion, stations: str, low: float = 0.02, high: float = 40.0) -> GroundMotion:
-    """Return accelerations from counts: the response of the instrument is removed.
+    """Return accelerations from counts, without the instrument response.
 
     Parameters
     ----------
     stations : str
-        StationXML file that describes the instrument, a folder of such files, or several with | between.
+        StationXML file of the instrument, a folder of such files, or several files separated by |.
     low, high : float
-        Frequencies between which that is done [Hz].
+        Frequency range of the correction [Hz].
     """
     from rocking.motions.formats.instrument import without_response
 
@@ -49,14 +49,14 @@ def _without_response(motion: GroundMotion, stations: str, low: float = 0.02, hi
 
 
 def _rotated(motion: GroundMotion, angle: float) -> GroundMotion:
-    """Return both horizontal components turned.
+    """Return both horizontal components along rotated axes.
 
     Parameters
     ----------
     angle : float
-        From x towards y [degree].
+        Rotation angle, from x towards y [degree].
     """
-    raise InvalidValueError("rotate is for two horizontal components; {motion!r:.60} is one", motion=motion.name)
+    raise InvalidValueError("rotate requires two horizontal components; {motion!r:.60} is one", motion=motion.name)
 
 
 STEPS: dict[str, Callable[..., GroundMotion]] = {
@@ -73,33 +73,34 @@ STEPS: dict[str, Callable[..., GroundMotion]] = {
     "floor": on_floor,
     "scale": _scaled,
 }
-"""What a step does, by its word; keys are the names of its parameters."""
+"""Functions of the processing steps by name; keys are the names of their parameters."""
 
 
 def processed(motion: Any, chain: str | Sequence[str]) -> Any:
-    """Return a motion that went through a chain of steps, each of which its provenance names.
+    """Return a processed motion; its provenance contains each step.
 
     Parameters
     ----------
     motion : GroundMotion or Components
-        The motion. Components go through every step together: they are cut at the same times, and scaled by the
-        factor of the stronger horizontal one.
+        Motion. All components are cut at the same times, and scaled by the factor of the horizontal component with
+        the largest peak.
     chain : str or sequence of str
-        Steps in their order, ``name:key=value,key=value``, with semicolons between: ``mean; bandpass:low=0.1,high=25;
-        taper``. There are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor,
-        scale; keys are the parameters of the functions of `rocking.motions`; ``scale:factor=2`` or ``scale:pga=3``
-        [m/s2] or ``scale:pga=0.3g``, ``rotate:angle=30`` [degree], ``floor:number=3,storeys=5,period=0.5`` [s],
-        ``response:stations=FILE.xml,low=0.02,high=40`` [Hz]. ``pad`` adds at most 3600 s at each end.
+        Ordered steps ``name:key=value,key=value``, separated by semicolons: ``mean; bandpass:low=0.1,high=25;
+        taper``. Steps are response, resample, mean, baseline, taper, pad, bandpass, trim, significant, rotate, floor
+        and scale. Keys are the parameters of the functions of `rocking.motions`. Examples: ``scale:factor=2``,
+        ``scale:pga=3`` [m/s2], ``scale:pga=0.3g``, ``rotate:angle=30`` [degree],
+        ``floor:number=3,storeys=5,period=0.5`` [s], ``response:stations=FILE.xml,low=0.02,high=40`` [Hz]. ``pad`` adds
+        at most 3600 s at each end.
 
     Returns
     -------
     GroundMotion or Components
-        Of the same kind.
+        Processed motion of the same type.
 
     Raises
     ------
     InvalidValueError
-        If there is no such step, or a step refuses its keys or the motion.
+        If a step is unknown, or its keys or the motion are invalid.
 
     Examples
     --------
@@ -110,67 +111,73 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
         checked_motion(motion)
     steps = steps_of(chain)
     names = [name for name, _ in steps]
-    for place, (name, keys) in enumerate(steps, 1):
-        which = name if names.count(name) == 1 else f"{place}, {name}"
-        with located(f"step {which}", "step", place):
+    for number, (name, keys) in enumerate(steps, 1):
+        label = name if names.count(name) == 1 else f"{number}, {name}"
+        with located(f"step {label}", "step", number):
             motion = _together(motion, name, keys) if isinstance(motion, Components) else STEPS[name](motion, **keys)
     return motion
 
 
 def _together(motion: Components, name: str, keys: dict[str, Any]) -> Components:
-    """Take all components through a step that must treat them alike."""
+    """Return all components after one step with common times and factors."""
     if name == "rotate" and motion.x is not None and motion.y is not None:
         import math
 
         return Components(*rotated(motion.x, motion.y, math.radians(keys["angle"])), motion.z)
     if name == "significant":
         first, last = processing.significant_bounds(motion.leading, **keys)
-        return motion.each(lambda part: processing.trimmed(part, first, last))
+        return motion.each(lambda component: processing.trimmed(component, first, last))
     if name == "floor":
-        x, y = (None if part is None else on_floor(part, **keys) for part in (motion.x, motion.y))
+        x, y = (None if component is None else on_floor(component, **keys) for component in (motion.x, motion.y))
         return Components(x, y, motion.z)
     if name == "scale" and "factor" not in keys:
         before, after = motion.leading.peak, _scaled(motion.leading, **keys).peak
-        return motion.each(lambda part: part.scaled(after / before))
-    return motion.each(lambda part: STEPS[name](part, **keys))
+        return motion.each(lambda component: component.scaled(after / before))
+    return motion.each(lambda component: STEPS[name](component, **keys))
 
 
 def steps_of(chain: str | Sequence[str]) -> Steps:
-    """Return the steps of a chain with their keys, checked.
+    """Return the validated steps of a chain with their keys.
 
     >>> steps_of("mean; bandpass:low=0.1,high=25")
     [('mean', {}), ('bandpass', {'low': 0.1, 'high': 25.0})]
     """
-    parts = [part.strip() for text in ([chain] if isinstance(chain, str) else chain) for part in str(text).split(";")]
+    texts = [text.strip() for text in ([chain] if isinstance(chain, str) else chain) for text in str(text).split(";")]
     steps = []
-    for place, part in enumerate(filter(None, parts), 1):
-        name, _, tail = part.partition(":")
-        with located(f"step {name.strip()}", "step", place):
+    for number, text in enumerate(filter(None, texts), 1):
+        name, _, tail = text.partition(":")
+        with located(f"step {name.strip()}", "step", number):
             steps.append(_step(name, tail))
     return steps
 
 
 def keys_of(step: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the keys that a step takes beside the motion; level: any measure that grows with it."""
-    return {key: one for key, one in inspect.signature(step).parameters.items() if key not in {"motion", "body"}}
+    """Return the parameters of a step without the motion; `level` means any measure of nonzero power."""
+    return {
+        key: parameter for key, parameter in inspect.signature(step).parameters.items() if key not in {"motion", "body"}
+    }
 
 
 def _step(name: str, tail: str) -> tuple[str, dict[str, Any]]:
     name = checks.one_of("step", name.strip(), STEPS)
-    known = keys_of(STEPS[name])
-    open_ended = known.pop("level", None) is not None
+    parameters = keys_of(STEPS[name])
+    open_ended = parameters.pop("level", None) is not None
     keys: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
-        key, equals, value = (part.strip() for part in item.partition("="))
-        if not equals or key in keys or not (key in known or (open_ended and key in MEASURES)):
-            raise InvalidValueError("it takes {keys}, got {item!r:.60}", keys=", ".join(known) or "no keys", item=item)
-        keys[key] = _value(key, value, known.get(key))
-    if missing := [key for key, one in known.items() if one.default is one.empty and key not in keys]:
-        raise InvalidValueError("it needs {keys}", keys=", ".join(missing))
-    for key in keys.keys() - known.keys():
+        key, equals, value = (text.strip() for text in item.partition("="))
+        if not equals or key in keys or not (key in parameters or (open_ended and key in MEASURES)):
+            raise InvalidValueError(
+                "allowed keys are {keys}, got {item!r:.60}", keys=", ".join(parameters) or "no keys", item=item
+            )
+        keys[key] = _value(key, value, parameters.get(key))
+    if missing := [
+        key for key, parameter in parameters.items() if parameter.default is parameter.empty and key not in keys
+    ]:
+        raise InvalidValueError("required keys are missing: {keys}", keys=", ".join(missing))
+    for key in keys.keys() - parameters.keys():
         measure(key).check_grows()
     for key, value in keys.items() if name == "pad" else ():
-        checks.within(key, value, 0.0, LONGEST_PADDING, unit="s", hint="milliseconds, or samples?")
+        checks.within(key, value, 0.0, LONGEST_PADDING, unit="s", hint="enter seconds")
     return name, keys
 
 

@@ -1,4 +1,4 @@
-"""Records corrected, resampled, cut and scaled, each step with a line of provenance."""
+"""Processing of records: correction, resampling, trimming and scaling, each with a line of provenance."""
 
 import math
 from dataclasses import replace
@@ -15,8 +15,8 @@ from rocking.motions.integrals import significant_times, velocity_of
 from rocking.motions.intensity import RockingScale
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
-ROUNDING = 1e-6  # a ratio of times this close to a whole number is one
-MOST_SAMPLES = 100_000_000  # no motion has more samples: asking for more is a wrong unit
+ROUNDING = 1e-6  # tolerance of a whole ratio of times
+MOST_SAMPLES = 100_000_000  # larger numbers come from a wrong unit
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
@@ -25,12 +25,12 @@ def demeaned(motion: GroundMotion) -> GroundMotion:
     Parameters
     ----------
     motion : GroundMotion
-        The motion; each component loses its own mean.
+        Motion; each component has its own mean.
 
     Returns
     -------
     GroundMotion
-        The corrected motion.
+        Corrected motion.
 
     Examples
     --------
@@ -38,28 +38,28 @@ def demeaned(motion: GroundMotion) -> GroundMotion:
     [-1.0, 1.0]
     """
     motion = checked_motion(motion)
-    return _each(motion, lambda a: a - a.mean(), "mean acceleration removed")
+    return _each_component(motion, lambda a: a - a.mean(), "mean acceleration removed")
 
 
 def detrended(
     motion: GroundMotion, order: int = 1, fit: Literal["velocity", "acceleration"] = "velocity"
 ) -> GroundMotion:
-    """Return the motion without a polynomial trend, found by least squares.
+    """Return the motion without a polynomial trend from least squares.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; each component loses its own trend.
+        Motion; each component has its own trend.
     order : int
         Order of the polynomial, from 1 to 3 [-].
     fit : {"velocity", "acceleration"}
-        What the polynomial is fitted to. A trend of the velocity starts from rest, and its derivative is taken off
-        the acceleration; a trend of the acceleration has a constant term.
+        Quantity for the fit. A velocity trend starts from rest, and its derivative is subtracted from the
+        acceleration. An acceleration trend has a constant term.
 
     Returns
     -------
     GroundMotion
-        The corrected motion.
+        Corrected motion.
 
     Examples
     --------
@@ -73,24 +73,24 @@ def detrended(
             "a trend of order {order} needs at least {fewest} samples, got {count}", order=order, fewest=order + 2,
             count=len(motion),
         )  # fmt: skip
-    what = f"polynomial of order {order} fitted to the {kind} removed"
-    return _each(motion, lambda a: a - _trend(a, motion.time_step, order, kind), what)
+    action = f"polynomial of order {order} fitted to the {kind} removed"
+    return _each_component(motion, lambda a: a - _trend(a, motion.time_step, order, kind), action)
 
 
 def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
-    """Return the motion with both ends brought to zero by half a cosine.
+    """Return the motion with a half-cosine taper at both ends.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; both components are tapered.
+        Motion; both components are tapered.
     fraction : float
-        Share of the duration that each taper takes, up to 0.5 [-].
+        Length of each taper / duration, up to 0.5 [-].
 
     Returns
     -------
     GroundMotion
-        The tapered motion; first and last sample are zero.
+        Tapered motion; the first and last samples are zero.
 
     Examples
     --------
@@ -98,11 +98,11 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     [0.0, 0.5, 1.0, 0.5, 0.0]
     """
     motion = checked_motion(motion)
-    fraction = checks.within("fraction", fraction, 0.0, 0.5, open_low=True, hint="share of the duration at each end")
-    place = np.linspace(0.0, 1.0, len(motion))
-    edge = np.minimum(np.minimum(place, 1.0 - place) / fraction, 1.0)
+    fraction = checks.within("fraction", fraction, 0.0, 0.5, open_low=True, hint="fraction of the duration at each end")
+    position = np.linspace(0.0, 1.0, len(motion))
+    edge = np.minimum(np.minimum(position, 1.0 - position) / fraction, 1.0)
     window = 0.5 * (1.0 - cosine_sine(np.pi * edge)[0])  # Eq. 154
-    return _each(motion, lambda a: a * window, f"cosine taper over {fraction:g} of each end")
+    return _each_component(motion, lambda a: a * window, f"cosine taper over {fraction:g} of each end")
 
 
 def bandpassed(
@@ -110,25 +110,25 @@ def bandpassed(
 ) -> GroundMotion:
     """Return the motion filtered by a Butterworth band pass, forwards and backwards.
 
-    Two passes leave no phase shift, and square the response: at both corners it is 1/2. The motion is zero outside
-    the record and is filtered as such, with 1.5 `order` / `low` of zeros at both ends (Converse & Brady 1992).
+    Two passes cancel the phase shift and square the response: at both corners the response is 1/2. Zero padding of
+    1.5 `order` / `low` is added at both ends before the filter (Converse & Brady 1992).
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; both components are filtered.
+        Motion; both components are filtered.
     low, high : float
-        Corner frequencies, the second one below half the sampling rate [Hz].
+        Corner frequencies; `high` is below half the sampling rate [Hz].
     order : int
         Order of one pass, from 1 to 10 [-].
     pads : {"cut", "keep"}
-        What becomes of what the filter puts where the zeros were: with it, velocity and displacement end at rest;
-        without it, the motion keeps its length.
+        Treatment of the filtered padding. With "keep", velocity and displacement end at rest; with "cut", the length
+        of the motion is unchanged.
 
     Returns
     -------
     GroundMotion
-        The filtered motion.
+        Filtered motion.
     """
     motion = checked_motion(motion)
     from scipy.signal import butter, sosfiltfilt
@@ -147,35 +147,35 @@ def bandpassed(
         result: Any = sosfiltfilt(sections, np.pad(samples, pad), padtype=None)
         return np.asarray(result if keep else result[pad:-pad], dtype=np.float64)
 
-    what = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
-    what += f", with pads of {pad * motion.time_step:g} s kept at both ends" if keep else ""
-    return _moved(_each(motion, filtered, what), -pad * motion.time_step if keep else 0.0)
+    action = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
+    action += f", with pads of {pad * motion.time_step:g} s kept at both ends" if keep else ""
+    return _moved(_each_component(motion, filtered, action), -pad * motion.time_step if keep else 0.0)
 
 
 def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     """Return the motion at another time step.
 
-    A finer step, of any ratio, takes the straight lines between the samples: every new sample is exact, and if the
-    ratio is whole the motion drives bodies as before; its Arias intensity falls to that of the lines. A coarser step
-    must be a whole multiple; then a linear-phase low pass (Hamming window, 10 taps a multiple on either side, no
-    shift) removes first what the new step cannot carry.
+    A finer step of any ratio interpolates linearly between the samples: every new sample is exact. If the ratio is
+    whole, simulations do not change; the Arias intensity decreases to that of the straight lines. A coarser step must
+    be a whole multiple. A linear-phase low pass (Hamming window, 10 taps per multiple on each side, no shift) then
+    first removes the frequencies above the new Nyquist frequency.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; both components are resampled.
+        Motion; both components are resampled.
     time_step : float
-        New step [s].
+        New time step [s].
 
     Returns
     -------
     GroundMotion
-        The resampled motion. If the last sample falls between two steps, it ends with a zero one step later.
+        Resampled motion. If the last sample is between two new steps, a zero follows one step later.
 
     Raises
     ------
     InvalidValueError
-        If the step is coarser and not a whole multiple, or leaves fewer than two samples or far too many.
+        If the time step is coarser and not a whole multiple, or leaves fewer than two or too many samples.
 
     Examples
     --------
@@ -192,44 +192,44 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
         if count > MOST_SAMPLES:
             raise InvalidValueError(
                 "{parameter} must leave at most {limit:g} samples, got {count:g}", parameter="time_step",
-                limit=MOST_SAMPLES, count=count, hint="wrong unit?",
+                limit=MOST_SAMPLES, count=count, hint="check the unit",
             )  # fmt: skip
-        place = np.arange(count) * ratio
-        # rounding must not push the last new sample beyond the last old one
+        position = np.arange(count) * ratio
+        # rounding must not move the last new sample past the last old one
         last = len(motion) - 1
-        place[np.abs(place - last) <= ROUNDING] = last
+        position[np.abs(position - last) <= ROUNDING] = last
         grid = np.arange(len(motion), dtype=np.float64)
-        what = f"interpolated linearly from {motion.time_step:g} s to {new:g} s"
-        return _each(motion, lambda a: np.interp(place, grid, a, right=0.0), what, new)
+        action = f"interpolated linearly from {motion.time_step:g} s to {new:g} s"
+        return _each_component(motion, lambda a: np.interp(position, grid, a, right=0.0), action, new)
     factor = round(ratio)
     if abs(ratio - factor) > ROUNDING * factor:
         raise InvalidValueError(
-            "{parameter} must be a whole multiple of {step:g} s if above, got {value} s, {ratio:g} times",
+            "{parameter} above {step:g} s must be a whole multiple of it, got {value} s, {ratio:g} times",
             parameter="time_step", value=new, step=motion.time_step, ratio=ratio,
         )  # fmt: skip
     if factor > len(motion) - 1:
         raise InvalidValueError(
-            "{parameter} must leave 2 samples, at most {longest:g} s, got {value} s", parameter="time_step", value=new,
-            longest=motion.duration,
+            "{parameter} must be at most {longest:g} s, so that 2 samples remain, got {value} s",
+            parameter="time_step", value=new, longest=motion.duration,
         )  # fmt: skip
-    what = f"low-passed (linear phase) and coarsened from {motion.time_step:g} s to {new:g} s"
-    return _each(motion, lambda a: _coarse(a, factor), what, new)
+    action = f"low-passed (linear phase) and coarsened from {motion.time_step:g} s to {new:g} s"
+    return _each_component(motion, lambda a: _coarse(a, factor), action, new)
 
 
 def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
-    """Return the part of the motion between two times.
+    """Return the motion between two times.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its clock starts again at zero.
+        Motion; the time of the result starts at zero.
     start, end : float
-        Times within the record; these go outwards to the next sample [s].
+        Times within the record, rounded outwards to samples [s].
 
     Returns
     -------
     GroundMotion
-        The part.
+        Trimmed motion.
 
     Examples
     --------
@@ -245,28 +245,28 @@ def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
     first = math.floor(start / motion.time_step + ROUNDING)
     last = min(_whole(end / motion.time_step), len(motion) - 1)
     first = min(first, last - 1)
-    what = f"trimmed to {first * motion.time_step:g} to {last * motion.time_step:g} s"
-    return _moved(_each(motion, lambda a: a[first : last + 1], what), first * motion.time_step)
+    action = f"trimmed to {first * motion.time_step:g} to {last * motion.time_step:g} s"
+    return _moved(_each_component(motion, lambda a: a[first : last + 1], action), first * motion.time_step)
 
 
 def trimmed_to_significant(
     motion: GroundMotion, start: float = 5.0, end: float = 95.0, padding: float = 0.0
 ) -> GroundMotion:
-    """Return the part of the motion that holds most of its Arias intensity.
+    """Return the motion between two percentages of its Arias intensity.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; its horizontal part gives the times.
     start, end : float
         Percentages of the Arias intensity [%].
     padding : float
-        Time to keep before and after, as far as there is a record [s].
+        Additional time before and after, within the record [s].
 
     Returns
     -------
     GroundMotion
-        The part.
+        Trimmed motion.
     """
     return trimmed(motion, *significant_bounds(motion, start, end, padding))
 
@@ -274,7 +274,7 @@ def trimmed_to_significant(
 def significant_bounds(
     motion: GroundMotion, start: float = 5.0, end: float = 95.0, padding: float = 0.0
 ) -> tuple[float, float]:
-    """Return when the part begins and ends that holds most of the Arias intensity [s]."""
+    """Return the times of two percentages of the Arias intensity, with padding [s]."""
     motion = checked_motion(motion)
     padding = checks.within("padding", padding, 0.0, math.inf, unit="s")
     first, last = significant_times(motion, start, end)
@@ -287,16 +287,16 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     Parameters
     ----------
     motion : GroundMotion
-        The motion. Where it does not start and end at zero, a straight line of one step leads there.
+        Motion; a nonzero first or last sample is connected to zero by a straight line of one step.
     before : float
-        Time to add before, rounded up to whole steps [s].
+        Additional time before, rounded up to whole steps [s].
     after : float, optional
-        Time to add after; as much as before if not given [s].
+        Additional time after; the default is `before` [s].
 
     Returns
     -------
     GroundMotion
-        The longer motion.
+        Padded motion.
 
     Examples
     --------
@@ -309,36 +309,36 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     if sum(times) / motion.time_step > MOST_SAMPLES:
         raise InvalidValueError(
             "padding must add at most {limit:g} samples, got {time:g} s", limit=MOST_SAMPLES, time=sum(times),
-            hint="wrong unit?",
+            hint="check the unit",
         )  # fmt: skip
     counts = (_whole(times[0] / motion.time_step), _whole(times[1] / motion.time_step))
-    what = f"padded with zeros, {counts[0]} samples before and {counts[1]} after"
-    return _moved(_each(motion, lambda a: np.pad(a, counts), what), -counts[0] * motion.time_step)
+    action = f"padded with zeros, {counts[0]} samples before and {counts[1]} after"
+    return _moved(_each_component(motion, lambda a: np.pad(a, counts), action), -counts[0] * motion.time_step)
 
 
 def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingScale | None = None) -> GroundMotion:
-    """Return the motion scaled to a measure of its intensity.
+    """Return the motion scaled to an intensity measure.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; both components are multiplied by the factor of the horizontal one.
+        Motion; both components are multiplied by the factor of the horizontal one.
     measure : str or IntensityMeasure
-        A name of `measures`, ``sa(period)``, or a measure of one's own; one that grows with the motion.
+        A name of `measures`, ``sa(period)``, or another measure; its power must not be zero.
     target : float
-        Value that it shall have [unit of the measure].
+        Target value [unit of the measure].
     body : RockingScale, optional
-        What of a body counts, for measures that need one.
+        Quantities of a body, for measures that require one.
 
     Returns
     -------
     GroundMotion
-        The scaled motion.
+        Scaled motion.
 
     Raises
     ------
     InvalidValueError
-        If there is no such measure, no factor changes it, it needs a body, or the motion has none of it.
+        If the measure is unknown, has power zero or requires a body, or if its value of the motion is zero.
 
     Examples
     --------
@@ -346,23 +346,23 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     >>> round(arias_intensity(scaled_to(GroundMotion([0.0, 1.0, -2.0], 0.1), "arias", 1.5)), 12)
     1.5
     """
-    one = intensity.measure(measure)
-    one.check_grows()
-    now, name = one.of(motion, body), one.symbol or one.name
-    target = checks.positive("target", target, one.unit)
-    if not now > 0.0:
+    item = intensity.measure(measure)
+    item.check_grows()
+    current, name = item.of(motion, body), item.symbol or item.name
+    target = checks.positive("target", target, item.unit)
+    if not current > 0.0:
         raise InvalidValueError(
             "{parameter} must have {measure} > 0 {unit} to be scaled, got {peak:g}", parameter="motion", measure=name,
-            unit=one.unit, peak=now, hint="zero throughout?",
+            unit=item.unit, peak=current, hint="check for a record of zeros",
         )  # fmt: skip
-    factor = checks.number("factor", (target / now) ** (1.0 / one.power))
+    factor = checks.number("factor", (target / current) ** (1.0 / item.power))
     vertical = None if motion.vertical is None else motion.vertical * factor
-    what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"
-    return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
+    action = f"multiplied by {factor!r} so that {name} is {target:g} {item.unit}"
+    return motion.changed(action, acceleration=motion.acceleration * factor, vertical=vertical)
 
 
 def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> FloatArray:
-    """Fit by polynomials that are orthogonal over the samples, from Stieltjes' recurrence: no matrix is solved."""
+    """Return the trend from polynomials orthogonal over the samples (Stieltjes' recurrence, no matrix)."""
     x, duration = np.linspace(0.0, 1.0, samples.size), (samples.size - 1) * time_step
     velocity = fit == "velocity"
     weight, values = (x, velocity_of(samples, time_step)) if velocity else (np.ones_like(x), samples)
@@ -385,13 +385,13 @@ def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> Float
 
 
 def begins_at(motion: GroundMotion) -> float:
-    """Return when a motion begins on the clock of the record that it was cut from or padded [s]."""
+    """Return the start time of a trimmed or padded motion in the original record [s]."""
     return float(motion.metadata.get("begins at", "0 s").removesuffix(" s"))
 
 
 def _moved(motion: GroundMotion, by: float) -> GroundMotion:
-    told = {**motion.metadata, "begins at": f"{begins_at(motion) + by!r} s"}
-    return motion if by == 0.0 else replace(motion, metadata=told)
+    metadata = {**motion.metadata, "begins at": f"{begins_at(motion) + by!r} s"}
+    return motion if by == 0.0 else replace(motion, metadata=metadata)
 
 
 def _whole(ratio: float) -> int:
@@ -405,7 +405,7 @@ def _coarse(samples: FloatArray, factor: int) -> FloatArray:
     return np.asarray(result, dtype=np.float64)
 
 
-def _each(motion: GroundMotion, change: Any, what: str, time_step: float | None = None) -> GroundMotion:
+def _each_component(motion: GroundMotion, change: Any, action: str, time_step: float | None = None) -> GroundMotion:
     vertical = None if motion.vertical is None else change(motion.vertical)
     step = motion.time_step if time_step is None else time_step
-    return motion.changed(what, acceleration=change(motion.acceleration), vertical=vertical, time_step=step)
+    return motion.changed(action, acceleration=change(motion.acceleration), vertical=vertical, time_step=step)

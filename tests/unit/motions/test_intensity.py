@@ -224,7 +224,7 @@ REST = GroundMotion([0.0, 0.0], 0.1)
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: significant_duration(REST), "zero throughout"),
+        (lambda: significant_duration(REST), "record of zeros"),
         (lambda: significant_duration(ZIGZAG, 95.0, 5.0), "end must be"),
         (lambda: normalised_acceleration(ZIGZAG, 0.5 * math.pi), "slenderness_angle"),
         (lambda: normalised_velocity(ZIGZAG, 0.2, math.nan), "frequency_parameter"),

@@ -21,7 +21,7 @@ def motion_of(samples: Any, step: Any = 0.5, **more: Any) -> GroundMotion:
 @pytest.mark.parametrize(
     ("samples", "message"),
     [
-        ([0.0, math.nan, 1.0], "must be finite and within 1e\\+06 m/s2, got nan at index 1; wrong unit or damaged"),
+        ([0.0, math.nan, 1.0], "must be finite and within 1e\\+06 m/s2, got nan at index 1"),
         ([0.0, 1.0, math.inf], "got inf at index 2"),
         ([-math.inf, 1.0, 2.0], "got -inf at index 0"),
         ([0.0, 1.000001e6, 0.0], "within 1e\\+06 m/s2, got 1e\\+06 at index 1"),
@@ -135,7 +135,7 @@ def test_scaled() -> None:
     for bad in (math.nan, math.inf, None, "2", True, [1.0, 2.0]):
         with pytest.raises(InvalidValueError, match="factor must be"):
             motion.scaled(bad)
-    with pytest.raises(InvalidValueError, match="wrong unit"):
+    with pytest.raises(InvalidValueError, match="check the unit"):
         motion.scaled(1e6)
     assert scaled_to(motion, "pga", 6.0).acceleration.tolist() == [0.0, 2.0, -6.0]
 

@@ -57,7 +57,7 @@ def test_lengths_and_steps(tmp_path: Path) -> None:
     short = read_motion(along, vertical_path=written(tmp_path, "peer", "UP", UP[:50]))
     assert len(short) == 50
     assert short.provenance[-1] == "components of 100 and 50 samples, both cut to 50"
-    with pytest.raises(InvalidValueError, match=r"0\.02 s, got 0\.01 s; resample one first"):
+    with pytest.raises(InvalidValueError, match=r"0\.02 s, got 0\.01 s; resample one motion first"):
         read_motion(along, vertical_path=written(tmp_path, "peer", "UP", UP, step=0.01))
 
 

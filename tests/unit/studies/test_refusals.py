@@ -131,7 +131,7 @@ REFUSED = [
     *[(measure, {"name": bad}, None) for bad in (
         "pgaa", "sa", "sa()", "sa(-1)", "sa(1,2,3)", None, 3, "sa(nan)", "sa(0.0)",
     )],
-    (measure("pgv/pga").factors, {"values": np.ones(2), "targets": np.ones(2)}, "no factor changes"),
+    (measure("pgv/pga").factors, {"values": np.ones(2), "targets": np.ones(2)}, "must grow with"),
     *[(named_restitutions, {"restitutions": bad}, words) for bad, words in (
         (["ked"], "at least two"), (["ked", "ked"], "'ked'"), ("ked", "list or a dict"), (0.9, "list or a dict"),
         ({"left": 0.8, "right": 0.9}, "one choice"), (["ked", {"left": 0.9}], "by side"), (["ked", object()], "number"),
