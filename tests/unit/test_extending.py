@@ -98,7 +98,7 @@ def test_a_pulse_is_known_by_name_once_it_is_listed(monkeypatch):
         return names["Versine"](amplitude, period)
 
     monkeypatch.setattr(pulses, "versine", versine, raising=False)
-    with pytest.raises(LookupError, match="no pulse named 'versine'"):
+    with pytest.raises(LookupError, match="unknown pulse 'versine'"):
         pulses.pulse("versine:amplitude=3,period=0.8")
     monkeypatch.setattr(pulses, "_ALL", (*pulses._ALL, versine))
     assert pulses.catalogue()["versine"] is versine

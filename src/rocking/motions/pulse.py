@@ -1,4 +1,4 @@
-"""Pulses: accelerations known at every instant, not only at samples; sums of sinusoids, and Ricker's wavelets."""
+"""Pulses: ground accelerations as formulas, from sums of sinusoids or Ricker wavelets."""
 
 import math
 from abc import ABC, abstractmethod
@@ -15,7 +15,7 @@ from rocking.motions.filters import cosine_sine, exponential
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
 
-MOST_SAMPLES = 2_000_000  # no pulse is sampled to more than this: asking for more is a wrong unit
+MOST_SAMPLES = 2_000_000  # larger numbers come from a wrong unit
 _PER_RADIAN = 8.0
 Wave = tuple[float, float, float]
 """Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""
@@ -26,10 +26,9 @@ _PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 
 
 
 class Pulse(ABC):
-    """A horizontal ground motion given by formulas for acceleration, velocity and displacement.
+    """A horizontal ground motion with formulas for acceleration, velocity and displacement.
 
-    It starts at time zero from rest and is zero before; after `duration` the acceleration is zero and the velocity
-    stays what it was.
+    The motion starts at time zero from rest. After `duration` the acceleration is zero and the velocity is constant.
     """
 
     @property
@@ -38,17 +37,17 @@ class Pulse(ABC):
         """Shape, strength and period of the pulse, for titles and tables."""
 
     def named(self, *, strength: bool = True, period: bool = True) -> str:
-        """Return the shape of the pulse, with its strength and period unless they are left out.
+        """Return the shape of the pulse, optionally with strength and period.
 
         Parameters
         ----------
         strength, period : bool
-            Whether to name them.
+            True to include the value.
 
         Returns
         -------
         str
-            In words, with units; the whole name for a pulse that does not define shorter names.
+            Text with units; the full name for pulses without shorter names.
         """
         return self.name
 
@@ -65,11 +64,11 @@ class Pulse(ABC):
     @property
     @abstractmethod
     def fastest(self) -> float:
-        """Highest circular frequency in it, which says how fine it must be cut [rad/s]."""
+        """Highest circular frequency of the pulse [rad/s]; it sets the length of segments."""
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What can be computed with but was hardly meant, in words."""
+        """Warnings about implausible accelerations."""
         return plausibility.of_acceleration(self.peak)
 
     @abstractmethod
@@ -79,7 +78,7 @@ class Pulse(ABC):
         Parameters
         ----------
         factor : float
-            May be negative [-].
+            Scale factor; a negative one reverses the polarity [-].
         """
 
     @abstractmethod
@@ -87,7 +86,7 @@ class Pulse(ABC):
         """Return displacement (0), velocity (1) or acceleration (2) at times within the pulse, up to constants."""
 
     def acceleration(self, time: Any) -> FloatArray:
-        """Return the acceleration at any times.
+        """Return the acceleration at given times.
 
         Parameters
         ----------
@@ -104,7 +103,7 @@ class Pulse(ABC):
         return np.where(inside, self._inside(np.clip(t, 0.0, self.duration), 2), 0.0)
 
     def velocity(self, time: Any) -> FloatArray:
-        """Return the ground velocity at any times, zero before the pulse.
+        """Return the ground velocity at given times, zero before the pulse.
 
         Parameters
         ----------
@@ -120,7 +119,7 @@ class Pulse(ABC):
         return np.asarray(self._inside(t, 1) - self._inside(np.zeros(()), 1))
 
     def displacement(self, time: Any) -> FloatArray:
-        """Return the ground displacement at any times, zero before the pulse.
+        """Return the ground displacement at given times, zero before the pulse.
 
         Parameters
         ----------
@@ -132,33 +131,33 @@ class Pulse(ABC):
         ndarray
             Displacement [m].
         """
-        given = _times(time)
-        t = np.clip(given, 0.0, self.duration)
+        times = _times(time)
+        t = np.clip(times, 0.0, self.duration)
         start = self._inside(np.zeros(()), 0) + self._inside(np.zeros(()), 1) * t
-        coasting = np.maximum(given - self.duration, 0.0) * self.velocity(self.duration)
+        coasting = np.maximum(times - self.duration, 0.0) * self.velocity(self.duration)
         return np.asarray(self._inside(t, 0) - start + coasting)
 
     def _check_peak(self) -> None:
         if not self.peak <= LARGEST_ACCELERATION:
             raise InvalidValueError(
-                "the peak of a pulse must be in [0, {most:g}] m/s2, got {peak:g}; wrong unit?",
+                "the peak of a pulse must be in [0, {most:g}] m/s2, got {peak:g}; check the unit",
                 most=LARGEST_ACCELERATION,
                 peak=self.peak,
             )
 
     def segments(self) -> Segments:
-        """Return the pulse as polynomials that agree with it to rounding.
+        """Return the pulse as polynomials, equal to the pulse within rounding.
 
         Returns
         -------
         Segments
-            Of degree 7.
+            Segments of degree 7.
         """
         count = max(1, int(np.ceil(_PER_RADIAN * self.fastest * self.duration)))
         return Segments.of_function(self.acceleration_inside, self.duration, count)
 
     def acceleration_inside(self, time: FloatArray) -> FloatArray:
-        """Return the acceleration by the formula that holds within the pulse.
+        """Return the acceleration by the formula within the pulse.
 
         Parameters
         ----------
@@ -178,18 +177,18 @@ class Pulse(ABC):
         Parameters
         ----------
         time_step : float
-            Step between samples [s].
+            Time step between samples [s].
 
         Returns
         -------
         GroundMotion
-            Straight lines between the samples: an approximation, of second order in the step.
+            Samples with straight lines between them, a second-order approximation in the step.
 
         Raises
         ------
         InvalidValueError
-            If the step is not within the limits of a `GroundMotion`, longer than the pulse, or so short that there
-            would be more than 2,000,000 samples.
+            If the step is outside the limits of a `GroundMotion`, longer than the pulse, or so short that more than
+            2,000,000 samples result.
         """
         step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
         if step > self.duration:
@@ -200,8 +199,8 @@ class Pulse(ABC):
         count = int(np.ceil(self.duration / step - 1e-9)) + 2
         if count > MOST_SAMPLES:
             raise InvalidValueError(
-                "{parameter} must leave at most {limit:g} samples, got {value} s, which leaves {count:g}",
-                parameter="time_step", value=step, limit=MOST_SAMPLES, count=count, hint="wrong unit?",
+                "{parameter} must give at most {limit:g} samples, got {value} s with {count:g} samples",
+                parameter="time_step", value=step, limit=MOST_SAMPLES, count=count, hint="check the unit",
             )  # fmt: skip
         times = np.arange(count) * step
         return GroundMotion(
@@ -216,12 +215,12 @@ class Pulse(ABC):
 class Sinusoids(Pulse):
     """A sum of sinusoids from time zero to `duration`."""
 
-    shape: str  # what its shape is called
+    shape: str  # name of the shape
     waves: tuple[Wave, ...]  # amplitude [m/s2], circular frequency [rad/s] and phase [rad] of each sine
     length: float  # duration [s]
     largest: float  # peak acceleration [m/s2]
-    strength: float  # what its name states of its strength, in `unit`
-    period: float  # what its name states of its time [s]
+    strength: float  # strength in the name, in `unit`
+    period: float  # period in the name [s]
     unit: str = "m/s2"
 
     def __post_init__(self) -> None:
@@ -233,7 +232,7 @@ class Sinusoids(Pulse):
         return self.named()
 
     def named(self, *, strength: bool = True, period: bool = True) -> str:
-        """Return the shape of the pulse, with its strength and period unless they are left out."""
+        """Return the shape of the pulse, optionally with strength and period."""
         return _named(self.shape, self.strength, self.unit, self.period, strength=strength, period=period)
 
     @property
@@ -248,7 +247,7 @@ class Sinusoids(Pulse):
 
     @property
     def fastest(self) -> float:
-        """Highest circular frequency in it [rad/s]."""
+        """Highest circular frequency of the pulse [rad/s]."""
         return max(abs(frequency) for _, frequency, _ in self.waves)
 
     def scaled(self, factor: float) -> "Sinusoids":
@@ -277,14 +276,14 @@ class Sinusoids(Pulse):
 class Ricker(Pulse):
     """A Ricker wavelet, symmetric or antisymmetric about its middle.
 
-    With t from the middle, the symmetric one is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p, and the antisymmetric
-    one ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... Beyond 2 (2.5) periods
-    from the middle nothing above 1e-15 of the peak is left, and it is cut there.
+    With t from the middle, the symmetric wavelet is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p. The antisymmetric
+    wavelet is ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... The wavelet ends
+    2 (2.5) periods from the middle, where it is below 1e-15 of the peak.
     """
 
-    amplitude: float  # peak acceleration a_p; a negative one turns it round [m/s2]
+    amplitude: float  # peak acceleration a_p; negative for reversed polarity [m/s2]
     period: float  # period T_p [s]
-    shape: Literal["symmetric", "antisymmetric"] = "symmetric"  # which of the two
+    shape: Literal["symmetric", "antisymmetric"] = "symmetric"
 
     def __post_init__(self) -> None:
         self._check_peak()
@@ -295,13 +294,13 @@ class Ricker(Pulse):
         return self.named()
 
     def named(self, *, strength: bool = True, period: bool = True) -> str:
-        """Return the shape of the wavelet, with its amplitude and period unless they are left out."""
+        """Return the shape of the wavelet, optionally with amplitude and period."""
         shape = f"{self.shape} Ricker wavelet"
         return _named(shape, self.amplitude, "m/s2", self.period, strength=strength, period=period)
 
     @property
     def duration(self) -> float:
-        """Time at which it is cut [s]."""
+        """End of the wavelet [s]."""
         return (4.0 if self.shape == "symmetric" else 5.0) * self.period
 
     @property
@@ -311,7 +310,7 @@ class Ricker(Pulse):
 
     @property
     def fastest(self) -> float:
-        """Circular frequency that its sharpest bend corresponds to [rad/s]."""
+        """Circular frequency of the largest curvature [rad/s]."""
         return 3.0 * math.pi / self.period
 
     def scaled(self, factor: float) -> "Ricker":
@@ -322,12 +321,12 @@ class Ricker(Pulse):
         t = time - 0.5 * self.duration
         if self.shape == "symmetric":
             x2 = (math.pi / self.period * t) ** 2
-            part = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]  # Eq. 160
-            return self.amplitude * part * exponential(-x2)
+            shape = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]  # Eq. 160
+            return self.amplitude * shape * exponential(-x2)
         unit = _SQRT3 * self.period / (2.0 * math.pi)
         z = t / unit
-        part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
-        return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)
+        shape = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
+        return self.amplitude / _PEAK * shape * exponential(-0.5 * z * z)
 
 
 def _named(shape: str, value: float, unit: str, time: float, *, strength: bool, period: bool) -> str:
@@ -337,10 +336,10 @@ def _named(shape: str, value: float, unit: str, time: float, *, strength: bool, 
 
 
 def _times(time: Any) -> FloatArray:
-    given = checks.real_array("time", time, "s")
-    if not np.isfinite(given).all():
-        raise InvalidValueError("time must be finite [s], got {time:g}", time=given[~np.isfinite(given)][0])
-    return given
+    times = checks.real_array("time", time, "s")
+    if not np.isfinite(times).all():
+        raise InvalidValueError("time must be finite [s], got {time:g}", time=times[~np.isfinite(times)][0])
+    return times
 
 
 Motion = GroundMotion | Pulse

@@ -1,7 +1,7 @@
-"""Pulses by name; each returns an object that knows its acceleration, velocity and displacement at any instant.
+"""Functions that return pulses; a pulse has acceleration, velocity and displacement at any time.
 
-`amplitude` is the peak ground acceleration a_p [m/s2] and `period` the period T_p of the sinusoid [s], whatever part
-of it the pulse lasts.
+`amplitude` is the peak ground acceleration a_p [m/s2]. `period` is the period T_p of the full sinusoid [s], also for
+pulses of a half period.
 """
 
 import math
@@ -39,12 +39,12 @@ def rectangular(amplitude: float, duration: float) -> Sinusoids:
     amplitude : float
         Acceleration [m/s2].
     duration : float
-        How long it lasts [s].
+        Duration of the pulse [s].
 
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
 
     Examples
     --------
@@ -68,12 +68,12 @@ def half_sine(amplitude: float, period: float) -> Sinusoids:
     Parameters
     ----------
     amplitude, period : float
-        Peak acceleration a_p [m/s2] and period T_p of the whole sine [s].
+        Peak acceleration a_p [m/s2] and period T_p of the full sine [s].
 
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     return _windowed("half-sine pulse", amplitude, period, 0.0, 0.5)
 
@@ -89,7 +89,7 @@ def sine(amplitude: float, period: float) -> Sinusoids:
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
 
     Examples
     --------
@@ -106,12 +106,12 @@ def half_cosine(amplitude: float, period: float) -> Sinusoids:
     Parameters
     ----------
     amplitude, period : float
-        Peak acceleration a_p [m/s2] and period T_p of the whole cosine [s].
+        Peak acceleration a_p [m/s2] and period T_p of the full cosine [s].
 
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     return _windowed("half-cosine pulse", amplitude, period, 0.5 * math.pi, 0.5)
 
@@ -127,13 +127,13 @@ def cosine(amplitude: float, period: float) -> Sinusoids:
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     return _windowed("cosine pulse", amplitude, period, 0.5 * math.pi, 1.0)
 
 
 def type_a(amplitude: float, period: float) -> Sinusoids:
-    """Return a forward pulse, type A of Makris and Chang (2000): the ground ends displaced; a whole sine.
+    """Return a forward pulse, type A of Makris and Chang (2000): one sine, with a residual displacement.
 
     Parameters
     ----------
@@ -143,13 +143,13 @@ def type_a(amplitude: float, period: float) -> Sinusoids:
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     return _windowed("type A pulse", amplitude, period, 0.0, 1.0)
 
 
 def type_b(amplitude: float, period: float) -> Sinusoids:
-    """Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a whole cosine.
+    """Return a forward-and-back pulse, type B of Makris and Chang (2000): one cosine, without residual displacement.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def type_b(amplitude: float, period: float) -> Sinusoids:
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     return _windowed("type B pulse", amplitude, period, 0.5 * math.pi, 1.0)
 
@@ -167,8 +167,8 @@ def type_b(amplitude: float, period: float) -> Sinusoids:
 def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
     """Return a pulse of n main cycles in displacement, type C_n of Makris and Chang (2000).
 
-    ``a_p cos(2 pi t / T_p + phi)`` up to ``(n + 1/2 - phi / pi) T_p``; phi makes velocity and displacement end at
-    zero: ``cos[(2n + 1) pi - phi] + [(2n + 1) pi - 2 phi] sin phi - cos phi = 0``.
+    The acceleration is ``a_p cos(2 pi t / T_p + phi)`` up to ``(n + 1/2 - phi / pi) T_p``. The phase phi gives zero
+    velocity and displacement at the end: ``cos[(2n + 1) pi - phi] + [(2n + 1) pi - 2 phi] sin phi - cos phi = 0``.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     n = checks.whole("n", n, 1, 1000)
     phase = _closing_phase(n)
@@ -198,7 +198,7 @@ def ricker(amplitude: float, period: float) -> Ricker:
     Returns
     -------
     Ricker
-        The pulse, its middle at 2 T_p.
+        Wavelet with its middle at 2 T_p.
     """
     return Ricker(_amplitude(amplitude), _period(period), "symmetric")
 
@@ -214,7 +214,7 @@ def antisymmetric_ricker(amplitude: float, period: float) -> Ricker:
     Returns
     -------
     Ricker
-        The pulse, its middle at 2.5 T_p.
+        Wavelet with its middle at 2.5 T_p.
     """
     return Ricker(_amplitude(amplitude), _period(period), "antisymmetric")
 
@@ -222,8 +222,8 @@ def antisymmetric_ricker(amplitude: float, period: float) -> Ricker:
 def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5, phase: float = 0.0) -> Sinusoids:
     """Return the near-fault pulse of Mavroeidis and Papageorgiou (2003), BSSA 93:1099, DOI 10.1785/0120020100.
 
-    Its velocity is ``(A / 2) [1 + cos(2 pi f t / gamma)] cos(2 pi f t + nu)`` for ``|t| <= gamma / (2 f)``; here time
-    zero is the start of the pulse.
+    The velocity is ``(A / 2) [1 + cos(2 pi f t / gamma)] cos(2 pi f t + nu)`` for ``|t| <= gamma / (2 f)``. The time
+    of the returned pulse is zero at its start.
 
     Parameters
     ----------
@@ -232,14 +232,14 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
     period : float
         Prevailing period 1 / f [s].
     cycles : float
-        gamma: how many zero crossings the velocity has; at least 1 [-].
+        Number gamma of zero crossings of the velocity, at least 1 [-].
     phase : float
-        nu: 0 for a symmetric, pi / 2 for an antisymmetric velocity [rad].
+        Phase nu: 0 for a symmetric, pi / 2 for an antisymmetric velocity [rad].
 
     Returns
     -------
     Sinusoids
-        The pulse.
+        Pulse.
     """
     velocity, period = checks.number("velocity", velocity, "m/s"), _period(period)
     cycles = checks.within("cycles", cycles, 1.0, 1000.0)
@@ -247,11 +247,11 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
     main = 2.0 * math.pi / period
     # the product of cosines is a sum of three; the start of the pulse, t = -gamma / (2 f), becomes time zero
     waves = tuple(
-        (-share * frequency, frequency, phase - frequency * 0.5 * cycles * period)  # Eq. 159
-        for share, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
+        (-weight * frequency, frequency, phase - frequency * 0.5 * cycles * period)  # Eq. 159
+        for weight, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
     )
     shape = "Mavroeidis-Papageorgiou pulse"
-    # of 1 m/s first: whether the velocity is too large is known before anything overflows
+    # first with 1 m/s, so that a too large velocity causes no overflow
     most = LARGEST_ACCELERATION / _largest(Sinusoids(shape, waves, cycles * period, 0.0, 0.0, period))
     velocity = checks.within("velocity", velocity, -most, most, unit="m/s", hint="the acceleration would pass 1e6 m/s2")
     scaled = tuple((velocity * amplitude, frequency, phase) for amplitude, frequency, phase in waves)
@@ -274,19 +274,19 @@ def harmonic(amplitude: float, period: float, cycles: float, phase: float = 0.0)
     Returns
     -------
     Sinusoids
-        The motion.
+        Pulse.
     """
     cycles = checks.within("cycles", cycles, 0.5, 1e5)
     return _windowed("harmonic motion", amplitude, period, checks.number("phase", phase, "rad"), cycles)
 
 
 def catalogue() -> dict[str, Callable[..., Pulse]]:
-    """Return every pulse by the name that the command line knows it by.
+    """Return the functions of all pulses by their names on the command line.
 
     Returns
     -------
     dict of str to callable
-        Name to function.
+        Functions by name.
 
     Examples
     --------
@@ -297,25 +297,25 @@ def catalogue() -> dict[str, Callable[..., Pulse]]:
 
 
 def pulse(words: str) -> Pulse:
-    """Return a pulse from one word, as the command line takes it.
+    """Return a pulse from a text, as on the command line.
 
     Parameters
     ----------
     words : str
-        ``name:parameter=value,parameter=value``. A value may have a unit: m/s2, cm/s2, mm/s2, gal or g of an amplitude,
-        s or ms of a time, m/s, cm/s or mm/s of a velocity, rad or deg of a phase.
+        Text ``name:parameter=value,parameter=value``. Values may have units: m/s2, cm/s2, mm/s2, gal or g for an
+        amplitude, s or ms for a time, m/s, cm/s or mm/s for a velocity, rad or deg for a phase.
 
     Returns
     -------
     Pulse
-        The pulse.
+        Pulse.
 
     Raises
     ------
     UnknownModelError
-        If there is no such pulse, or a parameter is unknown or missing.
+        If the pulse or a parameter is unknown, or a parameter is missing.
     InvalidValueError
-        If it is no string, or a value is not a number in its range.
+        If `words` is no string, or a value is not a number in its range.
 
     Examples
     --------
@@ -324,43 +324,45 @@ def pulse(words: str) -> Pulse:
     >>> pulse("sine:amplitude=0.3g,period=800ms").peak
     2.941995
     """
-    given_words: object = words
-    if not isinstance(given_words, str):
+    text: object = words
+    if not isinstance(text, str):
         raise InvalidValueError(
-            "a pulse is written as sine:amplitude=3,period=0.8, got {value}", parameter="words", value=words
+            "{parameter} must be a text such as sine:amplitude=3,period=0.8, got {value}",
+            parameter="words",
+            value=words,
         )
     name, _, tail = words.partition(":")
-    known = catalogue()
-    name = checks.spelling(name, known)
-    if name not in known:
+    functions = catalogue()
+    name = checks.spelling(name, functions)
+    if name not in functions:
         raise UnknownModelError(
-            "no pulse named {name!r}; there are {names}", name=name, names=", ".join(sorted(known)),
-            hint=checks.nearest(name, known),
+            "unknown pulse {name!r}; allowed are {names}", name=name, names=", ".join(sorted(functions)),
+            hint=checks.nearest(name, functions),
         )  # fmt: skip
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
-        key, equals, value = (part.strip() for part in item.partition("="))
-        if not equals or key in given:
+        key, equals, value = (text.strip() for text in item.partition("="))
+        if not equals or key in values:
             raise UnknownModelError(
                 "write a pulse as sine:amplitude=3,period=0.8, got {pulse!r}", pulse=words,
                 hint=checks.number_hint(words),
             )  # fmt: skip
-        given[key] = whole_or_number(key, value)
+        values[key] = whole_or_number(key, value)
     try:
-        return known[name](**given)
+        return functions[name](**values)
     except TypeError as error:
-        names = ", ".join(key for key in known[name].__annotations__ if key != "return")
+        names = ", ".join(key for key in functions[name].__annotations__ if key != "return")
         raise UnknownModelError(
-            "pulse {name!r} takes {names}; got {stated}", name=name, names=names, stated=", ".join(given) or "none"
+            "pulse {name!r} requires {names}; got {stated}", name=name, names=names, stated=", ".join(values) or "none"
         ) from error
 
 
 UNITS_OF = {"amplitude": "m/s2", "period": "s", "duration": "s", "velocity": "m/s", "phase": "rad"}
-"""Units of the parameters of pulses; the others are numbers."""
+"""Units of the parameters of pulses; other parameters are dimensionless."""
 
 
 def whole_or_number(key: str, text: str) -> float:
-    """Return the value of a parameter in its unit, from a number with or without a unit; n is a whole number."""
+    """Return the value of a parameter in its SI unit from a text with or without unit; n is a whole number."""
     value = checks.quantity(key, text, UNITS_OF.get(key, "1"))[0]
     return int(value) if key == "n" and value.is_integer() else value
 
@@ -412,14 +414,14 @@ def _closing_phase(n: int) -> float:
     return 0.5 * (low + high)
 
 
-def _largest(bare: Sinusoids) -> float:
-    """Return the largest acceleration: the best of many instants, then a parabola through its neighbours."""
+def _largest(pulse: Sinusoids) -> float:
+    """Return the largest acceleration on a time grid, refined around its maximum."""
     import numpy as np
 
-    times = np.linspace(0.0, bare.duration, 4096 + 1)
-    size = np.abs(bare.acceleration(times))
+    times = np.linspace(0.0, pulse.duration, 4096 + 1)
+    size = np.abs(pulse.acceleration(times))
     k = int(size.argmax())
     if not 0 < k < size.size - 1:
         return float(size[k])
     fine = np.linspace(times[k - 1], times[k + 1], 4096 + 1)
-    return float(np.abs(bare.acceleration(fine)).max())
+    return float(np.abs(pulse.acceleration(fine)).max())

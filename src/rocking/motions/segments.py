@@ -1,4 +1,4 @@
-"""What an engine integrates: a motion as polynomials on equal stretches of time."""
+"""Motions for the engines: polynomials on equal time segments."""
 
 import math
 from collections.abc import Callable
@@ -10,21 +10,21 @@ from rocking.conventions import FloatArray
 from rocking.portable import each, times
 
 SMOOTH_DEGREE = 7
-"""Degree of the polynomials that stand for a smooth pulse; with 32 of them a period they agree to rounding."""
+"""Degree of the polynomials of a smooth pulse; 32 per period approximate it within rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Acceleration of the ground as polynomials of the time within each stretch.
+    """Acceleration of the ground as one polynomial of time per segment.
 
     >>> Segments.between_samples(0.1, np.array([0.0, 1.0, -2.0])).horizontal.tolist()
     [[0.0, 1.0], [1.0, -3.0]]
     """
 
-    step: float  # duration of a stretch [s]
-    # coefficients of ``a(tau) = c[0] + c[1] tau + ...`` with ``tau`` from 0 to 1 over the stretch [m/s2]
+    step: float  # duration of a segment [s]
+    # coefficients of ``a(tau) = c[0] + c[1] tau + ...`` with ``tau`` from 0 to 1 over the segment [m/s2]
     horizontal: FloatArray
-    vertical: FloatArray | None = None  # the same for the vertical acceleration [m/s2]
+    vertical: FloatArray | None = None  # coefficients of the vertical acceleration [m/s2]
 
     @classmethod
     def between_samples(cls, step: float, horizontal: FloatArray, vertical: FloatArray | None = None) -> "Segments":
@@ -38,7 +38,7 @@ class Segments:
 
     @classmethod
     def of_function(cls, acceleration: Callable[[FloatArray], FloatArray], duration: float, count: int) -> "Segments":
-        """Return polynomials that agree with a smooth function to rounding, if there are enough of them."""
+        """Return `count` polynomials, equal to a smooth function within rounding for large counts."""
         n = SMOOTH_DEGREE + 1
         angles = np.pi * (np.arange(n) + 0.5) / n
         nodes = each(math.cos, angles)
@@ -46,11 +46,11 @@ class Segments:
         values = acceleration(((np.arange(count)[:, None] + 0.5 * (1.0 + nodes)) * step).ravel()).reshape(count, n)
         weights = 2.0 / n * each(math.cos, np.outer(angles, np.arange(n)))
         weights[:, 0] *= 0.5
-        # two stages: the small high coefficients come first, so that their rounding stays small
+        # two stages: small high coefficients first, for small rounding errors
         return cls(step, times(times(values, weights), _SHIFTED))  # Eq. 162
 
     def refined(self, parts: int) -> "Segments":
-        """Return the same polynomials on shorter stretches."""
+        """Return the same polynomials on shorter segments."""
         if parts <= 1:
             return self
         cut = _cutting(self.degree, parts)
@@ -62,7 +62,7 @@ class Segments:
         return Segments(self.step / parts, pieces[0], pieces[1])
 
     def extended(self, duration: float) -> "Segments":
-        """Return the motion with rest of the ground after it, up to a duration."""
+        """Return the motion with ground at rest after it, up to a duration."""
         more = int(np.ceil((duration - self.duration) / self.step - 1e-9))
         if more <= 0:
             return self
@@ -71,13 +71,13 @@ class Segments:
         return Segments(self.step, np.vstack([self.horizontal, zeros]), vertical)
 
     def first(self, count: int) -> "Segments":
-        """Return the first stretches alone."""
+        """Return the first `count` segments."""
         vertical = None if self.vertical is None else self.vertical[:count]
         return Segments(self.step, self.horizontal[:count], vertical)
 
     @property
     def count(self) -> int:
-        """Number of stretches."""
+        """Number of segments."""
         return int(self.horizontal.shape[0])
 
     @property
@@ -87,7 +87,7 @@ class Segments:
 
     @property
     def duration(self) -> float:
-        """Duration of all stretches [s]."""
+        """Duration of all segments [s]."""
         return self.count * self.step
 
 
@@ -96,7 +96,7 @@ def _lines(samples: FloatArray) -> FloatArray:
 
 
 def _cutting(degree: int, parts: int) -> FloatArray:
-    """Return the matrices that rewrite powers of tau on each of `parts` equal pieces; shape (parts, k, j)."""
+    """Return the matrices of powers of tau on each of `parts` equal pieces; shape (parts, k, j)."""
     cut = np.zeros((parts, degree + 1, degree + 1))
     for piece in range(parts):
         for k in range(degree + 1):
@@ -105,7 +105,7 @@ def _cutting(degree: int, parts: int) -> FloatArray:
 
 
 def _shifted_chebyshev(n: int) -> FloatArray:
-    """Return T_k(2 tau - 1) in powers of tau, one polynomial a row; all entries are integers."""
+    """Return T_k(2 tau - 1) in powers of tau, one polynomial per row; all entries are integers."""
     rows = np.zeros((n, n))
     rows[0, 0], rows[1, :2] = 1.0, (-1.0, 2.0)
     for k in range(2, n):

@@ -1,4 +1,4 @@
-"""Records chosen and scaled so that their spectra come close to a target."""
+"""Selection and scaling of records by a target spectrum."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -15,20 +15,20 @@ from rocking.motions.formats.record_set import RecordSet, mapped
 from rocking.motions.spectrum import response_spectrum, rotd_spectrum
 from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
 
-POINTS = 25  # periods at which spectra are compared, in equal ratios
-MOST = 4.0  # factor beyond which, or below whose inverse, a record is not scaled unless another one is given [-]
+POINTS = 25  # periods of the comparison, in equal ratios
+MOST = 4.0  # default largest scale factor, and inverse of the smallest [-]
 
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """Records that were chosen and scaled, and how close they come."""
+    """Selected and scaled records, with their misfits."""
 
-    records: RecordSet  # the scaled records, the closest first
-    factors: FloatArray  # on each of them [-]
-    misfits: FloatArray  # root mean square over the periods of ln(spectrum / target), of each [-]
-    periods: FloatArray  # where spectra were compared [s]
-    target: TargetSpectrum  # what they were compared with
-    spectra: FloatArray  # PSA of the scaled records: RotD50 of two components, else that of the one [m/s2]
+    records: RecordSet  # the scaled records, by increasing misfit
+    factors: FloatArray  # scale factor of each record [-]
+    misfits: FloatArray  # RMS over the periods of ln(spectrum / target) of each record [-]
+    periods: FloatArray  # periods of the comparison [s]
+    target: TargetSpectrum
+    spectra: FloatArray  # PSA of the scaled records [m/s2]: RotD50 of two components, else of the single one
 
     @property
     def mean(self) -> FloatArray:
@@ -42,17 +42,17 @@ class Selection:
 
     @property
     def least(self) -> float:
-        """Least ratio of the arithmetic mean to the target; Eurocode 8 asks for 0.9 [-]."""
+        """Smallest ratio of the arithmetic mean to the target; Eurocode 8 requires 0.9 [-]."""
         return float((self.spectra.mean(axis=0) / self.target(self.periods)).min())
 
     @property
     def sentence(self) -> str:
-        """How close they come, in words."""
+        """Summary of factors and misfits."""
         low, high = float(self.periods[0]), float(self.periods[-1])
         return (
             f"{len(self.records)} records scaled by {self.factors.min():.3g} to {self.factors.max():.3g} to "
-            f"{self.target.name}, {low:g} to {high:g} s: misfit of each {self.misfits.min():.2f} to "
-            f"{self.misfits.max():.2f}, of their mean {self.misfit:.2f} (ln); mean/target {self.least:.2f} at least"
+            f"{self.target.name}, {low:g} to {high:g} s: misfits {self.misfits.min():.2f} to "
+            f"{self.misfits.max():.2f}, of the mean {self.misfit:.2f} (ln); mean/target at least {self.least:.2f}"
         )
 
 
@@ -66,88 +66,93 @@ def selected(
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> Selection:
-    """Choose the records whose scaled spectra are closest to a target.
+    """Select the records with the smallest misfit to a target spectrum after scaling.
 
-    Each record is scaled by the factor that makes the mean of ln(spectrum / target) over the periods zero, which is the
-    factor of least squares; those of the smallest root mean square are chosen.
+    The scale factor of each record gives a zero mean of ln(spectrum / target) over the periods, which is the
+    least-squares solution. The records with the smallest root mean square are selected.
 
     Parameters
     ----------
     records : RecordSet or iterable of Components
-        What there is to choose from.
+        Records to select from.
     target : str or TargetSpectrum
         As in `target_spectrum`.
     count : int, optional
-        How many are wanted; all if not given.
+        Number of records to select; the default is all.
     periods : tuple of float
-        First and last period that count [s].
+        First and last period of the comparison [s].
     most : float
-        Largest factor, and inverse of the smallest; records that need more are not taken [-].
+        Largest factor, and inverse of the smallest; other records are rejected [-].
     workers : int
-        Processes that compute the spectra of many records.
+        Number of processes.
     progress : callable, optional
-        Called with the number of records that were looked at since.
+        Called with the number of newly processed records.
 
     Returns
     -------
     Selection
-        The records, scaled.
+        Selected records, scaled.
 
     Raises
     ------
     InvalidValueError
-        If fewer records than wanted can be scaled so, or the target is not known at the periods.
+        If too few records have allowed factors, or the target does not cover the periods.
 
     Examples
     --------
     >>> from rocking.motions.motion import GroundMotion
     >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
     >>> pair = [Components(wave.scaled(factor), None, None) for factor in (1.0, 2.0)]
-    >>> found = selected(pair, "eurocode8:ag=2m/s2", periods=(0.3, 2.0))
-    >>> [round(float(ratio), 9) for ratio in found.factors / found.factors[0]]
+    >>> selection = selected(pair, "eurocode8:ag=2m/s2", periods=(0.3, 2.0))
+    >>> [round(float(ratio), 9) for ratio in selection.factors / selection.factors[0]]
     [1.0, 0.5]
     """
-    wanted = target_spectrum(target)
-    low, high = (checks.positive("periods", each, "s") for each in periods)
+    spectrum = target_spectrum(target)
+    low, high = (checks.positive("periods", period, "s") for period in periods)
     if not low < high:
         raise InvalidValueError(
-            "{parameter} must be the first and the last, got {low:g} and {high:g} s", parameter="periods", low=low,
-            high=high,
+            "{parameter} must be the first and the last period in increasing order, got {low:g} and {high:g} s",
+            parameter="periods", low=low, high=high,
         )  # fmt: skip
     most = checks.within("most", most, 1.0, np.inf)
     grid = np.geomspace(low, high, POINTS)
-    level, given = wanted(grid), [one for one in records if one.x is not None or one.y is not None]
-    spectrum = partial(spectrum_of, periods=grid, damping=wanted.damping)
-    spectra = np.array(list(mapped(spectrum, given, workers, progress)))
+    target_values, candidates = (
+        spectrum(grid),
+        [record for record in records if record.x is not None or record.y is not None],
+    )
+    compute = partial(spectrum_of, periods=grid, damping=spectrum.damping)
+    spectra = np.array(list(mapped(compute, candidates, workers, progress)))
     with np.errstate(divide="ignore"):
-        apart = np.log(spectra.reshape(-1, POINTS) / level)
-    factors = np.exp(-apart.mean(axis=1))  # Eq. 309
-    misfits = np.sqrt(((apart - apart.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))  # Eq. 310
+        residuals = np.log(spectra.reshape(-1, POINTS) / target_values)
+    factors = np.exp(-residuals.mean(axis=1))  # Eq. 309
+    misfits = np.sqrt(((residuals - residuals.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))  # Eq. 310
     allowed = np.flatnonzero(np.isfinite(misfits) & (factors <= most) & (factors >= 1.0 / most))
     number = allowed.size if count is None else checks.whole("count", count, 1)
     if allowed.size < max(number, 1):
         raise InvalidValueError(
-            "{wanted} of {count} records are wanted, and {available} come to {target} with factors of {low:g} to "
-            "{high:g}", wanted=number or 1, count=len(given), available=allowed.size, target=wanted.name,
-            low=1.0 / most, high=most, hint="allow larger ones, or give more records",
+            "{wanted} of {count} records are requested, but only {available} match {target} with factors of {low:g} to "
+            "{high:g}", wanted=number or 1, count=len(candidates), available=allowed.size, target=spectrum.name,
+            low=1.0 / most, high=most, hint="allow larger factors, or add records",
         )  # fmt: skip
     best = allowed[np.argsort(misfits[allowed], kind="stable")][:number]
-    scaled = tuple(_scaled(given[k], float(factors[k]), wanted.name) for k in best)
+    scaled = tuple(_scaled(candidates[k], float(factors[k]), spectrum.name) for k in best)
     kept = RecordSet(scaled, getattr(records, "left_out", ()))
-    return Selection(kept, factors[best], misfits[best], grid, wanted, spectra[best] * factors[best, None])
+    return Selection(kept, factors[best], misfits[best], grid, spectrum, spectra[best] * factors[best, None])
 
 
 def spectrum_of(record: Components, periods: FloatArray, damping: float = 0.05) -> FloatArray:
-    """Return RotD50 of a record with two horizontal components, else the spectrum of the one [m/s2]."""
+    """Return RotD50 of a record with two horizontal components, else the spectrum of its component [m/s2]."""
     if record.x is not None and record.y is not None:
         return np.asarray(rotd_spectrum(record.x, record.y, periods, damping, 50.0)[0], dtype=np.float64)
     return response_spectrum(record.leading, periods, damping).pseudo_acceleration
 
 
 def _scaled(record: Components, factor: float, target: str) -> Components:
-    def scale(part: Any) -> Any:
-        made = part.scaled(factor)
-        return replace(made, provenance=(*part.provenance, f"multiplied by {factor!r}, which is closest to {target}"))
+    def scale(component: Any) -> Any:
+        scaled = component.scaled(factor)
+        return replace(
+            scaled, provenance=(*component.provenance, f"multiplied by {factor!r}, the closest fit to {target}")
+        )
 
     return record.each(scale)
 

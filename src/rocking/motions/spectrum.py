@@ -1,4 +1,4 @@
-"""Spectra of a record: of linear oscillators, exact for straight lines between the samples, and of Fourier."""
+"""Response spectra of a record, exact for straight lines between samples, and Fourier spectra."""
 
 import math
 from collections.abc import Iterator
@@ -17,17 +17,17 @@ from rocking.motions.integrals import quadratic_roots
 from rocking.motions.motion import GroundMotion, checked_motion
 
 POINTS_PER_PERIOD = 36
-"""Steps are divided until there are so many points a period; between these, peaks are those of cubics."""
+"""Minimum number of points per period; cubics between the points give the peaks."""
 
 FREE_POINTS = 288
-"""Points in the half period of free vibration: between, a sine hides at most (pi / 287)^2 / 8 = 0.0015 %."""
+"""Points in the half period of free vibration; the error of a sine peak is at most (pi / 287)^2 / 8 = 0.0015 %."""
 
 MARGIN = 1.001
-"""Room for cubics, which leave the true response by less than 0.01 %, in the bound of what a step can hold [-]."""
+"""Margin of the bound on the response within a step, for errors of the cubics below 0.01 % [-]."""
 
-SHORTEST_PERIOD = 0.05  # shortest period in time steps: below, the record says nothing about what the oscillator feels
-_TURN = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # one direction a row: every degree of half a turn
-_WITHIN = (0.25, 0.5, 0.75)  # places in a step where a cubic is looked at: 144 points a period miss at most 0.024 %
+SHORTEST_PERIOD = 0.05  # shortest period / time step: the record does not resolve shorter periods
+_TURN = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # one direction per row: every degree from 0 to 179
+_WITHIN = (0.25, 0.5, 0.75)  # positions within a step: 144 points per period, error at most 0.024 %
 ComplexArray = NDArray[np.complex128]
 Pair = tuple[FloatArray, FloatArray]
 """A response and its rate of change."""
@@ -48,7 +48,7 @@ class ResponseSpectrum:
     velocity : ndarray
         Sv, velocity relative to the ground [m/s].
     absolute_acceleration : ndarray
-        Sa, true acceleration of the mass in space [m/s2].
+        Sa, absolute acceleration of the mass [m/s2].
     """
 
     periods: FloatArray
@@ -72,15 +72,14 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     """Return the response spectrum of a motion.
 
     The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI
-    10.1785/BSSA0590020909), here in its complex form. The only error is that
-    of looking for peaks: within each step they are those of cubics through values and slopes, on at least 36 points
-    a period, and miss the true ones by less than 0.01 %, for periods down to 2 time steps and below. Half a period of
-    free vibration after the last sample is included.
+    10.1785/BSSA0590020909), here in its complex form. Only the peaks are approximate: they are the extremes of cubics
+    through values and slopes on at least 36 points per period. Their error is below 0.01 %, also for periods below 2
+    time steps. Half a period of free vibration after the last sample is included.
 
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     periods : array_like
         Undamped natural periods, at least 1/20 of the time step [s].
     damping : float
@@ -89,7 +88,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     Returns
     -------
     ResponseSpectrum
-        One value of each kind for each period.
+        Spectral values, one per period.
 
     Raises
     ------
@@ -104,38 +103,38 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     [2.0, 2.0]
     """
     motion = checked_motion(motion)
-    given, damping, rates = oscillators(motion, periods, damping)
-    found = _peaks(motion, rates, np.ceil(POINTS_PER_PERIOD * motion.time_step / given).astype(np.int64))
-    return ResponseSpectrum(given, damping, found[:, 0], found[:, 1], found[:, 2])
+    validated, damping, rates = oscillators(motion, periods, damping)
+    peaks = _peaks(motion, rates, np.ceil(POINTS_PER_PERIOD * motion.time_step / validated).astype(np.int64))
+    return ResponseSpectrum(validated, damping, peaks[:, 0], peaks[:, 1], peaks[:, 2])
 
 
 def oscillators(motion: GroundMotion, periods: ArrayLike, damping: float) -> tuple[FloatArray, float, ComplexArray]:
-    """Return periods [s] and damping of oscillators, checked, and their complex rates."""
+    """Return validated periods [s], damping ratio and complex rates of oscillators."""
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
-    given = np.atleast_1d(checks.positive_array("periods", periods, "s"))
-    if given.ndim != 1 or not given.size:
+    validated = np.atleast_1d(checks.positive_array("periods", periods, "s"))
+    if validated.ndim != 1 or not validated.size:
         raise InvalidValueError(
             "{parameter} must be {allowed}, got shape {shape}", parameter="periods",
-            allowed="a row of at least 1 number [s]", shape=given.shape,
+            allowed="a row of at least 1 number [s]", shape=validated.shape,
         )  # fmt: skip
     shortest = SHORTEST_PERIOD * motion.time_step
-    if given.min() < shortest:
+    if validated.min() < shortest:
         raise InvalidValueError(
             "periods must be at least {shortest:g} s for this time step, got {period:g}",
             shortest=shortest,
-            period=given.min(),
+            period=validated.min(),
         )
     # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
-    rates = 2.0 * math.pi / given * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
-    return given.copy(), damping, np.asarray(rates, dtype=np.complex128)
+    rates = 2.0 * math.pi / validated * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
+    return validated.copy(), damping, np.asarray(rates, dtype=np.complex128)
 
 
 def phi(x: Any) -> tuple[Any, Any]:
-    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, to rounding also near zero."""
-    given = np.asarray(x, dtype=np.complex128)
-    near = np.abs(given) <= 1.0
-    small, large = np.where(near, given, 0.0), np.where(near, 1.0, given)
-    series = np.zeros_like(given)
+    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, accurate also near zero."""
+    argument = np.asarray(x, dtype=np.complex128)
+    near = np.abs(argument) <= 1.0
+    small, large = np.where(near, argument, 0.0), np.where(near, 1.0, argument)
+    series = np.zeros_like(argument)
     for k in range(20, 1, -1):
         series = 1.0 / math.factorial(k) + small * series  # Eq. 152
     first = (np.exp(large) - 1.0) / large  # Eq. 152
@@ -143,22 +142,22 @@ def phi(x: Any) -> tuple[Any, Any]:
 
 
 def states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
-    """Return the states at the samples, one row an oscillator, at rest at the first."""
+    """Return the states at the samples from rest, one row per oscillator."""
     h, a = motion.time_step, motion.acceleration
-    found = np.zeros((rates.size, a.size), dtype=np.complex128)
+    result = np.zeros((rates.size, a.size), dtype=np.complex128)
     if (module := compiled()) is not None:
-        module.states(a, h, rates, found)
-        return found
+        module.states(a, h, rates, result)
+        return result
     from scipy.signal import lfilter
 
     first, second = phi(rates * h)
-    for row, decay, one, two in zip(found, np.exp(rates * h), first, second, strict=True):
-        row[1:] = lfilter([1.0], [1.0, -decay], -h * (two * a[1:] + (one - two) * a[:-1]))  # Eq. 151
-    return found
+    for row, decay, level, slope in zip(result, np.exp(rates * h), first, second, strict=True):
+        row[1:] = lfilter([1.0], [1.0, -decay], -h * (slope * a[1:] + (level - slope) * a[:-1]))  # Eq. 151
+    return result
 
 
 def _peaks(motion: GroundMotion, rates: ComplexArray, parts: IntArray) -> FloatArray:
-    """Return the largest displacement, velocity and absolute acceleration, one row an oscillator."""
+    """Return the largest displacement, velocity and absolute acceleration, one row per oscillator."""
     best = np.zeros((rates.size, 3))
     if (module := compiled()) is not None:
         reach = np.ascontiguousarray(_reach(rates).T)
@@ -176,19 +175,19 @@ def _peaks(motion: GroundMotion, rates: ComplexArray, parts: IntArray) -> FloatA
             first, second = phi(rate * t)
             inside = np.exp(rate * t) * start[:-1] - t * first * a[:-1] - t * t / h * second * rise  # Eq. 151
             right = _response(inside, a[:-1] + k / number * rise, rate)
-            np.maximum(row, [_highest(*pair, h / number) for pair in zip(left, right, strict=True)], out=row)
+            np.maximum(row, [_cubic_peak(*pair, h / number) for pair in zip(left, right, strict=True)], out=row)
             left = right
     return best
 
 
 def _reach(s: ComplexArray) -> FloatArray:
-    """Return the largest responses of states of magnitude one, whatever their phase: one row a response."""
+    """Return the largest responses over all states of magnitude one, one row per response."""
     friction, omega2 = -2.0 * s.real, np.abs(s) ** 2
     velocity, absolute = np.hypot(1.0, s.real / s.imag), np.hypot(friction, (friction * s.real + omega2) / s.imag)
     return np.stack([1.0 / s.imag, velocity, absolute])
 
 
-def _highest(left: Pair, right: Pair, step: float) -> float:
+def _cubic_peak(left: Pair, right: Pair, step: float) -> float:
     """Return the largest magnitude of cubics through values and slopes at both ends."""
     (y, d), (z, e) = ((side[0], step * side[1]) for side in (left, right))
     rise, best = z - y, float(np.abs(z).max())
@@ -216,15 +215,15 @@ def rotd_spectrum(
     damping: float = 0.05,
     percentiles: ArrayLike = (50.0, 100.0),
 ) -> FloatArray:
-    """Return percentiles over all directions of the pseudo-spectral acceleration.
+    """Return percentiles of the pseudo-spectral acceleration over all directions.
 
-    Boore (2010), DOI 10.1785/0120090400: the directions are every degree over half a turn. Exact for straight lines
-    between the samples but for the look for peaks, which misses less than 0.03 %.
+    Boore (2010), DOI 10.1785/0120090400, with directions at every degree from 0 to 179 degrees. The response is exact
+    for straight lines between samples; the error of the peaks is below 0.03 %.
 
     Parameters
     ----------
     first, second : GroundMotion
-        Perpendicular horizontal components, of one step and length.
+        Perpendicular horizontal components, with equal time step and length.
     periods : array_like
         Undamped natural periods, at least 1/20 of the time step [s].
     damping : float
@@ -248,36 +247,36 @@ def rotd_spectrum(
     >>> rotd_spectrum(along, across, [0.1, 0.2], damping=0.0, percentiles=[100]).round(2).tolist()
     [[10.0, 10.0]]
     """
-    wanted = np.atleast_1d(checks.real_array("percentiles", percentiles, "%"))
-    for each in wanted.tolist():
-        checks.within("percentiles", each, 0.0, 100.0, unit="%")
+    requested = np.atleast_1d(checks.real_array("percentiles", percentiles, "%"))
+    for percentile in requested.tolist():
+        checks.within("percentiles", percentile, 0.0, 100.0, unit="%")
     peaks = directional_spectra(first, second, periods, damping)
-    return np.asarray(np.percentile(peaks, wanted, axis=1), dtype=np.float64)
+    return np.asarray(np.percentile(peaks, requested, axis=1), dtype=np.float64)
 
 
 def directional_spectra(
     first: GroundMotion, second: GroundMotion, periods: ArrayLike, damping: float = 0.05
 ) -> FloatArray:
-    """Return the pseudo-spectral acceleration in every direction, one row a period [m/s2]."""
-    # turned into another direction the displacement along each component is a sum of both
+    """Return the pseudo-spectral acceleration in every direction, one row per period [m/s2]."""
+    # the displacement in another direction is a linear combination of both components
     matching(first, second)
-    given, _, rates = oscillators(first, periods, damping)
-    parts = np.ceil(POINTS_PER_PERIOD * first.time_step / given).astype(np.int64)
-    found = np.zeros((given.size, len(ANGLES)))
+    validated, _, rates = oscillators(first, periods, damping)
+    parts = np.ceil(POINTS_PER_PERIOD * first.time_step / validated).astype(np.int64)
+    peaks = np.zeros((validated.size, len(ANGLES)))
     if (module := compiled()) is not None:
         both, step = (first.acceleration, second.acceleration), first.time_step
-        module.directions(*both, step, rates, np.cos(ANGLES), np.sin(ANGLES), parts, FREE_POINTS, found)
+        module.directions(*both, step, rates, np.cos(ANGLES), np.sin(ANGLES), parts, FREE_POINTS, peaks)
     else:
-        for row, rate, number in zip(found, rates, parts.tolist(), strict=True):
-            for places in _path(first, second, rate, number):
-                np.maximum(row, np.abs(_TURN @ places).max(axis=1), out=row)  # Eq. 156
-    return np.asarray(found * (2.0 * np.pi / given[:, None]) ** 2, dtype=np.float64)  # Eq. 149
+        for row, rate, number in zip(peaks, rates, parts.tolist(), strict=True):
+            for points in _path(first, second, rate, number):
+                np.maximum(row, np.abs(_TURN @ points).max(axis=1), out=row)  # Eq. 156
+    return np.asarray(peaks * (2.0 * np.pi / validated[:, None]) ** 2, dtype=np.float64)  # Eq. 149
 
 
 def _path(first: GroundMotion, second: GroundMotion, rate: complex, parts: int) -> Iterator[FloatArray]:
-    """Yield places on the path of one oscillator that two components drive, on so many parts of each step [m]."""
-    h, one = first.time_step, np.array([rate])
-    state = np.concatenate([states(first, one), states(second, one)])
+    """Yield points on the path of one oscillator under two components, for each part of the steps [m]."""
+    h, rates = first.time_step, np.array([rate])
+    state = np.concatenate([states(first, rates), states(second, rates)])
     ground = np.stack([first.acceleration, second.acceleration])
     swing = np.exp(rate * math.pi / rate.imag * np.linspace(0.0, 1.0, FREE_POINTS))
     yield (state[:, -1:] * swing).imag / rate.imag
@@ -287,9 +286,9 @@ def _path(first: GroundMotion, second: GroundMotion, rate: complex, parts: int) 
         level, slope = phi(rate * t)
         right = np.exp(rate * t) * start - t * level * ground[:, :-1] - t * t / h * slope * rise  # Eq. 151
         y, z = left.imag / rate.imag, right.imag / rate.imag  # Eq. 150
-        d, e = (h / parts * (side.real + rate.real * at) for side, at in ((left, y), (right, z)))
-        for at in (*_WITHIN, 1.0):
-            yield y + at * (d + at * (3.0 * (z - y) - 2.0 * d - e + at * (d + e - 2.0 * (z - y))))
+        d, e = (h / parts * (side.real + rate.real * position) for side, position in ((left, y), (right, z)))
+        for position in (*_WITHIN, 1.0):
+            yield y + position * (d + position * (3.0 * (z - y) - 2.0 * d - e + position * (d + e - 2.0 * (z - y))))
         left = right
 
 
@@ -301,17 +300,17 @@ def fourier_amplitudes(
     Parameters
     ----------
     motion : GroundMotion
-        The motion; its horizontal part counts.
+        Motion; only its horizontal part is used.
     frequencies : array_like, optional
-        Where the amplitudes are wanted, smoothed over their neighbours by the window of Konno & Ohmachi (1998); those
-        of the transform as they are if not given [Hz].
+        Frequencies of amplitudes smoothed by the window of Konno & Ohmachi (1998); the default is the unsmoothed
+        transform [Hz].
     bandwidth : float
-        b of the window: the larger, the narrower [-].
+        Parameter b of the window; a larger b gives a narrower window [-].
 
     Returns
     -------
     tuple of ndarray
-        Frequencies [Hz] and amplitudes of one side [m/s].
+        Frequencies [Hz] and one-sided amplitudes [m/s].
 
     Examples
     --------
@@ -320,16 +319,16 @@ def fourier_amplitudes(
     2.0
     """
     motion = checked_motion(motion)
-    every = np.fft.rfftfreq(len(motion), motion.time_step)
+    all_frequencies = np.fft.rfftfreq(len(motion), motion.time_step)
     amplitudes = motion.time_step * np.abs(np.fft.rfft(motion.acceleration))  # Eq. 304
     if frequencies is None:
-        return np.asarray(every, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
-    wanted = np.atleast_1d(checks.positive_array("frequencies", frequencies, "Hz"))
-    checks.all_within("frequencies", wanted, every[1], every[-1], wanted)
+        return np.asarray(all_frequencies, dtype=np.float64), np.asarray(amplitudes, dtype=np.float64)
+    requested = np.atleast_1d(checks.positive_array("frequencies", frequencies, "Hz"))
+    checks.all_within("frequencies", requested, all_frequencies[1], all_frequencies[-1], requested)
     b = checks.positive("bandwidth", bandwidth)
-    smooth = np.empty(wanted.size)
-    for k, centre in enumerate(wanted.tolist()):
-        x = b * np.log10(every[1:] / centre)
+    smooth = np.empty(requested.size)
+    for k, centre in enumerate(requested.tolist()):
+        x = b * np.log10(all_frequencies[1:] / centre)
         window = np.sinc(x / np.pi) ** 4  # Eq. 305
         smooth[k] = float((window * amplitudes[1:]).sum() / window.sum())
-    return wanted.copy(), smooth
+    return requested.copy(), smooth

@@ -15,14 +15,14 @@ from rocking.motions.intensity import measure, sampled
 from rocking.motions.pulse import Pulse
 
 GROUND = "ground"
-"""Support of a motion that is not that of a floor."""
+"""Support of a motion at the ground."""
 
 _MOST_ROWS = 12
 _SHOWN_NAMES = 4
 
 
 def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[str, ...]:
-    """Return the source of a motion and each processing step, in order; of components what differs by axis.
+    """Return the source of a motion and each processing step, in order; of components the differences by axis.
 
     The source of a pulse is its exact definition, or the text that `pulse` returns.
 
@@ -33,7 +33,7 @@ def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[st
     if isinstance(motion, Components):
         motion = dict(zip("xyz", motion.parts, strict=True))
     if isinstance(motion, Mapping):
-        lines = {axis: provenance_of(part, pulse) for axis, part in motion.items() if part is not None}
+        lines = {axis: provenance_of(component, pulse) for axis, component in motion.items() if component is not None}
         shared, own = _shared(lines)
         return (*(f"{axis}: {line}" for axis, steps in own.items() for line in steps), *shared)
     if isinstance(motion, Pulse):
@@ -67,12 +67,12 @@ def peak_names(supports: Iterable[str]) -> tuple[str, str]:
     (('PFA', 'PFV'), ('PGA/PFA', 'PGV/PFV'))
     """
     kinds = sorted(set(supports), key=GROUND.__ne__)
-    acceleration, velocity = ("/".join(dict.fromkeys(peak_name(each, of) for each in kinds)) for of in "AV")
+    acceleration, velocity = ("/".join(dict.fromkeys(peak_name(kind, quantity) for kind in kinds)) for quantity in "AV")
     return acceleration, velocity
 
 
 def words_on(support: str, words: str) -> str:
-    """Return the words of a measure of motions on a support.
+    """Return the name of a measure for motions on a support.
 
     >>> words_on("floor 3 of 5", "peak ground acceleration")
     'peak floor acceleration, floor 3 of 5'
@@ -133,7 +133,7 @@ class MotionSummary:
         return cls(motion.name, support_of(motion), float(motion.peak), velocity, float(motion.duration), source)
 
     def answer(self) -> Answer:
-        """Return what is shown of the motion.
+        """Return the summary as an answer.
 
         Returns
         -------
@@ -147,7 +147,7 @@ class MotionSummary:
 
 
 def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
-    """Return what is shown of a motion times a scale factor [-]; None without a motion."""
+    """Return the answer of a motion times a scale factor [-]; None without a motion."""
     if motion is None:
         return None
     summary, size = MotionSummary.of(motion), abs(scale)
@@ -178,7 +178,7 @@ _CONDITIONS = {
 
 
 def condition(summaries: Sequence[MotionSummary]) -> str:
-    """Return the condition under which a probability holds: the motions and their intensity, in words.
+    """Return the condition of a probability: the motions and their intensity.
 
     >>> from rocking.motions import pulses
     >>> condition([MotionSummary.of(pulses.sine(2.94, 0.8))])[:26]
@@ -192,12 +192,12 @@ def condition(summaries: Sequence[MotionSummary]) -> str:
         "support": support, "count": len(summaries),
         "peak": f"{peak_name(support)} {peaks}", "velocity": f"{peak_name(support, 'V')} {velocities}",
     }  # fmt: skip
-    one, many = _CONDITIONS["ground" if support == GROUND else "floor"]
-    return Message(one if len(summaries) == 1 else many, facts)
+    single, many = _CONDITIONS["ground" if support == GROUND else "floor"]
+    return Message(single if len(summaries) == 1 else many, facts)
 
 
 def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return sources and processing steps as rows of motion and text; steps that all motions share have one row."""
+    """Return sources and processing steps as rows of motion and text; steps common to all motions have one row."""
     if len(summaries) == 1:
         return [(summaries[0].name, "; ".join(summaries[0].provenance))]
     shared, own = _shared(dict(enumerate(summary.provenance for summary in summaries)))
@@ -206,19 +206,19 @@ def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]
 
 
 def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return the rows of `provenance_rows` that a terminal shows: of many motions the files and the shared steps."""
+    """Return the rows of `provenance_rows` for a terminal: of many motions the files and the common steps."""
     rows = provenance_rows(summaries)
     if len(summaries) <= _SHOWN_NAMES:
         return rows
     files = [row for row in rows if "SHA-256" in row[1] or row[0].startswith("all ")]
     shown = files[-_MOST_ROWS:]
     remaining = len(rows) - len(shown)
-    hint = "--json lists the source and each step of every motion"
+    hint = "use --json for the source and each step of every motion"
     return [*shown, *([(f"{remaining} motions", hint)] if remaining else [])]
 
 
 def _shared(lines: Mapping[Any, Sequence[str]]) -> tuple[list[str], dict[Any, list[str]]]:
-    """Return the lines that all sequences have, and the other lines of each by its key."""
+    """Return the lines common to all sequences, and the other lines of each by its key."""
     first, *others = lines.values() or [()]
     shared = [line for line in first if all(line in other for other in others)] if others else []
     return shared, {key: [line for line in own if line not in shared] for key, own in lines.items()}

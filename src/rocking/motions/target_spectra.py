@@ -1,4 +1,4 @@
-"""Spectra that records are chosen and scaled for: Eurocode 8, ASCE 7, or a table in a file."""
+"""Target spectra for the selection and scaling of records: Eurocode 8, ASCE 7, or a table in a file."""
 
 import csv
 import re
@@ -21,28 +21,28 @@ GROUNDS = {
     2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.1, 0.25, 1.2),
         "D": (1.8, 0.1, 0.3, 1.2), "E": (1.6, 0.05, 0.25, 1.2)},
 }  # fmt: skip
-LONGEST = 4.0  # period to which Eurocode 8 gives the elastic spectrum; its Annex A continues the displacement [s]
+LONGEST = 4.0  # largest period of the elastic spectrum in Eurocode 8; Annex A continues the displacement [s]
 
 _QUANTITY = re.compile(r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(\S*)\s*")
 _UNIT = re.compile(r"[\[(_ ](m/s2|m/s\^2|m/s/s|cm/s2|cm/s\^2|gal|g)\s*[\])]?\s*$", re.IGNORECASE)
-_HOW = "eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1.0g,sd1=0.6g,tl=8, or a CSV file of period and acceleration"
+_ALLOWED = "eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1.0g,sd1=0.6g,tl=8, or a CSV file of period and acceleration"
 
 
 @dataclass(frozen=True, eq=False)
 class TargetSpectrum:
-    """A pseudo-acceleration spectrum that records are compared with."""
+    """A pseudo-acceleration spectrum for comparison with records."""
 
-    name: str  # what it is
-    damping: float  # its damping ratio [-]
-    longest: float  # largest period for which it is defined [s]
-    shortest: float  # smallest period for which it is defined [s]
+    name: str
+    damping: float  # damping ratio [-]
+    longest: float  # largest defined period [s]
+    shortest: float  # smallest defined period [s]
     of_periods: Callable[[FloatArray], FloatArray]  # pseudo-acceleration [m/s2] of an array of periods [s]
 
     def __call__(self, periods: ArrayLike) -> FloatArray:
-        """Return the pseudo-spectral acceleration [m/s2] at periods within what it is defined for [s]."""
-        given = np.atleast_1d(checks.real_array("periods", periods, "s"))
-        checks.all_within(f"periods of {self.name}", given, self.shortest, self.longest, given)
-        return np.asarray(self.of_periods(given), dtype=np.float64)
+        """Return the pseudo-spectral acceleration [m/s2] at periods within the defined range [s]."""
+        validated = np.atleast_1d(checks.real_array("periods", periods, "s"))
+        checks.all_within(f"periods of {self.name}", validated, self.shortest, self.longest, validated)
+        return np.asarray(self.of_periods(validated), dtype=np.float64)
 
 
 def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05) -> TargetSpectrum:
@@ -51,11 +51,11 @@ def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05
     Parameters
     ----------
     ag : float
-        Of ground A, with the importance factor; a number with a unit, such as 0.25g [m/s2].
+        Design acceleration on ground A, with the importance factor [m/s2].
     ground : str
-        From A to E.
+        Ground type, from A to E.
     type : int
-        2 where earthquakes up to magnitude Ms 5.5 decide, else 1.
+        Spectrum type: 2 if earthquakes up to magnitude Ms 5.5 govern, else 1.
     damping : float
         Damping ratio [-].
 
@@ -84,11 +84,11 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
     Parameters
     ----------
     sds : float
-        At short periods; a number with a unit, such as 1g [m/s2].
+        Design acceleration at short periods [m/s2].
     sd1 : float
-        At 1 s; a number with a unit, such as 0.6g [m/s2].
+        Design acceleration at 1 s [m/s2].
     tl : float
-        Where the long periods begin [s].
+        Long-period transition period [s].
 
     >>> asce7(10.0, 6.0, 8.0)([0.0, 0.3, 2.0, 16.0]).round(12).tolist()
     [4.0, 10.0, 3.0, 0.1875]
@@ -98,7 +98,7 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
     if not ts < tl:
         raise InvalidValueError(
             "{parameter} must be above sd1 / sds = {corner:.4g} s, got {value} s", parameter="tl", value=tl, corner=ts,
-            hint="wrong unit?",
+            hint="check the unit",
         )  # fmt: skip
 
     def spectrum(t: FloatArray) -> FloatArray:
@@ -109,7 +109,7 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
 
 
 def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
-    """Return the spectrum of a CSV file: periods and accelerations, whose heading states the unit, as in ``Sa [g]``."""
+    """Return the spectrum of a CSV file with periods and accelerations; the heading contains the unit: ``Sa [g]``."""
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -120,43 +120,47 @@ def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
     head, *rows = [row for row in csv.reader(lines, delimiter=mark) if any(row)] or [[]]
     unit = _UNIT.search(head[1].strip()) if len(head) > 1 else None
     if unit is None:
-        raise InvalidValueError("its first line must name the columns with units, as in T [s], Sa [g]").at(path.name)
+        raise InvalidValueError("the first line must contain column names with units, such as T [s], Sa [g]").at(
+            path.name
+        )
     factor = ACCELERATION_UNITS[re.sub(r"m/s(\^2|/s)", "m/s2", unit[1].lower())]
     try:
         t, a = np.array([[float(cell.replace(",", ".")) for cell in row[:2]] for row in rows], dtype=np.float64).T
     except ValueError as error:
-        raise InvalidValueError("every line must be a period and an acceleration ({reason})", reason=str(error)).at(
-            path.name
-        ) from error
+        raise InvalidValueError(
+            "every line must contain a period and an acceleration ({reason})", reason=str(error)
+        ).at(path.name) from error
     if t.size < 2 or not (np.diff(t) > 0.0).all() or t[0] < 0.0 or not (a > 0.0).all() or not np.isfinite(a).all():
-        raise InvalidValueError("periods must rise from 0, and accelerations be finite and above zero").at(path.name)
+        raise InvalidValueError(
+            "periods must be >= 0 and increase, and accelerations must be finite and above zero"
+        ).at(path.name)
 
-    def spectrum(wanted: FloatArray) -> FloatArray:
-        return np.asarray(np.exp(np.interp(wanted, t, np.log(factor * a))), dtype=np.float64)
+    def spectrum(periods: FloatArray) -> FloatArray:
+        return np.asarray(np.exp(np.interp(periods, t, np.log(factor * a))), dtype=np.float64)
 
     return TargetSpectrum(path.name, damping, float(t[-1]), float(t[0]), spectrum)
 
 
 def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
-    """Return a target spectrum by one word, as the command line and job files take it.
+    """Return a target spectrum from a text, as on the command line and in input files.
 
     Parameters
     ----------
     words : str or TargetSpectrum
-        ``eurocode8:ag=0.25g,ground=C,type=1``, ``asce7:sds=1.0g,sd1=0.6g,tl=8``, or a CSV file whose heading states the
-        unit, as in ``T [s], Sa [g]``. Accelerations need a unit.
+        ``eurocode8:ag=0.25g,ground=C,type=1``, ``asce7:sds=1.0g,sd1=0.6g,tl=8``, or a CSV file with a heading
+        such as ``T [s], Sa [g]``. Accelerations require a unit.
     folder : Path, optional
-        Where the file is looked for.
+        Folder of the file.
 
     Returns
     -------
     TargetSpectrum
-        The spectrum.
+        Target spectrum.
 
     Raises
     ------
     InvalidValueError
-        If there is no such spectrum, or a value is missing or outside of its range.
+        If the spectrum is unknown, or a value is missing or outside its range.
 
     Examples
     --------
@@ -171,17 +175,17 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
         if (folder or Path()).joinpath(words).is_file():
             return in_file((folder or Path()) / words)
         raise InvalidValueError(
-            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_HOW, value=words
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=words
         )
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
-        key, _, value = (part.strip() for part in item.partition("="))
-        given[key] = value if key in {"ground", "type"} else _acceleration(key, value)
+        key, _, value = (text.strip() for text in item.partition("="))
+        values[key] = value if key in {"ground", "type"} else _acceleration(key, value)
     try:
-        return CODES[name](**given)
+        return CODES[name](**values)
     except TypeError as error:
         raise InvalidValueError(
-            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_HOW, value=words
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=words
         ) from error
 
 
@@ -189,12 +193,12 @@ CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce
 
 
 def _acceleration(key: str, text: str) -> float:
-    """Return a number, in SI units where it has a unit of acceleration."""
-    found = _QUANTITY.fullmatch(text)
+    """Return a number; an acceleration is in m/s2."""
+    match = _QUANTITY.fullmatch(text)
     is_acceleration = key in {"ag", "sds", "sd1"}
-    if found is None or found[2] not in (ACCELERATION_UNITS if is_acceleration else {"", "s"}):
+    if match is None or match[2] not in (ACCELERATION_UNITS if is_acceleration else {"", "s"}):
         like = "an acceleration with its unit such as 0.25g or 2.5m/s2" if is_acceleration else "a number such as 8"
         raise InvalidValueError(
             "{parameter} of a target must be {allowed}, got {value}", parameter=key, allowed=like, value=text
         )
-    return float(found[1]) * (ACCELERATION_UNITS[found[2]] if is_acceleration else 1.0)
+    return float(match[1]) * (ACCELERATION_UNITS[match[2]] if is_acceleration else 1.0)

@@ -330,7 +330,7 @@ STEP, WRITTEN = r"time_step must be in \[1e-09, 1000\] s, got", "a pulse is writ
 REFUSED: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
     STEP: (PULSE.sampled, [1e-300, 0.9e-9, 0.0, -0.1, 1001.0]),
     "time_step must be": (PULSE.sampled, [math.nan, math.inf, None, "0.1", 0.61]),
-    r"at most 2e\+06 samples, got 1e-09 s, which leaves 6e\+08": (PULSE.sampled, [1e-9]),
+    r"at most 2e\+06 samples, got 1e-09 s with 6e\+08": (PULSE.sampled, [1e-9]),
     r"at most 2e\+06 samples": (PULSE.sampled, [PULSE.duration / 1_999_999]),
     r"at most the pulse's duration 0\.5 s": (COSINE.sampled, [0.5 + 1e-12, 0.51]),
     WRITTEN: (pulses.pulse, [None, 5, b"sine:amplitude=3,period=0.8", ["sine"], PULSE]),
@@ -379,10 +379,10 @@ def test_words(words: str, expected: object) -> None:
 
 
 UNKNOWN = {
-    r"no pulse named .*; there are antisymmetric-ricker, cosine": (
+    r"unknown pulse .*; allowed are antisymmetric-ricker, cosine": (
         "", ":", "nope", "sinus:amplitude=3,period=0.8", "type_c:amplitude=1,period=1",
     ),
-    r"pulse 'sine' takes (amplitude, period|period, amplitude); got": (
+    r"pulse 'sine' requires (amplitude, period|period, amplitude); got": (
         "sine", "sine:amplitude=3", "sine:amplitude=3,period=1,cycles=2", "sine:amplitude=3,Period=1",
     ),
     "write a pulse as sine:amplitude=3,period=": (

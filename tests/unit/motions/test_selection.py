@@ -62,7 +62,7 @@ def test_a_target_in_a_file(tmp_path):
     assert target([0.1, 0.55]) == pytest.approx([0.4 * 9.80665, 0.2 * 9.80665], rel=1e-12)
     with pytest.raises(InvalidValueError, match="periods of uhs"):
         target([2.0])
-    for text, message in (("T,Sa\n0.1,0.4\n1,0.1\n", "with units"), ("T [s],Sa [g]\n1,0.4\n0.1,0.1\n", "must rise")):
+    for text, message in (("T,Sa\n0.1,0.4\n1,0.1\n", "with units"), ("T [s],Sa [g]\n1,0.4\n0.1,0.1\n", "must be >= 0")):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(InvalidValueError, match=message):
             target_spectrum("uhs.csv", tmp_path)
@@ -110,9 +110,9 @@ def test_the_closest_are_chosen(tmp_path):
 
 def test_too_few_are_refused():
     """More records than there are, or factors beyond what is allowed, are refused with how many come close."""
-    with pytest.raises(InvalidValueError, match="7 of 6 records are wanted"):
+    with pytest.raises(InvalidValueError, match="7 of 6 records are requested"):
         selected(RECORDS, "eurocode8:ag=2.0m/s2", 7, most=100.0)
-    with pytest.raises(InvalidValueError, match="0 come to Eurocode 8"):
+    with pytest.raises(InvalidValueError, match="only 0 match Eurocode 8"):
         selected(RECORDS, "eurocode8:ag=20000m/s2", most=4.0)
 
 

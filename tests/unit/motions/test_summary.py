@@ -87,7 +87,7 @@ def test_many_records_show_their_files():
                for k in range(30)]  # fmt: skip
     rows = short_provenance(summaries_of(several))
     assert rows[-2] == ("all 30 motions", "mean")
-    assert "--json lists" in rows[-1][1]
+    assert "--json" in rows[-1][1]
     assert len(rows) == 13
 
 

@@ -1,4 +1,4 @@
-"""Ground motions that never were: stochastic models, each with its seed."""
+"""Synthetic ground motions: stochastic models with random seeds."""
 
 from rocking.motions.synthetic.distributions import Lognormal, LogUniform, Uniform
 from rocking.motions.synthetic.families import Family, families, family, with_pulse

@@ -1,4 +1,4 @@
-"""Distributions of parameters, all with two finite ends: what a family of synthetic motions draws from."""
+"""Bounded distributions of the parameters of synthetic motions."""
 
 import math
 from abc import ABC, abstractmethod
@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class Distribution(ABC):
-    """A distribution between two ends, in the unit of the parameter; `str` says it in words."""
+    """A distribution between two bounds, in the unit of the parameter; `str` returns a description."""
 
     low: float
     high: float
@@ -25,11 +25,11 @@ class Distribution(ABC):
             raise InvalidValueError("low must be below high, got {low:g} and {high:g}", low=self.low, high=self.high)
 
     def cdf(self, value: FloatArray) -> FloatArray:
-        """Return the cumulative distribution function: 0 at the low end, 1 at the high end [-]."""
+        """Return the cumulative distribution function: 0 at the lower bound, 1 at the upper bound [-]."""
         return np.asarray(self._cdf(np.clip(value, self.low, self.high)))
 
     def quantile(self, share: float) -> float:
-        """Return the value of which a share from 0 to 1 lies below: uniform random numbers give this distribution."""
+        """Return the quantile of a probability from 0 to 1; uniform random numbers give samples."""
         share = checks.within("share", share, 0.0, 1.0, hint="not a percentage")
         return min(max(float(self._quantile(share)), self.low), self.high)
 
@@ -41,12 +41,12 @@ class Distribution(ABC):
 
 
 class Uniform(Distribution):
-    """Every value between the ends alike.
+    """A uniform distribution.
 
     Parameters
     ----------
     low, high : float
-        The ends, in the unit of what is drawn.
+        Bounds, in the unit of the parameter.
 
     Examples
     --------
@@ -66,12 +66,12 @@ class Uniform(Distribution):
 
 @dataclass(frozen=True)
 class LogUniform(Distribution):
-    """Every ratio alike: the logarithm is uniform.
+    """A distribution with a uniform logarithm.
 
     Parameters
     ----------
     low, high : float
-        The ends, above zero.
+        Bounds, above zero.
 
     Examples
     --------
@@ -95,16 +95,16 @@ class LogUniform(Distribution):
 
 @dataclass(frozen=True)
 class Lognormal(Distribution):
-    """A lognormal distribution cut off at two ends.
+    """A lognormal distribution truncated at two bounds.
 
     Parameters
     ----------
     low, high : float
-        The ends, above zero.
+        Bounds, above zero.
     median : float
-        Median before it is cut, between the ends.
+        Median before truncation, between the bounds.
     deviation : float
-        Standard deviation of the natural logarithm before it is cut [-].
+        Standard deviation of the natural logarithm before truncation [-].
 
     Examples
     --------

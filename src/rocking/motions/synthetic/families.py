@@ -1,4 +1,4 @@
-"""Families of synthetic motions: a generator, and for each of its parameters a distribution in round numbers."""
+"""Families of synthetic motions: generators with a distribution for each parameter."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ from rocking.motions.synthetic.sampling import MOST_SAMPLES
 from rocking.motions.synthetic.stochastic import NonstationaryFilter, modulation_from_intensity, nonstationary_motion
 
 HONESTY = "illustrative ranges chosen by this package: no fit to records, no hazard model"
-"""What every family says about where its distributions come from."""
+"""Source of the distributions of every family."""
 
 
 @dataclass(frozen=True)
@@ -32,17 +32,17 @@ class Family:
     name : str
         Short name.
     title : str
-        What the motions are like, in a few words.
+        Short description of the motions.
     generator : str
-        Which model of ground motion, with its source.
+        Model of ground motion, with its source.
     distributions : mapping of str to Distribution
-        By parameter, in the order of drawing; the unit stands in the name.
+        Distributions by parameter, in the order of sampling; the name contains the unit.
     make : callable
-        Takes the values by parameter, a seed and a time step [s]; returns a motion.
+        Function of the values by parameter, a seed and a time step [s]; returns a motion.
     time_step : float
-        Step between samples unless asked otherwise [s].
+        Default time step between samples [s].
     origin : str
-        Where the distributions come from.
+        Source of the distributions.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Family:
         Returns
         -------
         dict of str to float
-            Value by parameter.
+            Values by parameter.
         """
         if np.shape(shares) != (len(self.distributions),):
             raise InvalidValueError(
@@ -72,7 +72,7 @@ class Family:
                 count=len(self.distributions), shape=np.shape(shares),
             )  # fmt: skip
         pairs = zip(self.distributions.items(), shares, strict=True)
-        # twelve digits: the last ones hang on the C library
+        # twelve digits: the other digits depend on the C library
         return {name: float(f"{spread.quantile(float(share)):.12g}") for (name, spread), share in pairs}
 
     def motion(self, seed: int, number: int = 0, time_step: float | None = None) -> GroundMotion:
@@ -81,16 +81,16 @@ class Family:
         Parameters
         ----------
         seed : int
-            Seed of the whole set, at least 0 [-].
+            Seed of the set, at least 0 [-].
         number : int
-            Number of the motion, at least 0; seed and number alone make the motion [-].
+            Number of the motion, at least 0; seed and number define the motion [-].
         time_step : float, optional
-            Step between samples; that of the family if not given [s].
+            Time step between samples; the default is that of the family [s].
 
         Returns
         -------
         GroundMotion
-            The motion, with what was drawn as metadata.
+            Motion with the sampled parameters as metadata.
 
         Examples
         --------
@@ -101,12 +101,12 @@ class Family:
         seed, number = checks.whole("seed", seed), checks.whole("number", number)
         step = self.time_step if time_step is None else checks.positive("time_step", time_step, "s")
         shares, noise = _random(seed, number, len(self.distributions))
-        drawn = self.parameters(shares)
-        told = {"family": self.name, "seed": str(seed), "number": str(number)}
-        told |= {name: repr(value) for name, value in drawn.items()}
-        made = self.make(drawn, noise, step)
-        line = f"parameters drawn from the family {self.name} ({self.origin}), seed {seed}, number {number}"
-        return made.changed(line, name=f"{self.name}, seed {seed}, number {number}", metadata=told)
+        sampled = self.parameters(shares)
+        metadata = {"family": self.name, "seed": str(seed), "number": str(number)}
+        metadata |= {name: repr(value) for name, value in sampled.items()}
+        motion = self.make(sampled, noise, step)
+        line = f"parameters sampled from the family {self.name} ({self.origin}), seed {seed}, number {number}"
+        return motion.changed(line, name=f"{self.name}, seed {seed}, number {number}", metadata=metadata)
 
 
 def _random(seed: int, number: int, count: int) -> tuple[FloatArray, int]:
@@ -122,17 +122,16 @@ def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMo
     Parameters
     ----------
     residual : GroundMotion
-        What is left of a record without its pulse; its vertical part stays as it is.
+        Record without its pulse; its vertical part is unchanged.
     pulse : Pulse
-        The pulse, sampled at the step of the residual.
+        Pulse, sampled at the time step of the residual.
     arrival : float
-        Time at which the middle of the pulse passes, rounded to a whole step; the pulse must not begin before the
-        motion [s].
+        Time of the middle of the pulse, rounded to a whole step; the pulse must not begin before the motion [s].
 
     Returns
     -------
     GroundMotion
-        The sum; longer than the residual if the pulse ends after it.
+        Sum of both; longer than the residual if the pulse ends later.
 
     Examples
     --------
@@ -157,24 +156,24 @@ def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMo
     vertical = None
     if residual.vertical is not None:
         vertical = np.concatenate([residual.vertical, np.zeros(count - len(residual))])
-    what = f"{pulse.name} added, its middle at {first * step + half:g} s"
-    return residual.changed(what, acceleration=horizontal, vertical=vertical)
+    action = f"{pulse.name} added, its middle at {first * step + half:g} s"
+    return residual.changed(action, acceleration=horizontal, vertical=vertical)
 
 
 def families() -> dict[str, Family]:
-    """Return every family.
+    """Return all families.
 
     Returns
     -------
     dict of str to Family
-        By name; a copy.
+        Families by name, in a new dict.
 
     Examples
     --------
     >>> list(families())
     ['firm-ground', 'soft-ground', 'kanai-tajimi', 'point-source', 'pulse-like']
     """
-    return {one.name: one for one in _ALL}
+    return {item.name: item for item in _ALL}
 
 
 def family(which: str | Family) -> Family:
@@ -183,62 +182,62 @@ def family(which: str | Family) -> Family:
     Parameters
     ----------
     which : str or Family
-        Name as in `families`; a family is returned as it is.
+        Name from `families`; a family is returned unchanged.
 
     Returns
     -------
     Family
-        The family.
+        Family of motions.
     """
     if isinstance(which, Family):
         return which
-    known = families()
-    return known[checks.one_of("family", which, known)]
+    available = families()
+    return available[checks.one_of("family", which, available)]
 
 
-def _stochastic(drawn: Mapping[str, float], seed: int, step: float, corner: float) -> GroundMotion:
-    length = drawn["significant_duration_s"]
-    middle = drawn["middle_over_duration"] * length
-    modulation = modulation_from_intensity(drawn["arias_intensity_m_s"], length, middle)
+def _stochastic(sampled: Mapping[str, float], seed: int, step: float, corner: float) -> GroundMotion:
+    length = sampled["significant_duration_s"]
+    middle = sampled["middle_over_duration"] * length
+    modulation = modulation_from_intensity(sampled["arias_intensity_m_s"], length, middle)
     shaper = NonstationaryFilter(
-        drawn["frequency_hz"], drawn["slope_hz_s"], middle, drawn["damping"], lowest=0.2 * drawn["frequency_hz"]
+        sampled["frequency_hz"], sampled["slope_hz_s"], middle, sampled["damping"], lowest=0.2 * sampled["frequency_hz"]
     )
-    # the high pass needs about two of its periods to come to rest
+    # the high pass is at rest after about two of its periods
     duration = round(modulation.time_of(0.999) + 2.0 / corner, 9)
     return nonstationary_motion(modulation, shaper, seed=seed, time_step=step, duration=duration, corner=corner)
 
 
-def _nonstationary(drawn: Mapping[str, float], seed: int, step: float) -> GroundMotion:
-    return _stochastic(drawn, seed, step, drawn["corner_hz"])
+def _nonstationary(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotion:
+    return _stochastic(sampled, seed, step, sampled["corner_hz"])
 
 
-def _layer(drawn: Mapping[str, float], seed: int, step: float) -> GroundMotion:
-    layer = KanaiTajimi(drawn["density_m2_s3"], drawn["frequency_hz"], drawn["damping"])
-    rise, plateau = drawn["rise_s"], drawn["plateau_s"]
-    envelope = Envelope(rise, rise + plateau, drawn["decay_1_s"])
-    corner = drawn["corner_hz"]
-    duration = rise + plateau + 3.0 / drawn["decay_1_s"] + 2.0 / corner
+def _layer(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotion:
+    layer = KanaiTajimi(sampled["density_m2_s3"], sampled["frequency_hz"], sampled["damping"])
+    rise, plateau = sampled["rise_s"], sampled["plateau_s"]
+    envelope = Envelope(rise, rise + plateau, sampled["decay_1_s"])
+    corner = sampled["corner_hz"]
+    duration = rise + plateau + 3.0 / sampled["decay_1_s"] + 2.0 / corner
     raw = kanai_tajimi_motion(layer, envelope, seed=seed, time_step=step, duration=duration)
-    what = f"high-passed by a critically damped oscillator of {corner!r} Hz"
-    return raw.changed(what, acceleration=highpassed(raw.acceleration, raw.time_step, corner))
+    action = f"high-passed by a critically damped oscillator of {corner!r} Hz"
+    return raw.changed(action, acceleration=highpassed(raw.acceleration, raw.time_step, corner))
 
 
-def _source(drawn: Mapping[str, float], seed: int, step: float) -> GroundMotion:
+def _source(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotion:
     source = PointSource(
-        magnitude=drawn["magnitude"],
-        distance=1e3 * drawn["distance_km"],
-        stress_drop=1e5 * drawn["stress_drop_bar"],
-        kappa=drawn["kappa_s"],
+        magnitude=sampled["magnitude"],
+        distance=1e3 * sampled["distance_km"],
+        stress_drop=1e5 * sampled["stress_drop_bar"],
+        kappa=sampled["kappa_s"],
     )
     return point_source_motion(source, seed=seed, time_step=step)
 
 
-def _pulse_like(drawn: Mapping[str, float], seed: int, step: float) -> GroundMotion:
-    period, cycles = drawn["pulse_period_s"], drawn["pulse_cycles"]
-    pulse = mavroeidis_papageorgiou(drawn["pulse_velocity_m_s"], period, cycles, drawn["pulse_phase_rad"])
-    # below the frequency of the pulse the motion shall be the pulse
-    residual = _stochastic(drawn, seed, step, 1.0 / period)
-    middle = drawn["middle_over_duration"] * drawn["significant_duration_s"]
+def _pulse_like(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotion:
+    period, cycles = sampled["pulse_period_s"], sampled["pulse_cycles"]
+    pulse = mavroeidis_papageorgiou(sampled["pulse_velocity_m_s"], period, cycles, sampled["pulse_phase_rad"])
+    # the high pass leaves only the pulse below its frequency
+    residual = _stochastic(sampled, seed, step, 1.0 / period)
+    middle = sampled["middle_over_duration"] * sampled["significant_duration_s"]
     return with_pulse(residual, pulse, max(middle, 0.5 * pulse.duration + step))
 
 

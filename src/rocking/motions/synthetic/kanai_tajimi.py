@@ -1,4 +1,4 @@
-"""Kanai-Tajimi motions: white noise at the bedrock through a layer of soil, under an envelope."""
+"""Kanai-Tajimi motions: white noise at the bedrock, filtered by a soil layer, times an envelope."""
 
 import math
 from dataclasses import dataclass
@@ -12,21 +12,21 @@ from rocking.motions.filters import exponential, recurrence, transition
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-LEAST_PHASE = 1e-3  # smallest phase of the filter in one step [rad]: below, the covariance of a step drowns in rounding
+MIN_PHASE = 1e-3  # smallest phase of the filter in one step [rad]: below, rounding errors dominate its covariance
 
 
 @dataclass(frozen=True)
 class KanaiTajimi:
-    """Soil layer as an oscillator that white noise shakes.
+    """Soil layer as an oscillator under white noise.
 
     Parameters
     ----------
     density : float
         Two-sided power spectral density S0 of the noise over circular frequency [m2/s3 per rad].
     frequency : float
-        Natural frequency of the layer [Hz]; the default 2.5 Hz is the customary 5 pi rad/s of firm ground.
+        Natural frequency of the layer [Hz]; the default 2.5 Hz (5 pi rad/s) is usual for firm ground.
     damping : float
-        Damping ratio of the layer, between 0 and 1; the default 0.6 is customary too [-].
+        Damping ratio of the layer, between 0 and 1; the default 0.6 is usual [-].
     """
 
     density: float
@@ -56,7 +56,7 @@ class KanaiTajimi:
         Returns
         -------
         ndarray
-            Two-sided, over circular frequency [m2/s3 per rad].
+            Two-sided spectral density over circular frequency [m2/s3 per rad].
         """
         ratio = (frequency / self.frequency) ** 2
         coupling = 4.0 * self.damping**2 * ratio
@@ -65,7 +65,7 @@ class KanaiTajimi:
 
 @dataclass(frozen=True)
 class Envelope:
-    """Parabola up, plateau, exponential down (Jennings, Housner & Tsai 1968).
+    """Envelope with parabolic rise, plateau and exponential decay (Jennings, Housner & Tsai 1968).
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Envelope:
     plateau : float
         End of the plateau, not before the rise [s].
     decay : float
-        Decay after it; zero for none [1/s].
+        Decay rate after the plateau; zero for none [1/s].
 
     Examples
     --------
@@ -108,32 +108,32 @@ def kanai_tajimi_motion(
 ) -> GroundMotion:
     """Return one synthetic motion.
 
-    The layer is stationary from the start and is stepped exactly, with the exact covariance that white noise adds
-    within a step: the samples have the closed-form variance at any step. The model keeps power down to zero
-    frequency, so that velocity and displacement drift: `bandpassed` or `detrended` takes this away.
+    The layer is stationary from the start. The recurrence and the covariance of the noise within a step are exact: the
+    samples have the closed-form variance for any time step. The model has power at zero frequency. Velocity and
+    displacement therefore drift; `bandpassed` or `detrended` removes the drift.
 
     Parameters
     ----------
     layer : KanaiTajimi
-        The soil layer and the noise below it.
+        Soil layer and the noise below it.
     envelope : Envelope, optional
-        Factor over time; the default is that of `Envelope`.
+        Factor over time; the default is `Envelope()`.
     seed : int
-        The same seed gives the same bits [-].
+        Random seed; equal seeds give equal bits [-].
     time_step : float
-        Step between samples [s].
+        Time step between samples [s].
     duration : float
-        Duration [s].
+        Duration of the motion [s].
 
     Returns
     -------
     GroundMotion
-        The motion, with its parameters as metadata.
+        Motion with its parameters as metadata.
 
     Raises
     ------
     InvalidValueError
-        If a parameter is outside its range, or the step is far too short or too long for the layer.
+        If a parameter is outside its range, or the time step is too short or too long for the layer.
 
     Examples
     --------
@@ -145,8 +145,8 @@ def kanai_tajimi_motion(
     time = times(time_step, duration)
     step = float(time[1])
     omega = 2.0 * math.pi * layer.frequency
-    if not LEAST_PHASE <= omega * step < math.pi:
-        low, high = LEAST_PHASE / omega, math.pi / omega
+    if not MIN_PHASE <= omega * step < math.pi:
+        low, high = MIN_PHASE / omega, math.pi / omega
         raise InvalidValueError(
             "time_step must be in [{low:g}, {high:g}) s for this layer, got {step:g}", low=low, high=high, step=step
         )
@@ -159,12 +159,12 @@ def kanai_tajimi_motion(
 
 
 def _stationary(layer: KanaiTajimi, omega: float, step: float, kicks: FloatArray) -> FloatArray:
-    # displacement times omega, so that both states have the same variance and no correlation
+    # displacement times omega: both states have equal variance and no correlation
     zeta = layer.damping
     deviation = math.sqrt(math.pi * layer.density / (2.0 * zeta * omega))
     move = transition(omega, zeta, step) * np.array([[1.0, omega], [1.0 / omega, 1.0]])
     (m00, m01), (m10, m11) = move.tolist()
-    # Cholesky's factor of the covariance that a step adds, the identity less move times its transpose
+    # Cholesky factor of the covariance added in a step: identity - move move^T
     s00 = math.sqrt(1.0 - (m00 * m00 + m01 * m01))  # Eq. 166
     s10 = -(m00 * m10 + m01 * m11) / s00
     s11 = math.sqrt(1.0 - (m10 * m10 + m11 * m11) - s10 * s10)

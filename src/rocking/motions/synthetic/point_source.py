@@ -1,4 +1,4 @@
-"""Stochastic point source after Boore (2003): noise with the spectrum that a fault far away radiates."""
+"""Stochastic point source after Boore (2003): noise with the spectrum of a distant source."""
 
 import math
 from dataclasses import dataclass
@@ -14,18 +14,17 @@ from rocking.motions.filters import exponential, logarithm
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-REFERENCE_DISTANCE = 1000.0  # distance at which the source spectrum holds [m]
+REFERENCE_DISTANCE = 1000.0  # distance of the source spectrum [m]
 
 PEAK_AT, LEVEL_AT_END, STRETCH = 0.2, 0.05, 2.0
-"""Window: place of its peak, level at its end, and its length over the duration of the motion."""
+"""Window: position of its peak, level at its end, and its length / duration of the motion."""
 
 
 @dataclass(frozen=True)
 class PointSource:
     """Source, path and site of a stochastic point-source motion.
 
-    The defaults are of the kind that is used for western North America, without amplification by the site; they are
-    there for trying things out.
+    The defaults are typical for western North America, without site amplification. They are examples.
 
     Parameters
     ----------
@@ -40,16 +39,16 @@ class PointSource:
     density : float
         Density at the source [kg/m3].
     radiation : float
-        Radiation pattern, an average [-].
+        Average radiation pattern [-].
     free_surface : float
         Amplification by the free surface [-].
     partition : float
-        Share of one of two horizontal components [-].
+        Partition onto one of two horizontal components [-].
     spreading : tuple of (float, float)
-        Pieces of the geometric spreading: distance at which each begins [m] and its exponent. The first begins
-        at 1 km, where the factor is 1.
+        Segments of the geometric spreading: start distance [m] and exponent. The first segment starts at 1 km, with
+        the factor 1.
     quality : tuple of (float, float)
-        ``Q(f) = Q0 (f / 1 Hz)^n``: Q0 and n [-].
+        Q0 and n of ``Q(f) = Q0 (f / 1 Hz)^n`` [-].
     kappa : float
         Attenuation close to the site [s].
     path_duration : float
@@ -77,21 +76,21 @@ class PointSource:
 
     def __post_init__(self) -> None:
         checks.within("magnitude", self.magnitude, 0.0, 10.0)
-        checks.within("distance", self.distance, REFERENCE_DISTANCE, 2e7, unit="m", hint="given in km?")
+        checks.within("distance", self.distance, REFERENCE_DISTANCE, 2e7, unit="m", hint="enter metres, not km")
         checks.within("stress_drop", self.stress_drop, 1e3, 1e9, unit="Pa", hint="1 bar is 1e5 Pa")
-        checks.within("shear_velocity", self.shear_velocity, 100.0, 1e4, unit="m/s", hint="given in km/s?")
-        checks.within("density", self.density, 500.0, 1e4, unit="kg/m3", hint="given in g/cm3?")
+        checks.within("shear_velocity", self.shear_velocity, 100.0, 1e4, unit="m/s", hint="enter m/s, not km/s")
+        checks.within("density", self.density, 500.0, 1e4, unit="kg/m3", hint="enter kg/m3, not g/cm3")
         for name in ("radiation", "free_surface", "partition"):
             checks.positive(name, getattr(self, name))
         q0, power = _pairs("quality", (self.quality,))[0]
         checks.positive("quality[0]", q0)
         checks.within("quality[1]", power, -2.0, 1.0)
         checks.within("kappa", self.kappa, 0.0, 1.0, unit="s")
-        checks.within("path_duration", self.path_duration, 0.0, 1.0, unit="s/m", hint="given in s/km?")
+        checks.within("path_duration", self.path_duration, 0.0, 1.0, unit="s/m", hint="enter s/m, not s/km")
         starts, exponents = _pairs("spreading", self.spreading).T
         if starts[0] != REFERENCE_DISTANCE or not np.all(np.diff(starts) > 0.0):
             raise InvalidValueError(
-                "{parameter} must begin at 1000 m and go outwards, got distances {distances} m", parameter="spreading",
+                "{parameter} must start at 1000 m with increasing distances, got {distances} m", parameter="spreading",
                 distances=str(starts),
             )  # fmt: skip
         for exponent in exponents:
@@ -110,7 +109,7 @@ class PointSource:
 
     @property
     def duration(self) -> float:
-        """Duration of the motion, of the source and of the path [s]."""
+        """Duration of source and path [s]."""
         return 1.0 / self.corner_frequency + self.path_duration * self.distance  # Eq. 175
 
     def geometric_spreading(self) -> float:
@@ -119,7 +118,7 @@ class PointSource:
         Returns
         -------
         float
-            1 at 1 km [-].
+            Factor, 1 at 1 km [-].
         """
         starts = [start for start, _ in self.spreading]
         factor = 1.0
@@ -133,7 +132,7 @@ class PointSource:
         Parameters
         ----------
         frequency : ndarray
-            Frequencies of at least zero [Hz].
+            Frequencies, at least zero [Hz].
 
         Returns
         -------
@@ -144,7 +143,7 @@ class PointSource:
         constant = self.radiation * self.partition * self.free_surface
         constant /= 4.0 * math.pi * self.density * beta**3 * REFERENCE_DISTANCE
         source = (2.0 * np.pi * frequency) ** 2 / (1.0 + (frequency / self.corner_frequency) ** 2)
-        # f / Q(f) written so that zero frequency needs no division
+        # f / Q(f) without division at zero frequency
         path = _power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
         loss = exponential(-np.pi * (path + self.kappa * frequency))
         return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)  # Eq. 176
@@ -155,29 +154,29 @@ def point_source_motion(
 ) -> GroundMotion:
     """Return one synthetic motion.
 
-    White noise is windowed, its spectrum is divided by its root mean square, multiplied by that of the source, and
-    brought back. The window begins one source duration ``1 / fc`` after the start.
+    The spectrum of windowed white noise is divided by its root mean square and multiplied by the spectrum of the
+    source. The window begins one source duration ``1 / fc`` after the start.
 
     Parameters
     ----------
     source : PointSource
-        Source, path and site.
+        Source, path and site parameters.
     seed : int
-        The same seed gives the same bits [-].
+        Random seed; equal seeds give equal bits [-].
     time_step : float
-        Step between samples [s].
+        Time step between samples [s].
     duration : float, optional
-        Duration; if not given, the window with ``1 / fc`` before and after it [s].
+        Duration; the default is the window with ``1 / fc`` before and after it [s].
 
     Returns
     -------
     GroundMotion
-        The motion, with its parameters as metadata.
+        Motion with its parameters as metadata.
 
     Raises
     ------
     InvalidValueError
-        If the duration does not hold the window, or the step is too long for the corner frequency.
+        If the duration is shorter than the window, or the time step is too long for the corner frequency.
 
     Examples
     --------
@@ -192,8 +191,8 @@ def point_source_motion(
         duration = 2.0 * lead + length
     elif checks.positive("duration", duration, "s") < lead + length:
         raise InvalidValueError(
-            "duration must be at least {least:g} s for this source, got {duration:g}",
-            least=lead + length,
+            "duration must be at least {limit:g} s for this source, got {duration:g}",
+            limit=lead + length,
             duration=duration,
         )
     time = times(time_step, duration)
@@ -204,12 +203,12 @@ def point_source_motion(
             limit=0.5 * lead,
         )  # fmt: skip
     noise = normals(seed, time.size) * window((time - lead) / length)
-    # zeros behind, up to a length that is quick to transform
+    # zero padding to an efficient transform length
     size = next_fast_len(time.size, real=True)
     spectrum = np.fft.rfft(noise, size)
     spread = math.sqrt(float(np.mean(spectrum.real**2 + spectrum.imag**2)))
     target = source.amplitude(np.arange(spectrum.size, dtype=np.float64) / (size * step)) / (spread * step)
-    # a product of real numbers: complex ones round differently on some processors
+    # real products: rounding of complex products depends on the processor
     spectrum.real *= target
     spectrum.imag *= target
     acceleration = np.fft.irfft(spectrum, size)[: time.size]
@@ -220,10 +219,10 @@ def point_source_motion(
     )
 
 
-def window(place: FloatArray) -> FloatArray:
-    """Return the window of Saragoni and Hart as Boore uses it: 0 before it, 1 at 0.2 of its length, 0.05 at 1."""
+def window(position: FloatArray) -> FloatArray:
+    """Return the Saragoni-Hart window of Boore: 0 before the start, 1 at 0.2 of its length, 0.05 at its end."""
     power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
-    ratio = np.maximum(place, 0.0) / PEAK_AT
+    ratio = np.maximum(position, 0.0) / PEAK_AT
     return exponential(power * (logarithm(ratio) + 1.0 - ratio))  # Eq. 177
 
 
@@ -236,6 +235,6 @@ def _pairs(name: str, values: Any) -> FloatArray:
     pairs = checks.real_array(name, values)
     if pairs.ndim != 2 or pairs.shape[1] != 2:
         raise InvalidValueError(
-            "{parameter} must be made of pairs of numbers, got shape {shape}", parameter=name, shape=pairs.shape
+            "{parameter} must contain pairs of numbers, got shape {shape}", parameter=name, shape=pairs.shape
         )
     return pairs

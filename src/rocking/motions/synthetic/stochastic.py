@@ -12,13 +12,13 @@ from rocking.motions.filters import NEIGHBOURS, cosine_sine, exponential, highpa
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-MIDDLE = 0.45  # share of the Arias intensity at the middle of the strong shaking (Rezaeian & Der Kiureghian 2010)
+MIDDLE = 0.45  # fraction of the Arias intensity at the middle of the strong motion (Rezaeian & Der Kiureghian 2010)
 
 WIDEST, NARROWEST = 1.0, 1e4
-"""Allowed shapes of the gamma distribution of the energy: from one that starts at once to a narrow burst."""
+"""Allowed shape parameters of the gamma distribution of the energy."""
 
-FORGOTTEN = 27.0  # decays of an impulse response after which it is left out: exp(-27) = 2e-12
-SPACING = 0.05  # distance of the frequencies of oscillators that share impulses, over the slowest rate of decay [-]
+FORGOTTEN = 27.0  # cut-off of an impulse response in decay times: exp(-27) = 2e-12
+SPACING = 0.05  # frequency spacing of the oscillators / slowest decay rate [-]
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class GammaModulation:
     Parameters
     ----------
     a1 : float
-        Size [m/s2 over s^(a2 - 1)].
+        Amplitude [m/s2 over s^(a2 - 1)].
     a2 : float
         Shape, at least 1 [-].
     a3 : float
@@ -50,13 +50,13 @@ class GammaModulation:
         object.__setattr__(self, "a3", checks.positive("a3", self.a3, "1/s"))
 
     def __call__(self, time: FloatArray) -> FloatArray:
-        """Return the standard deviation at times of at least zero."""
-        # in logarithms: the power alone can overflow
+        """Return the standard deviation at times >= 0 [m/s2]."""
+        # logarithms avoid an overflow of the power
         grown = (self.a2 - 1.0) * logarithm(time) if self.a2 > 1.0 else np.zeros_like(time)
         return exponential(logarithm(np.array(self.a1)) + grown - self.a3 * time)  # Eq. 169
 
     def arias_intensity(self, gravity: float = g) -> float:
-        """Return the expected Arias intensity of the whole motion.
+        """Return the expected Arias intensity of the motion.
 
         Parameters
         ----------
@@ -66,7 +66,7 @@ class GammaModulation:
         Returns
         -------
         float
-            The intensity [m/s].
+            Arias intensity [m/s].
         """
         gravity = checks.positive("gravity", gravity, "m/s2")
         shape, rate = 2.0 * self.a2 - 1.0, 2.0 * self.a3
@@ -74,17 +74,17 @@ class GammaModulation:
         return 0.5 * math.pi / gravity * math.exp(energy)
 
     def time_of(self, share: float) -> float:
-        """Return the time at which a share of the expected Arias intensity is reached.
+        """Return the time of a fraction of the expected Arias intensity.
 
         Parameters
         ----------
         share : float
-            Between 0 and 1 [-].
+            Fraction, between 0 and 1 [-].
 
         Returns
         -------
         float
-            The time [s].
+            Time [s].
         """
         share = checks.within("share", share, 0.0, 1.0, open_high=True, hint="not a percentage")
         return _quantile(2.0 * self.a2 - 1.0, share) / (2.0 * self.a3)
@@ -93,31 +93,31 @@ class GammaModulation:
 def modulation_from_intensity(
     arias_intensity: float, significant_duration: float, middle: float, gravity: float = g
 ) -> GammaModulation:
-    """Return the gamma modulation that has a given intensity, duration and middle.
+    """Return the gamma modulation with a given intensity, duration and middle.
 
-    The squared modulation is a gamma distribution with the shape ``2 a2 - 1`` and the rate ``2 a3``; the ratio of
-    the duration to the middle depends on the shape alone, which is solved for.
+    The squared modulation is a gamma distribution with shape ``2 a2 - 1`` and rate ``2 a3``. The ratio of duration to
+    middle depends only on the shape, which is computed from it.
 
     Parameters
     ----------
     arias_intensity : float
         Expected Arias intensity [m/s].
     significant_duration : float
-        Duration between 5 and 95 % of it [s].
+        Duration between 5 and 95 % of the Arias intensity [s].
     middle : float
-        Time at which 45 % of it is reached [s].
+        Time of 45 % of the Arias intensity [s].
     gravity : float
         Acceleration of gravity [m/s2].
 
     Returns
     -------
     GammaModulation
-        The modulation.
+        Modulation with these values.
 
     Raises
     ------
     InvalidValueError
-        If no gamma modulation has this ratio of the duration to the middle.
+        If no gamma modulation has this ratio of duration to middle.
 
     Examples
     --------
@@ -131,23 +131,23 @@ def modulation_from_intensity(
     duration = checks.positive("significant_duration", significant_duration, "s")
     middle = checks.positive("middle", middle, "s")
     gravity = checks.positive("gravity", gravity, "m/s2")
-    wanted = duration / middle
-    least, most = _ratio(NARROWEST), _ratio(WIDEST)
-    if not least <= wanted <= most:
+    ratio = duration / middle
+    low, high = _ratio(NARROWEST), _ratio(WIDEST)
+    if not low <= ratio <= high:
         raise InvalidValueError(
-            "significant_duration / middle must be in [{least:.4g}, {most:.4g}], got "
-            "{ratio:.4g}; does the middle count from the start of the motion?",
-            least=least,
-            most=most,
-            ratio=wanted,
+            "significant_duration / middle must be in [{low:.4g}, {high:.4g}], got "
+            "{ratio:.4g}; enter the middle as a time from the start of the motion",
+            low=low,
+            high=high,
+            ratio=ratio,
         )
-    # the ends themselves may miss by rounding
+    # rounding errors are possible at the bounds
     log_shape = (
         0.0
-        if wanted == most
-        else float(brentq(lambda x: _ratio(math.exp(x)) - wanted, math.log(WIDEST), math.log(NARROWEST), xtol=1e-14))
+        if ratio == high
+        else float(brentq(lambda x: _ratio(math.exp(x)) - ratio, math.log(WIDEST), math.log(NARROWEST), xtol=1e-14))
     )
-    # eleven and twelve digits: the last ones hang on the C library
+    # eleven and twelve digits: the other digits depend on the C library
     shape = float(f"{math.exp(log_shape):.11g}")
     rate = float(f"{_quantile(shape, MIDDLE) / middle:.11g}")
     energy = 2.0 * gravity * intensity / math.pi
@@ -157,10 +157,9 @@ def modulation_from_intensity(
 
 @dataclass(frozen=True)
 class NonstationaryFilter:
-    """Oscillator whose frequency drifts while it shapes the noise.
+    """Oscillator with a drifting frequency, a filter of the noise.
 
-    The defaults are round numbers of the size of records on firm ground, for trying things out; they are no
-    prediction for any site.
+    The defaults are typical for firm ground. They are examples, not a prediction for a site.
 
     Parameters
     ----------
@@ -169,11 +168,11 @@ class NonstationaryFilter:
     slope : float
         Change of the frequency with time [Hz/s].
     middle : float
-        Time at which the frequency is `frequency` [s].
+        Time of the frequency `frequency` [s].
     damping : float
-        Damping ratio, between 0 and 1: small is narrow-banded [-].
+        Damping ratio, between 0 and 1; a small ratio gives a narrow band [-].
     lowest : float
-        The drift ends where the frequency falls to this [Hz].
+        Lower limit of the drifting frequency [Hz].
     """
 
     frequency: float = 6.0
@@ -191,7 +190,7 @@ class NonstationaryFilter:
         object.__setattr__(self, "lowest", checks.within("lowest", self.lowest, 0.0, self.frequency, open_low=True))
 
     def omega(self, time: FloatArray) -> FloatArray:
-        """Return the frequency at given times.
+        """Return the circular frequency at given times.
 
         Parameters
         ----------
@@ -217,40 +216,40 @@ def nonstationary_motion(
 ) -> GroundMotion:
     """Return one synthetic motion.
 
-    Before the high pass its standard deviation is that of `modulation` at every sample but the first, which is zero.
+    Before the high pass, its standard deviation equals `modulation` at every sample except the first, which is zero.
 
     Parameters
     ----------
     modulation : GammaModulation
-        Standard deviation over time; `modulation_from_intensity` finds it.
+        Standard deviation over time, for example from `modulation_from_intensity`.
     shaper : NonstationaryFilter
         Frequency and bandwidth over time.
     seed : int
-        The same seed gives the same bits [-].
+        Random seed; equal seeds give equal bits [-].
     time_step : float
-        Step between samples [s].
+        Time step between samples [s].
     duration : float
-        Duration [s].
+        Duration of the motion [s].
     corner : float or None
-        Frequency of the critically damped high pass that brings velocity and displacement back to zero; None for
-        none [Hz].
+        Frequency of the critically damped high pass, after which velocity and displacement end at zero; None for no
+        high pass [Hz].
 
     Returns
     -------
     GroundMotion
-        The motion, with its parameters as metadata.
+        Motion with its parameters as metadata.
 
     Raises
     ------
     InvalidValueError
-        If a parameter is outside its range, or the filter is faster than the steps can follow.
+        If a parameter is outside its range, or the filter frequency exceeds the Nyquist frequency.
 
     Examples
     --------
     >>> modulation = GammaModulation(a1=0.5, a2=2.0, a3=0.3)
-    >>> one = nonstationary_motion(modulation, NonstationaryFilter(), seed=1, duration=20.0)
-    >>> two = nonstationary_motion(modulation, NonstationaryFilter(), seed=1, duration=20.0)
-    >>> bool((one.acceleration == two.acceleration).all())
+    >>> first = nonstationary_motion(modulation, NonstationaryFilter(), seed=1, duration=20.0)
+    >>> second = nonstationary_motion(modulation, NonstationaryFilter(), seed=1, duration=20.0)
+    >>> bool((first.acceleration == second.acceleration).all())
     True
     """
     time = times(time_step, duration)
@@ -259,7 +258,8 @@ def nonstationary_motion(
     if omega.max() * step >= math.pi:
         raise InvalidValueError(
             "filter frequency must be below {limit:g} Hz for steps of {step:g} s, got {frequency:g} Hz",
-            limit=0.5 / step, step=step, frequency=float(omega.max()) / (2.0 * math.pi), hint="sign of the slope?",
+            limit=0.5 / step, step=step, frequency=float(omega.max()) / (2.0 * math.pi),
+            hint="check the sign of the slope",
         )  # fmt: skip
     noise = normals(seed, time.size)
     acceleration = modulation(time) * _unit_process(noise, omega, shaper.damping, step)
@@ -274,10 +274,10 @@ def nonstationary_motion(
     )
 
 
-def _quantile(shape: float, share: float) -> float:
+def _quantile(shape: float, fraction: float) -> float:
     from scipy.special import gammaincinv
 
-    return float(gammaincinv(shape, share))
+    return float(gammaincinv(shape, fraction))
 
 
 def _ratio(shape: float) -> float:
@@ -285,23 +285,23 @@ def _ratio(shape: float) -> float:
 
 
 def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: float) -> FloatArray:
-    """Return noise through a filter that changes, over its own standard deviation: variance 1 after the start."""
-    # Every impulse goes through the oscillator of its own instant. As the frequency drifts one way, few oscillators a
-    # short way apart serve: polynomials of degree 9 between their responses err below 1e-10. Where a drift crosses
-    # more of them than there are impulses, each impulse has its own.
+    """Return noise after the drifting filter, normalised to variance 1 after the start."""
+    # Every impulse excites the oscillator of its own time. The frequency drifts in one direction, and few oscillators
+    # with small spacing suffice: polynomials of degree 9 between their responses have errors below 1e-10. If this
+    # requires more oscillators than impulses, each impulse has its own oscillator.
     used, count = omega[:-1], noise.size - 1
     spacing = SPACING * damping * float(used.min())
-    place, own = np.abs(used - used[0]) / spacing, used
-    nodes = int(place.max()) + NEIGHBOURS
+    position, own = np.abs(used - used[0]) / spacing, used
+    nodes = int(position.max()) + NEIGHBOURS
     if shared := nodes < count:
         steps = np.arange(nodes, dtype=np.float64) - (NEIGHBOURS - 1) // 2
         own = used[0] + math.copysign(spacing, float(used[-1] - used[0])) * steps
     else:
-        place = np.arange(count, dtype=np.float64)
+        position = np.arange(count, dtype=np.float64)
     decay = exponential(-damping * step * own)
     cosine, sine = cosine_sine(math.sqrt(1.0 - damping * damping) * step * own)
     lasting = np.ceil(FORGOTTEN / (damping * step * own))
-    total, squares = resonances(noise, omega, place, shared, (decay * cosine, decay * sine), lasting)
-    # at the first sample nothing has come through yet
+    total, squares = resonances(noise, omega, position, shared, (decay * cosine, decay * sine), lasting)
+    # the first sample has no response yet
     squares[0] = 2.0
     return total / np.sqrt(0.5 * squares)  # Eq. 172

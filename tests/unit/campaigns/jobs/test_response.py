@@ -102,7 +102,7 @@ REFUSED = {
     "nan": (TEXT.replace("1.2", "nan"), "must be a finite number"),
     "body": (TEXT.replace("width = 50", "width = -50"), "body: block.width must be a number > 0"),
     "record": (TEXT.replace('pulse = "sine:amplitude=3,period=0.8"', 'record = "a.at2"'), "motion: a.at2"),
-    "pulse": (TEXT.replace("sine:", "sinus:"), "motion: no pulse named 'sinus'"),
+    "pulse": (TEXT.replace("sine:", "sinus:"), "motion: unknown pulse 'sinus'"),
     "two levels": (
         f'[response]\n{BODY}[motion]\nsynthetic = "pulse-like"\npga = 1.0\npgv = 1.0\n',
         "to pga or to pgv, not to both",
