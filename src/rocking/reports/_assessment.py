@@ -1,4 +1,4 @@
-"""The report of an assessment: verdict, margins, probability, what governs, what to do, codes, assumptions, sources."""
+"""The report of an assessment: verdict, margins, probability, causes, measures, code methods, assumptions, sources."""
 
 import math
 from collections.abc import Callable
@@ -45,153 +45,193 @@ from rocking.version import SOFTWARE
 
 _PLANE = "plane body"
 _IN_SPACE = (
-    "Histories: the ground is level, body and floor are rigid, the solid touches with all vertices of its hull, where "
-    f"it may slide, hop and fly; it is turned into {2 * DIRECTIONS} directions unless its azimuth is known: behind a "
-    "motion's name stands where its weakest side then faces, from x towards y. The least factor is looked for at "
-    f"{POINTS} levels in equal ratios, from what lifts the body up to {REACH:g} times that or the "
-    "largest acceleration on record, then by halvings: a thinner stretch below may have been missed. It overturned "
-    "where it ends in another pose, more than 10 degrees away. Code methods and remedies are those of a plane body, "
-    "which the table of the body states: what happens in space alone they do not see.",
+    "Histories: the ground is level, and body and floor are rigid. The solid has contact at all vertices of its hull, "
+    "and may slide, hop and fly. Unless the azimuth is stated, the solid is computed in "
+    f"{2 * DIRECTIONS} directions. The angle after a motion's name is the direction of the weakest side, from x to y. "
+    f"The smallest factor is searched at {POINTS} geometrically spaced levels, from uplift up to {REACH:g} times "
+    "uplift or the largest recorded acceleration, then by bisection. A narrower interval of overturning below this "
+    "factor may be missed. The solid has overturned if its final pose is another one, more than 10 degrees away. Code "
+    "methods and measures apply to the plane body in the table of the body, and do not include 3D effects.",
 )
 _SEARCHED = (
-    "Histories: the ground is level, body and floor are rigid, the body stands on two feet. The least factor is looked "
-    "for at 64 levels in equal ratios, from what lifts the body up to 50 times that or the largest acceleration on "
-    "record, then by halvings: a thinner stretch below may have been missed. Both ways round are computed.",
-    "Remedies: the least change is looked for at 32 steps up to the one that keeps the body from lifting, and is that "
-    "from which on all that were tried stand, with every model, at 0.6 to 1 times what is asked, and whose least "
-    "factor, looked for as above, is more; what is changed is a block with the coefficients of the body, moved by "
-    "what the models say of the change.",
+    "Histories: the ground is level, body and floor are rigid, and the body has two feet. The smallest factor is "
+    "searched at 64 geometrically spaced levels, from uplift up to 50 times uplift or the largest recorded "
+    "acceleration, then by bisection. A narrower interval of overturning below this factor may be missed. Both "
+    "polarities are computed.",
+    "Measures: 32 changes are computed, up to the change that prevents uplift. The result is the smallest change from "
+    "which on no computed body overturns, with every model, at 0.6 to 1 times the required factor. Its smallest "
+    "overturning factor also exceeds the required factor. The changed body is a block with the coefficients of the "
+    "original body, adjusted by the change that the models predict.",
 )
 
 
-def assessment_content(found: BodyAssessment, *, name: str, date: str, project: str = "", author: str = "") -> Content:
-    """Return the report of an assessment, to be signed: verdict, evidence, what to do, assumptions and references."""
-    drawn, solid = governing_history(found), found.standing
+def assessment_content(
+    assessment: BodyAssessment, *, name: str, date: str, project: str = "", author: str = ""
+) -> Content:
+    """Return the report of an assessment for signature: verdict, evidence, measures, assumptions and references."""
+    governing, standing = governing_history(assessment), assessment.standing
     pictures: dict[str, Callable[[], Any]] = {
-        "body": lambda: body_picture(found.body) if solid is None else equilibria_picture(solid.solid, solid.pose),
-        "margins": lambda: assessment_picture(found),
-        "prediction": lambda: prediction_picture(found.prediction),
-        "motion": lambda: ground_motion_picture(leading(drawn.motion)),
+        "body": lambda: (
+            body_picture(assessment.body) if standing is None else equilibria_picture(standing.solid, standing.pose)
+        ),
+        "margins": lambda: assessment_picture(assessment),
+        "prediction": lambda: prediction_picture(assessment.prediction),
+        "motion": lambda: ground_motion_picture(leading(governing.motion)),
         "response": lambda: (
-            response_picture(drawn.history, found.friction) if solid is None else spatial_picture(drawn.history)
+            response_picture(governing.history, assessment.friction)
+            if standing is None
+            else spatial_picture(governing.history)
         ),
     }
-    return assessment_document(found, name, {"project": project, "author": author, "date": date}, drawn), pictures
+    return assessment_document(
+        assessment, name, {"project": project, "author": author, "date": date}, governing
+    ), pictures
 
 
-class Drawn(NamedTuple):
-    """The history that is drawn, of which motion, and which it is in words."""
+class GoverningHistory(NamedTuple):
+    """The plotted history, its motion and a description."""
 
     history: Any
     motion: Any
-    words: str
+    description: str
 
 
-def governing_history(found: BodyAssessment) -> Drawn:
-    """Return a history that overturns: under a motion as it is, that of the least margin first, or at the margin."""
-    factor, model, motion, mirrored = found.lowest
-    if found.standing is not None:
-        return _governing_solid(found, found.standing)
-    fell = [(name, k) for name, each in found.models.items() for k in np.flatnonzero(each.overturned == 1.0).tolist()]
-    at, how = 1.0, "as it is"
-    if fell:
-        model, motion = min(fell, key=lambda one: (one[1] != motion, one[0] != model))
+def governing_history(assessment: BodyAssessment) -> GoverningHistory:
+    """Return a history with overturning: under an unscaled motion, preferably that of the smallest margin, or at it."""
+    factor, model, motion, mirrored = assessment.lowest
+    if assessment.standing is not None:
+        return _governing_solid(assessment, assessment.standing)
+    overturned = [
+        (name, k)
+        for name, margin in assessment.models.items()
+        for k in np.flatnonzero(margin.overturned == 1.0).tolist()
+    ]
+    scale, scale_text = 1.0, "as recorded"
+    if overturned:
+        model, motion = min(overturned, key=lambda case: (case[1] != motion, case[0] != model))
     elif math.isfinite(factor):
-        at, how = just_above(factor), f"at {factor:.3g} times, the least factor that was found to overturn it"
-    pair = found.models[model].coefficients
-    swapped = {foot: pair[other] for foot, other in zip(FEET, FEET[::-1], strict=True)}
-    for twin in (mirrored, not mirrored):
-        body, own = (found.body.mirrored(), swapped) if twin else (found.body, pair)
-        history = simulate(body, found.motions[motion], own, scale=at, gravity=found.gravity)
-        if not fell or history.outcome is Outcome.OVERTURNED:
+        scale, scale_text = just_above(factor), f"scaled by {factor:.3g}, the smallest factor with overturning"
+    as_given = assessment.models[model].coefficients
+    swapped = {foot: as_given[other] for foot, other in zip(FEET, FEET[::-1], strict=True)}
+    for is_mirrored in (mirrored, not mirrored):
+        body, coefficients = (assessment.body.mirrored(), swapped) if is_mirrored else (assessment.body, as_given)
+        history = simulate(body, assessment.motions[motion], coefficients, scale=scale, gravity=assessment.gravity)
+        if not overturned or history.outcome is Outcome.OVERTURNED:
             break
-    name = found.motions[motion].name
-    return Drawn(history, found.motions[motion],
-                 f"The body{' mirrored,' if twin else ''} under {name} {how}, with {model}")  # fmt: skip
+    name = assessment.motions[motion].name
+    return GoverningHistory(history, assessment.motions[motion],
+                 f"The body{' mirrored,' if is_mirrored else ''} under {name} {scale_text}, with {model}")  # fmt: skip
 
 
-def _governing_solid(found: BodyAssessment, solid: StandingSolid) -> Drawn:
-    """Return the history of a solid at its least factor; under the first motion as it is where there is none."""
-    factor, model, motion, _ = found.lowest
-    at, how = (just_above(factor), f"at {factor:.3g} times") if math.isfinite(factor) else (1.0, "as it is")
-    moved = found.motions[motion]
+def _governing_solid(assessment: BodyAssessment, solid: StandingSolid) -> GoverningHistory:
+    """Return the history of a solid at its smallest overturning factor, or under the unscaled first motion."""
+    factor, model, motion, _ = assessment.lowest
+    scale, scale_text = (
+        (just_above(factor), f"scaled by {factor:.3g}") if math.isfinite(factor) else (1.0, "as recorded")
+    )
+    motion_of_record = assessment.motions[motion]
     history = simulate(
-        solid.solid.turned(solid.turned), moved.parts, solid.restitution, friction=found.friction, scale=at,
-        gravity=found.gravity, tolerance=1e-8,
+        solid.solid.turned(solid.turned), motion_of_record.parts, solid.restitution, friction=assessment.friction,
+        scale=scale, gravity=assessment.gravity, tolerance=1e-8,
     )  # fmt: skip
     azimuth = f"{math.degrees(solid.turned) % 360.0:.0f}"
-    return Drawn(history, moved, f"The solid, its x axis at {azimuth} deg, under {moved.name} {how}, with {model}")
+    return GoverningHistory(
+        history,
+        motion_of_record,
+        f"The solid, its x axis at {azimuth} deg, under {motion_of_record.name} {scale_text}, with {model}",
+    )
 
 
-def assessment_document(found: BodyAssessment, name: str, signed: dict[str, str], drawn: Drawn) -> Document:
+def assessment_document(
+    assessment: BodyAssessment, name: str, signed: dict[str, str], governing: GoverningHistory
+) -> Document:
     """Return the content of the report of an assessment."""
-    some = (found.fallen > 0.0).any() or found.lowest.factor < 1.0
-    mark = "bad" if (found.fallen == 1.0).any() else "fair" if some else "good"
-    margins = Picture("margins", "Least factor on each motion that overturns; code methods over it, unsafe above 1")
-    how_likely = Picture("prediction", "How likely it overturns and rocks under each motion, and what decides it")
-    moved = leading(drawn.motion)
-    motion = Picture("motion", f"{moved.name}: motion of the {support_of(moved)}, response spectrum, 5 % damping", 74)
-    searched = _SEARCHED[:1] if found.standing is None else _IN_SPACE
-    under = f"{drawn.words}: {drawn.history.summary}"
-    picture = [how_likely] if found.prediction.chances["overturning"].value > 0.0 else []
+    may_overturn = (assessment.fallen > 0.0).any() or assessment.lowest.factor < 1.0
+    mark = "bad" if (assessment.fallen == 1.0).any() else "fair" if may_overturn else "good"
+    margins = Picture(
+        "margins", "Smallest overturning factor of each motion, and code methods relative to it (unsafe above 1)"
+    )
+    probability_picture = Picture(
+        "prediction", "Probability of overturning and of rocking under each motion, and the main uncertainties"
+    )
+    leading_motion = leading(governing.motion)
+    motion = Picture(
+        "motion",
+        f"{leading_motion.name}: motion of the {support_of(leading_motion)}, response spectrum, 5 % damping",
+        74,
+    )
+    searched = _SEARCHED[:1] if assessment.standing is None else _IN_SPACE
+    history_caption = f"{governing.description}: {governing.history.summary}"
+    probability_blocks = [probability_picture] if assessment.prediction.chances["overturning"].value > 0.0 else []
     sections = [
-        ReportSection("Does it stand?", [margins, _models(found), _motions(found)]),
-        ReportSection("What governs", [*map(Paragraph, found.governs)]),
-        ReportSection("What to do", [*map(_led, found.to_do)]),
-        ReportSection("How likely is it?", [*map(Paragraph, found.prediction.sentences), *picture]),
-        ReportSection("Code methods beside it", [_codes(found)]),
-        ReportSection("The body", _about(found)),
-        ReportSection("Ground motions: source and processing", [motion_sources(found.prediction.motions)]),
-        ReportSection("The governing motion and history", [motion, Picture("response", under, 80)]),
-        ReportSection("What is known, and what was assumed", [
-            table("", ["input", "distribution or value"], found.prediction.inputs.items()),
-            *map(_led, (*searched, *_SEARCHED[1:], *ASSUMED, *found.prediction.assumed)),
-            *(Paragraph(each, "Not sampled:") for each in found.prediction.not_sampled), Paragraph(scale_words()),
-            *(Paragraph(why, f"{model} says nothing of this body:", "fair") for model, why in found.refused.items()),
+        ReportSection("Overturning", [margins, _models(assessment), _motions(assessment)]),
+        ReportSection("Causes", [*map(Paragraph, assessment.governs)]),
+        ReportSection("Measures", [*map(_led, assessment.to_do)]),
+        ReportSection("Probability", [*map(Paragraph, assessment.prediction.sentences), *probability_blocks]),
+        ReportSection("Code methods", [_codes(assessment)]),
+        ReportSection("The body", _about(assessment)),
+        ReportSection("Ground motions: source and processing", [motion_sources(assessment.prediction.motions)]),
+        ReportSection("The governing motion and history", [motion, Picture("response", history_caption, 80)]),
+        ReportSection("Inputs and assumptions", [
+            table("", ["input", "distribution or value"], assessment.prediction.inputs.items()),
+            *map(_led, (*searched, *_SEARCHED[1:], *ASSUMED, *assessment.prediction.assumed)),
+            *(Paragraph(text, "Not sampled:") for text in assessment.prediction.not_sampled), Paragraph(scale_words()),
+            *(Paragraph(reason, f"{model} does not apply to this body:", "fair")
+              for model, reason in assessment.refused.items()),
         ]),
-        ReportSection("References", [*map(_led, _references(found))]),
-        ReportSection("Signed", [table("", ["", ""], [(key, words or "_" * 30) for key, words in
+        ReportSection("References", [*map(_led, _references(assessment))]),
+        ReportSection("Signed", [table("", ["", ""], [(key, value or "_" * 30) for key, value in
                                                       (*signed.items(), ("signature", ""))])]),
     ]  # fmt: skip
-    several = f"Under {found.several}"
-    head = ". ".join(filter(None, (several, signed["project"] if name else "", signed["author"], signed["date"])))
-    verdict = [Paragraph(found.verdict, "", mark), *map(Paragraph, (found.margin_words, found.probability_words))]
-    title = name or signed["project"] or "A body in an earthquake"
-    return Document(title, head, sections, verdict=verdict, footer=SOFTWARE)
-
-
-def _models(found: BodyAssessment) -> ReportTable:
-    rows = found.model_rows
-    note = (
-        "r: velocity after an impact over velocity before. Smallest factor: on any motion, either way round; infinite "
-        "where none that was tried overturns. The calibrated model's ends are those of 95 % for a single body."
+    motions_text = f"Under {assessment.several}"
+    subtitle = ". ".join(
+        filter(None, (motions_text, signed["project"] if name else "", signed["author"], signed["date"]))
     )
-    if found.standing is not None:
-        note += f" Histories in space with a friction of {found.friction:.3g}; r: in the plane of its {_PLANE}."
+    verdict = [
+        Paragraph(assessment.verdict, "", mark),
+        *map(Paragraph, (assessment.margin_words, assessment.probability_words)),
+    ]
+    title = name or signed["project"] or "A body in an earthquake"
+    return Document(title, subtitle, sections, verdict=verdict, footer=SOFTWARE)
+
+
+def _models(assessment: BodyAssessment) -> ReportTable:
+    rows = assessment.model_rows
+    note = (
+        "r: velocity after an impact over velocity before. Smallest factor: of all motions, both polarities; infinite "
+        "if no computed factor overturns the body. The ends of the calibrated model are those of its 95 % interval for "
+        "a single body."
+    )
+    if assessment.standing is not None:
+        note += (
+            f" 3D histories with a friction coefficient of {assessment.friction:.3g}; r: in the plane of the {_PLANE}."
+        )
     marks = {"overturned": ["good" if row["overturned"].startswith("0 ") else "bad" for row in rows]}
     return answer_table("With each model of restitution", rows, (), note, marks=marks)
 
 
-def _motions(found: BodyAssessment) -> ReportTable:
-    least = np.fmin.reduce([np.fmin.reduce(each.least) for each in found.models.values()])
-    worst = [min(np.flatnonzero(found.records == k).tolist(), key=lambda j: np.nan_to_num(least[j], nan=np.inf))
-             for k in np.unique(found.records)]  # fmt: skip
-    count = len(found.models)
-    ranked = sorted(zip(worst, found.fallen, strict=True), key=lambda pair: least[pair[0]])
+def _motions(assessment: BodyAssessment) -> ReportTable:
+    min_factors = np.fmin.reduce([np.fmin.reduce(margin.least) for margin in assessment.models.values()])
+    worst_directions = [min(np.flatnonzero(assessment.records == k).tolist(),
+                            key=lambda j: np.nan_to_num(min_factors[j], nan=np.inf))
+             for k in np.unique(assessment.records)]  # fmt: skip
+    count = len(assessment.models)
+    ranked = sorted(zip(worst_directions, assessment.fallen, strict=True), key=lambda pair: min_factors[pair[0]])
     rows = [
         {
-            "motion": found.motions[j].name, "pga": found.motions[j].peak, "pgv": _pgv(found.motions[j]),
-            "uplift_factors": found.lifts[j], "min_factor": least[j], "overturned": f"{fallen * count:.0f} of {count}",
+            "motion": assessment.motions[j].name, "pga": assessment.motions[j].peak, "pgv": _pgv(assessment.motions[j]),
+            "uplift_factors": assessment.lifts[j], "min_factor": min_factors[j],
+            "overturned": f"{fraction * count:.0f} of {count}",
         }
-        for j, fallen in ranked
+        for j, fraction in ranked
     ]  # fmt: skip
     note = (
-        "Factors on the motion as it is; of two components in the direction of the least. Overturns at: the least "
-        "factor with any model; what overturns under less may stand under the motion as it is, where no model then "
-        "falls, and that is no margin."
+        "Factors scale the recorded motion; two components are combined in the direction of the smallest factor. "
+        "Overturns at: the smallest factor with any model. A body with a factor below 1 may not overturn under the "
+        "recorded motion; such a factor is not a margin."
     )
-    marks = {"overturned": ["bad" if fallen > 0.0 else "good" for _, fallen in ranked]}
-    display = peak_display(found.prediction.motions)
+    marks = {"overturned": ["bad" if fraction > 0.0 else "good" for _, fraction in ranked]}
+    display = peak_display(assessment.prediction.motions)
     return answer_table("Under each motion", rows, (), note, display=display, marks=marks)
 
 
@@ -199,46 +239,51 @@ def _pgv(motion: Any) -> float:
     return measure("pgv").of(sampled(leading(motion)))
 
 
-def _led(words: str) -> Paragraph:
-    """Return a paragraph whose first words stand out."""
-    lead, colon, rest = words.partition(": ")
-    return Paragraph(rest, f"{lead}:") if colon else Paragraph(words)
+def _led(text: str) -> Paragraph:
+    """Return a paragraph with the text before the first colon in bold."""
+    lead, colon, body = text.partition(": ")
+    return Paragraph(body, f"{lead}:") if colon else Paragraph(text)
 
 
-def _codes(found: BodyAssessment) -> ReportTable:
-    methods = [CODE_METHODS[row["method"]] for row in found.code_rows]
+def _codes(assessment: BodyAssessment) -> ReportTable:
+    methods = [CODE_METHODS[row["method"]] for row in assessment.code_rows]
     rows = [
-        {**row, "method": each.title, "vertical motion": each.vertical.value}
-        for row, each in zip(found.code_rows, methods, strict=True)
+        {**row, "method": method.title, "vertical motion": method.vertical.value}
+        for row, method in zip(assessment.code_rows, methods, strict=True)
     ]
     note = (
-        "Overturned: of those rated safe, with some model. Up to factor: the least on any motion that it still calls "
-        f"safe. Vertical motion: in {found.vertical} of {len(found.motions)} motions. Left out: "
-        f"{'; '.join(f'{name} ({why})' for name, why in LEFT_OUT.items())}."
+        "Overturned: motions rated safe under which the body overturns with at least one model. Limit factor: the "
+        "smallest factor of any motion up to which the method rates the body safe. Vertical motion: in "
+        f"{assessment.vertical} of {len(assessment.motions)} motions. Not included: "
+        f"{'; '.join(f'{name} ({reason})' for name, reason in LEFT_OUT.items())}."
     )
     return answer_table("", rows, (), note)
 
 
-def _about(found: BodyAssessment) -> list[Block]:
-    if found.standing is None:
-        return [Pair(Picture("body", "The body on its feet O and O'"), body_table("", found.body, found.gravity))]
-    repairs = repairs_of(found.standing.solid)
-    title = f"The {_PLANE} of {math.degrees(found.standing.plane) % 360.0:.0f} deg"
+def _about(assessment: BodyAssessment) -> list[Block]:
+    if assessment.standing is None:
+        return [
+            Pair(Picture("body", "The body on its feet O and O'"), body_table("", assessment.body, assessment.gravity))
+        ]
+    repairs = repairs_of(assessment.standing.solid)
+    title = f"The {_PLANE} of {math.degrees(assessment.standing.plane) % 360.0:.0f} deg"
     return [
-        *map(Paragraph, found.standing.words),
-        Picture("body", "How much the centre must rise to topple it, by direction; what it stands on, and its sides"),
-        body_table(title, found.body, found.gravity),
+        *map(Paragraph, assessment.standing.words),
+        Picture("body", "Energy barrier by direction; the support polygon; the body from its sides"),
+        body_table(title, assessment.body, assessment.gravity),
         *repairs,
     ]
 
 
-def _references(found: BodyAssessment) -> list[str]:
+def _references(assessment: BodyAssessment) -> list[str]:
     kinds, source = models(), provenance()
-    used = [kinds[name] for name in dict.fromkeys(each.partition(":")[0] for each in found.models) if name in kinds]
-    measured = [f"measurements: {source['source']}, doi:{source['doi']}"] if CALIBRATED in found.models else []
-    named = [f"{kind.name}: {kind.reference}" for kind in used]
+    classes = [
+        kinds[name] for name in dict.fromkeys(label.partition(":")[0] for label in assessment.models) if name in kinds
+    ]
+    measured = [f"measurements: {source['source']}, doi:{source['doi']}"] if CALIBRATED in assessment.models else []
+    named = [f"{kind.name}: {kind.reference}" for kind in classes]
     return [
         *measured,
         *named,
-        *(f"{one.title}: {one.reference}. Our reading: {one.reading}" for one in CODE_METHODS.values()),
+        *(f"{method.title}: {method.reference}. Our reading: {method.reading}" for method in CODE_METHODS.values()),
     ]

@@ -1,4 +1,4 @@
-"""The reports of a measurement and of a folder of trials: verdict, picture, what impacts took, models, how it was."""
+"""The reports of a measurement and of a folder of trials: verdict, picture, impacts, models and method."""
 
 from collections.abc import Sequence
 
@@ -21,109 +21,113 @@ from rocking.reports.document import (
 from rocking.spec.identification import IdentifiedTrials
 
 _HOW = (
-    "Between two impacts the body rocks freely, which has a closed form. At every impact the coefficient is drawn "
-    "about a mean of its side, with a scatter that is fitted too; so are the noise of the measurement, the "
-    "tilt of the floor and the frequency parameter, within what is known of the body. Intervals are of 95 %, of the "
-    "posterior."
+    "Between two impacts the body rocks freely, which has a closed form. The coefficient of each impact is sampled "
+    "about the mean of its side. Scatter, measurement noise, tilt of the floor and frequency parameter are fitted "
+    "too, within the stated limits of the body. Intervals contain 95 % of the posterior."
 )
 _FORCED = (
-    "Between two impacts the body follows its equation of motion under the ground that was recorded. Half cycles begin "
-    "anew where they were measured; at every impact the coefficient is drawn about a mean of its side. Intervals are "
-    "of 95 %, of the posterior."
+    "Between two impacts the body follows its equation of motion under the recorded ground motion. Each half cycle "
+    "begins at its measured state. The coefficient of each impact is sampled about the mean of its side. Intervals "
+    "contain 95 % of the posterior."
 )
 _TRIALS = (
-    "Each trial is looked at by itself. The mean is that of the logarithms, with Student's t interval from how trials "
-    "differ, never narrower than their own intervals allow; the error of the size of the body, common to all, is in it."
+    "Each trial is identified separately. The mean is that of the logarithms, with Student's t interval from the "
+    "scatter between trials. The interval is at least as wide as the intervals of the trials require. The interval "
+    "includes the error of the body's size, which is common to all trials."
 )
 
 
-def identification_content(found: Identification, *, name: str, date: str) -> Content:
-    """Return the report of a measurement: verdict, picture, what each impact took, the models, and how it was found."""
-    return _document_of(found, name, date), {"measured": lambda: identification_picture(found)}
+def identification_content(identification: Identification, *, name: str, date: str) -> Content:
+    """Return the report of a measurement: verdict, picture, coefficient of each impact, models and method."""
+    return _document_of(identification, name, date), {"measured": lambda: identification_picture(identification)}
 
 
-def trials_content(found: IdentifiedTrials, *, name: str, date: str) -> Content:
+def trials_content(trials: IdentifiedTrials, *, name: str, date: str) -> Content:
     """Return the report of a folder of trials."""
-    refused = [(row["trial"], row["refused"]) for row in found.rows if row["refused"]]
+    refused = [(row["trial"], row["refused"]) for row in trials.rows if row["refused"]]
     sections = [
         ReportSection("The trials", [
-            Picture("trials", "The coefficient of every trial with its interval, and that of the mean", 70),
-            answer_table("", found.good_rows, TRIAL),
-            *([table("Trials without a coefficient", ["trial", "why"], refused)] if refused else []),
-            *([Paragraph(found.passed_over_verdict)] if found.passed_over else []),
+            Picture("trials", "Coefficient of each trial and of the mean, with intervals", 70),
+            answer_table("", trials.good_rows, TRIAL),
+            *([table("Trials without a coefficient", ["trial", "reason"], refused)] if refused else []),
+            *([Paragraph(trials.passed_over_verdict)] if trials.passed_over else []),
         ]),
-        *_doubts(found.doubts),
-        *_compared(found.models),
-        ReportSection("How it was found", [Paragraph(_HOW), Paragraph(_TRIALS)]),
+        *_doubts(trials.doubts),
+        *_compared(trials.models),
+        ReportSection("Method", [Paragraph(_HOW), Paragraph(_TRIALS)]),
     ]  # fmt: skip
-    mark = "bad" if found.mean is None else "fair" if refused or found.doubts else "good"
-    title, count = f"Coefficient of restitution: {name or found.name}", f"{len(found.rows)} trials"
-    document = judged(title, (count, date), sections, found.verdict, mark)
-    return document, {"trials": lambda: trials_picture(found)}
+    mark = "bad" if trials.mean is None else "fair" if refused or trials.doubts else "good"
+    title, count = f"Coefficient of restitution: {name or trials.name}", f"{len(trials.rows)} trials"
+    document = judged(title, (count, date), sections, trials.verdict, mark)
+    return document, {"trials": lambda: trials_picture(trials)}
 
 
-def _document_of(found: Identification, name: str, date: str) -> Document:
+def _document_of(identification: Identification, name: str, date: str) -> Document:
     picture = Picture(
         "measured",
-        "Above: what was measured, and the mean coefficient with the models beside it. Below: what the fit leaves "
-        "over, and what each impact took",
+        "Above: measurement, and mean coefficient compared with the models. Below: residuals of the fit, and "
+        "coefficient of each impact",
     )
-    doubts = _doubts(found.doubts)
-    forced = [Paragraph(str(found.forced))] if found.forced else []
-    sections = [ReportSection("What was measured", [picture]), *doubts]
-    if not found.refused:
+    doubts = _doubts(identification.doubts)
+    forced = [Paragraph(str(identification.forced))] if identification.forced else []
+    sections = [ReportSection("Measurement", [picture]), *doubts]
+    if not identification.refused:
         sections = [
-            ReportSection("What was found", [picture, _found(found), *forced]),
+            ReportSection("Result", [picture, _found(identification), *forced]),
             *doubts,
-            *_compared(found.models),
-            ReportSection("What each impact took", [_impacts(found)]),
-            *([ReportSection("What experiment would tell more", [_designs(found)])] if found.designs else []),
+            *_compared(identification.models),
+            ReportSection("Impacts", [_impacts(identification)]),
+            *(
+                [ReportSection("Design of a more precise experiment", [_designs(identification)])]
+                if identification.designs
+                else []
+            ),
         ]
-    sections.append(ReportSection("How it was found", [Paragraph(_FORCED if found.forced else _HOW)]))
-    mark = "bad" if found.refused else "fair" if found.doubts else "good"
+    sections.append(ReportSection("Method", [Paragraph(_FORCED if identification.forced else _HOW)]))
+    mark = "bad" if identification.refused else "fair" if identification.doubts else "good"
     title = f"Coefficient of restitution{f': {name}' if name else ''}"
-    return judged(title, (found.source, date), sections, found.verdict, mark)
+    return judged(title, (identification.source, date), sections, identification.verdict, mark)
 
 
 def _doubts(doubts: Sequence[str | Message]) -> list[ReportSection]:
-    return (
-        [ReportSection("What there is to say against it", [Paragraph(str(doubt)) for doubt in doubts])]
-        if doubts
-        else []
-    )
+    return [ReportSection("Limitations", [Paragraph(str(doubt)) for doubt in doubts])] if doubts else []
 
 
-def _found(found: Identification) -> ReportTable:
-    rows: list[tuple[str, object]] = [("mean coefficient of restitution r [-]", found.mean)]
-    rows += [(f"r landing {foot} [-]", found.coefficients[foot]) for foot in FEET]
+def _found(identification: Identification) -> ReportTable:
+    rows: list[tuple[str, object]] = [("mean coefficient of restitution r [-]", identification.mean)]
+    rows += [(f"r landing {foot} [-]", identification.coefficients[foot]) for foot in FEET]
     rows += [
-        ("scatter of ln r from impact to impact [-]", found.scatter),
-        (f"probability of no scatter, {NO_SCATTER:g} before the measurement [-]", f"{found.no_scatter:.3g}"),
-        ("frequency parameter p [rad/s]", found.frequency_parameter),
-        ("tilt of the floor, clockwise [rad]", found.tilt),
+        ("scatter of ln r from impact to impact [-]", identification.scatter),
+        (f"probability of no scatter (prior {NO_SCATTER:g}) [-]", f"{identification.no_scatter:.3g}"),
+        ("frequency parameter p [rad/s]", identification.frequency_parameter),
+        ("tilt of the floor, clockwise [rad]", identification.tilt),
     ]
-    rows += [(f"position k of the impulse, landing {foot} [-]", each) for foot, each in found.impulse.items()]
-    rows += [(f"{name} [-]", each) for name in ("trend", "damping") if (each := getattr(found, name)) is not None]
-    return table("", ["what", "value and 95 % interval"], rows)
+    rows += [
+        (f"position k of the impulse, landing {foot} [-]", value) for foot, value in identification.impulse.items()
+    ]
+    rows += [
+        (f"{name} [-]", value) for name in ("trend", "damping") if (value := getattr(identification, name)) is not None
+    ]
+    return table("", ["quantity", "value and 95 % interval"], rows)
 
 
 def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
     compared = answer_table("", map(vars, models), COMPARED)
-    return [ReportSection("Models of restitution beside it", [compared])] if models else []
+    return [ReportSection("Restitution models", [compared])] if models else []
 
 
 TRIAL = ("trial", "coefficient", "scatter", "impacts")
 IMPACT = ("number", "time", "onto", "speed", "coefficient")
 COMPARED = ("model", "coefficient", "bias", "within")
 DESIGN = ("release_ratio", "impacts", "timing_noise", "deviation")
-"""Columns of the tables of an identification, on every door."""
+"""Columns of the tables of an identification, in every output."""
 
 
-def _impacts(found: Identification) -> ReportTable:
-    note = "Of the first impact and of the last nothing is known."
-    return answer_table("", found.answer()["impacts"], IMPACT, note)
+def _impacts(identification: Identification) -> ReportTable:
+    note = "The first and the last impact have no coefficient."
+    return answer_table("", identification.answer()["impacts"], IMPACT, note)
 
 
-def _designs(found: Identification) -> ReportTable:
-    note = "Bounds: no method does better with the same scatter from impact to impact."
-    return answer_table("", found.answer()["designs"], DESIGN, note)
+def _designs(identification: Identification) -> ReportTable:
+    note = "Deviations are lower bounds of any method, for the same scatter from impact to impact."
+    return answer_table("", identification.answer()["designs"], DESIGN, note)

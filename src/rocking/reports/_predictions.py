@@ -1,4 +1,4 @@
-"""The reports of a prediction and of a validation: verdict, pictures, tables, and what was assumed."""
+"""The reports of a prediction and of a validation: verdict, pictures, tables and assumptions."""
 
 from functools import partial
 
@@ -28,77 +28,81 @@ _PREDICTED = (
     "the bodies that overturn are counted. All motions are equally likely. Intervals are of 95 %, for these motions."
 )
 _VALIDATED = (
-    "Bodies that may be the one in question are drawn from what is known of it and followed under the motion of each "
-    "trial; nothing is fitted to the outcomes. The plain curves are fitted to the outcomes under all other motions. "
-    "Intervals are of 95 %, whole motions drawn anew; differences are drawn in pairs. The verdict rests on the "
-    "differences of the Brier and the logarithmic score: balanced accuracy does not see how sure a forecast was."
+    "Bodies are sampled from the distributions of the uncertain inputs and simulated under the motion of each trial. "
+    "The prediction is not fitted to the outcomes. The simple curves are fitted to the outcomes under all other "
+    "motions. The 95 % intervals are from a bootstrap that resamples motions; differences are resampled in pairs. The "
+    "verdict uses the differences of the Brier and the logarithmic score, because balanced accuracy ignores the "
+    "probability of a forecast."
 )
 
 
-def prediction_content(found: Prediction, *, name: str, date: str) -> Content:
-    """Return the report of a prediction: verdict, probabilities and their condition, body, motions, and inputs."""
-    mark = next((word for most, word in _MARKS if found.chances["overturning"].high <= most), "bad")
+def prediction_content(prediction: Prediction, *, name: str, date: str) -> Content:
+    """Return the report of a prediction: verdict, probabilities and their condition, body, motions and inputs."""
+    mark = next((word for limit, word in _MARKS if prediction.chances["overturning"].high <= limit), "bad")
     caption = "Probability of overturning and of rocking under each motion"
-    picture = Picture("prediction", caption if found.decides else f"{caption}; contributions to its variance")
-    failed = f", {found.failed} without a result" if found.failed else ""
-    decides = Paragraph(found.decides) if found.decides else _shares(found)
-    body, drawn = body_blocks(found.body, found.gravity)
+    picture = Picture("prediction", caption if prediction.decides else f"{caption}; contributions to its variance")
+    failed = f", {prediction.failed} without a result" if prediction.failed else ""
+    contributions = Paragraph(prediction.decides) if prediction.decides else _shares(prediction)
+    body, pictures = body_blocks(prediction.body, prediction.gravity)
     sections = [
-        ReportSection("Probabilities", [*map(Paragraph, found.sentences[1:]), picture, motion_table(found)]),
-        ReportSection("Contributions to the variance", [decides]),
+        ReportSection("Probabilities", [*map(Paragraph, prediction.sentences[1:]), picture, motion_table(prediction)]),
+        ReportSection("Contributions to the variance", [contributions]),
         ReportSection("The body", body),
-        ReportSection("Ground motions: source and processing", [motion_sources(found.motions)]),
-        _assumed(found),
+        ReportSection("Ground motions: source and processing", [motion_sources(prediction.motions)]),
+        _assumed(prediction),
         ReportSection("Method", [
-            Paragraph(_PREDICTED), Paragraph(f"{_count(found)}{failed}; seed {found.seed}."), Paragraph(scale_words()),
-            Paragraph(f"{SOFTWARE}."),
+            Paragraph(_PREDICTED), Paragraph(f"{_count(prediction)}{failed}; seed {prediction.seed}."),
+            Paragraph(scale_words()), Paragraph(f"{SOFTWARE}."),
         ]),
     ]  # fmt: skip
-    several = f"Under {len(found.motions)} motion{'' if len(found.motions) == 1 else 's'}"
-    document = judged(name or "A body in an earthquake", (several, date), sections, found.verdict, mark)
-    return document, {"prediction": lambda: prediction_picture(found), **drawn}
+    motions_text = f"Under {len(prediction.motions)} motion{'' if len(prediction.motions) == 1 else 's'}"
+    document = judged(name or "A body in an earthquake", (motions_text, date), sections, prediction.verdict, mark)
+    return document, {"prediction": lambda: prediction_picture(prediction), **pictures}
 
 
-def validation_content(found: FolderValidation, *, name: str, date: str) -> Content:
-    """Return the report of a validation: verdict, reliability diagram, scores, and what was assumed."""
-    rows = [(str(each.line), each.reason) for each in found.refused]
-    left_out = [table(f"Rows of {found.source} that could not be taken", ["line", "why"], rows)] if rows else []
-    count = Paragraph(f"{_count(found.prediction)}.")
+def validation_content(validations: FolderValidation, *, name: str, date: str) -> Content:
+    """Return the report of a validation: verdict, reliability diagram, scores and assumptions."""
+    rows = [(str(row.line), row.reason) for row in validations.refused]
+    left_out = [table(f"Rows of {validations.source} that cannot be used", ["line", "reason"], rows)] if rows else []
+    count = Paragraph(f"{_count(validations.prediction)}.")
     sections = [
-        *(_event(event, each) for event, each in found.found.items()),
-        _assumed(found.prediction),
-        ReportSection("How it was computed", [Paragraph(_VALIDATED), count, *left_out]),
+        *(_event(event, row) for event, row in validations.found.items()),
+        _assumed(validations.prediction),
+        ReportSection("Method", [Paragraph(_VALIDATED), count, *left_out]),
     ]
-    first = next(iter(found.found.values()))
+    first = next(iter(validations.found.values()))
     mark = _MARKS_OF_FINDINGS["mixed" if first.finding == "better" and first.too_sure else first.finding]
-    several = f"{first.count} outcomes under {first.clusters} motions"
-    document = judged(f"Predictions of {name or found.name}", (several, date), sections, first.verdict, mark)
-    return document, {event: partial(reliability_picture, each) for event, each in found.found.items()}
+    outcomes_text = f"{first.count} outcomes under {first.clusters} motions"
+    document = judged(
+        f"Predictions of {name or validations.name}", (outcomes_text, date), sections, first.verdict, mark
+    )
+    return document, {event: partial(reliability_picture, row) for event, row in validations.found.items()}
 
 
-def _assumed(found: Prediction) -> ReportSection:
-    sampled = [(name, words) for name, words in found.inputs.items() if name not in found.fixed]
+def _assumed(prediction: Prediction) -> ReportSection:
+    sampled = [(name, distribution) for name, distribution in prediction.inputs.items() if name not in prediction.fixed]
     inputs = table("Sampled", ["input", "distribution"], sampled)
-    left = table("Not sampled", ["input", "value in all histories"], found.fixed.items())
+    not_sampled = table("Not sampled", ["input", "value in all histories"], prediction.fixed.items())
     return ReportSection("Inputs: sampled, not sampled, assumed", [
-        *([inputs] if inputs.rows else []), left, *(Paragraph(each, "Assumed:") for each in found.assumed),
+        *([inputs] if inputs.rows else []), not_sampled,
+        *(Paragraph(assumption, "Assumed:") for assumption in prediction.assumed),
     ])  # fmt: skip
 
 
-def _count(found: Prediction) -> str:
-    return f"{found.count} bodies under each motion, {found.histories} histories in all"
+def _count(prediction: Prediction) -> str:
+    return f"{prediction.count} bodies under each motion, {prediction.histories} histories in all"
 
 
-def _shares(found: Prediction) -> ReportTable:
+def _shares(prediction: Prediction) -> ReportTable:
     note = "Sobol indices: contributions to the variance of overturning."
-    return answer_table("", found.contributions, note=note)
+    return answer_table("", prediction.contributions, note=note)
 
 
-def _event(event: str, found: Validation) -> ReportSection:
-    picture = Picture(event, f"What was said of {event} and how often it happened; and the differences of scores")
-    return ReportSection(event.capitalize(), [*map(Paragraph, found.sentences), picture, _scores(found)])
+def _event(event: str, validation: Validation) -> ReportSection:
+    picture = Picture(event, f"Predicted probability and observed frequency of {event}, and the differences of scores")
+    return ReportSection(event.capitalize(), [*map(Paragraph, validation.sentences), picture, _scores(validation)])
 
 
-def _scores(found: Validation) -> ReportTable:
-    rows = [{"forecast": name, **scores} for name, scores in found.answer()["scores"].items()]
+def _scores(validation: Validation) -> ReportTable:
+    rows = [{"forecast": name, **scores} for name, scores in validation.answer()["scores"].items()]
     return answer_table("Scores of each forecast", rows, _SCORES)

@@ -1,4 +1,4 @@
-"""One call for the report of every answer; what stands in it is the matter of the module of its kind."""
+"""One call for the report of every answer; one module per class of answers provides the content."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -29,39 +29,39 @@ _CONTENTS: dict[type, Callable[..., Content]] = {
     Identification: identification_content,
     IdentifiedTrials: trials_content,
 }
-"""What makes the document and its pictures, by the class of an answer."""
+"""Function that returns document and pictures, by class of the answer."""
 
 
 def report(found: Any, path: str | Path, *, name: str = "", date: str | None = None, **options: Any) -> Path:
-    """Write the report of an answer: verdict, pictures, tables, what was assumed, and how it was computed.
+    """Write the report of a result: verdict, pictures, tables, assumptions and method.
 
     Parameters
     ----------
     found : Response, BodyAssessment, Prediction, FolderValidation, Identification or IdentifiedTrials
-        Of `rocking.simulate` or `rocking.free_rocking` without friction, `rocking.assess`, `rocking.predict`,
-        `rocking.identify`, or as ``rocking validate`` and ``rocking identify`` find it of a folder.
+        Result of `rocking.simulate` or `rocking.free_rocking` without friction, of `rocking.assess`,
+        `rocking.predict` or `rocking.identify`, or of the commands for folders of trials.
     path : str or Path
         A document (.pdf), or a web page of one file (.html).
     name : str
-        What the body is called.
+        Name of the body.
     date : str, optional
-        Day of the report, as it should be printed; today if not given, none if empty.
+        Printed date of the report; default: today; empty: no date.
     **options
-        Of a response ``friction``, the coefficient that the friction that is taken is compared with [-]; of an
-        assessment ``project`` and ``author``, which stand at its head and beside the signature.
+        For a response ``friction``, the coefficient of friction compared with the friction demand [-]. For an
+        assessment ``project`` and ``author``, printed at the top and at the signature.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Raises
     ------
     InvalidValueError
-        If there is no report of such an answer, it takes no such option, it has no result, or the ending of the path
-        is another.
+        If the class has no report, the option is unknown, the answer has no result, or the extension is not
+        allowed.
     MissingExtraError
-        If matplotlib, and typst (.pdf) or jinja2 (.html), are not installed.
+        If matplotlib, or typst (.pdf) or jinja2 (.html), is not installed.
 
     Examples
     --------
@@ -73,20 +73,24 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     ...     page.name, "Column 4" in page.read_text(encoding="utf-8")
     ('response.html', True)
     """
-    made = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
-    if made is None:
+    make_content = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
+    if make_content is None:
         kinds = ", ".join(kind.__name__ for kind in _CONTENTS)
         raise InvalidValueError(parameter="found", allowed=f"one of {kinds}", value=found)
     target = target_of(path)
-    known = [each for each in signature(made).parameters.values() if each.kind is Parameter.KEYWORD_ONLY]
-    names = [each.name for each in known]
-    if odd := next((each for each in options if each not in names), None):
-        of = type(found).__name__
+    keywords = [
+        parameter
+        for parameter in signature(make_content).parameters.values()
+        if parameter.kind is Parameter.KEYWORD_ONLY
+    ]
+    names = [parameter.name for parameter in keywords]
+    if unknown := next((parameter for parameter in options if parameter not in names), None):
+        subject = type(found).__name__
         raise InvalidValueError(
-            "a report of {subject} takes no {option}; it takes {names}", subject=of, option=odd, names=", ".join(names),
-            hint=checks.nearest(odd, names),
+            "unknown option {option!r} of a report of {subject}; allowed: {names}", subject=subject, option=unknown,
+            names=", ".join(names), hint=checks.nearest(unknown, names),
         )  # fmt: skip
     day = f"{datetime.now(UTC):%d %B %Y}" if date is None else date
-    document, pictures = made(found, name=name, date=day, **options)
+    document, pictures = make_content(found, name=name, date=day, **options)
     write_report(document, pictures, target)
     return target

@@ -1,4 +1,4 @@
-"""The body in reports: its picture, its data, what was assumed of it, and the repairs of its mesh."""
+"""The body in reports: picture, data, assumed data, and repairs of the mesh."""
 
 from collections.abc import Callable
 from typing import Any
@@ -15,7 +15,7 @@ Pictures = dict[str, Callable[[], Any]]
 
 
 def body_blocks(body: Body | Solid, gravity: float) -> tuple[list[Block], Pictures]:
-    """Return what a report shows of a body under a gravity [m/s2], and what draws its picture."""
+    """Return the blocks of a body under a gravity [m/s2], and the functions that draw its pictures."""
     if isinstance(body, Body):
         pair = Pair(Picture("body", "The body on its feet O and O'"), body_table("", body, gravity))
         return [pair], {"body": lambda: body_picture(body)}
@@ -25,16 +25,16 @@ def body_blocks(body: Body | Solid, gravity: float) -> tuple[list[Block], Pictur
 
 
 def repairs_of(body: Any) -> list[Block]:
-    """Return the repairs of a mesh, one paragraph each."""
-    return [Paragraph(each, "Mesh repair:", "fair") for each in getattr(body, "repairs", ())]
+    """Return one paragraph per repair of a mesh."""
+    return [Paragraph(repair, "Mesh repair:", "fair") for repair in getattr(body, "repairs", ())]
 
 
 def solid_table(solid: Solid, gravity: float) -> ReportTable:
-    """Return the data of a solid as it stands under a gravity [m/s2]."""
-    found = solid.equilibria()
-    pose = found.settling((0.0, 0.0, -1.0))
+    """Return the data of a solid in its initial pose under a gravity [m/s2]."""
+    equilibria = solid.equilibria()
+    pose = equilibria.settling((0.0, 0.0, -1.0))
     values = {
-        "size": found.hull.vertices.max(axis=0) - found.hull.vertices.min(axis=0), "mass": solid.mass,
+        "size": equilibria.hull.vertices.max(axis=0) - equilibria.hull.vertices.min(axis=0), "mass": solid.mass,
         "centre_height": pose.height, "barrier_energy": solid.mass * gravity * pose.barrier, "barrier": pose.barrier,
     }  # fmt: skip
     size, mass, *lines = Display().lines(values, [*values], in_full=True)

@@ -1,4 +1,4 @@
-"""A body and its impact in plain values, SI units: what every model says of it, the energy of KED, the measurements."""
+"""A body and its impact in plain values, SI units: coefficients of all models, energy of KED, measurements."""
 
 import math
 from dataclasses import dataclass
@@ -21,13 +21,13 @@ CLOSELY = closely(coefficient=".6f", friction_demand=".3f", impulse_ratio=".3f")
     f"coefficient{end}": Quantity(f"coefficient{end}", "1", "end of the 95 % interval", digits=".3f")
     for end in ("_low", "_high")
 }
-"""Digits of a model's coefficient and of what it implies."""
-_MOST_VERTICES = 2000  # vertices of a ring that is drawn
+"""Digits of a model's coefficient and of the quantities derived from it."""
+_MOST_VERTICES = 2000  # maximum number of plotted vertices of a ring
 _RATIOS = np.geomspace(0.8, 12.0, 40)
 
 
 def outline_answer(body: Body) -> Answer:
-    """Return what draws a body, in the user's coordinates: polygons, mass points, ground and where it is touched."""
+    """Return the geometry of a body in the user's coordinates: polygons, mass points, ground and contact intervals."""
     # rings of more than 2000 vertices are thinned
     shift = body.origin_x
     return Answer({
@@ -40,27 +40,27 @@ def outline_answer(body: Body) -> Answer:
 
 
 def _polygons(body: Body) -> list[dict[str, Any]]:
-    whole = body.to_section() if isinstance(body, Block) else body
-    if not isinstance(whole, Section):
+    section = body.to_section() if isinstance(body, Block) else body
+    if not isinstance(section, Section):
         return []
-    shift = np.array([whole.origin_x, whole.ground])
-    rings = [([_thinned(ring + shift) for ring in region.rings], region.density) for region in whole.regions]
+    shift = np.array([section.origin_x, section.ground])
+    rings = [([_thinned(ring + shift) for ring in region.rings], region.density) for region in section.regions]
     return [{"outline": outline, "holes": holes, "density": density} for (outline, *holes), density in rings]
 
 
 def _thinned(ring: FloatArray) -> list[list[float]]:
-    chosen: list[list[float]] = ring[:: max(1, -(-len(ring) // _MOST_VERTICES))].tolist()
-    return chosen
+    kept: list[list[float]] = ring[:: max(1, -(-len(ring) // _MOST_VERTICES))].tolist()
+    return kept
 
 
 @dataclass(frozen=True, slots=True)
 class ImpactAnswer:
-    """The tables of one body, one for each foot that was asked for."""
+    """The tables of one body, one per requested foot."""
 
     body: Body
     tables: dict[Foot, tuple[CoefficientRow, ...]]  # foot to rows
     gravity: float  # acceleration of gravity [m/s2]
-    identities: dict[str, tuple[IdentityCheck, ...]]  # model to its checks; empty if not asked for
+    identities: dict[str, tuple[IdentityCheck, ...]]  # model to its checks; empty if not requested
 
     @classmethod
     def of(
@@ -81,10 +81,10 @@ class ImpactAnswer:
             del tables["left"]
         foot = next(reversed(tables))
         checked = (models or default_models()) if identities else []
-        return cls(body, tables, gravity, {each.label: identity_report(body, each, onto=foot) for each in checked})
+        return cls(body, tables, gravity, {model.label: identity_report(body, model, onto=foot) for model in checked})
 
     def answer(self) -> Answer:
-        """Return the body, KED's energy, and every model's coefficient with what it implies."""
+        """Return the body, KED's energy, and every model's coefficient with derived quantities."""
         return Answer({
             "body": self.body.answer(self.gravity),
             "ked_energy_shares": {foot: energy_balance(self.body, onto=foot).shares for foot in self.tables},
@@ -121,18 +121,18 @@ def stages_answer(body: Body, onto: Foot, angular_velocity: float = 1.0) -> Answ
 
 
 def _arrow_feet(body: Body) -> FloatArray:
-    """Return points within a body, in rows and columns; of mass points themselves."""
+    """Return a grid of points within a body; for mass points, the points themselves [m]."""
     from rocking.plots.energy_stages import arrow_feet
 
     if isinstance(body, MassPoints):
         return np.asarray(body.points, dtype=np.float64)
-    points = np.stack([each.ravel() for each in arrow_feet(body)], axis=-1)
+    points = np.stack([coordinate.ravel() for coordinate in arrow_feet(body)], axis=-1)
     return points[body.density_at(points[:, 0], points[:, 1]) > 0.0]
 
 
 @cache
 def measured_answer() -> Answer:
-    """Return every independent published measurement; ``low`` and ``high`` are what the printed digits leave open."""
+    """Return all independent published measurements; ``low`` and ``high`` bound the rounding of the printed digits."""
     data = all_measurements()
     columns = {
         "group": data.group,

@@ -1,4 +1,4 @@
-"""A report as plain content, and as one self-contained HTML file or a PDF set by Typst, of nothing from elsewhere."""
+"""A report as plain content, as one self-contained HTML file, or as a PDF set by Typst without network access."""
 
 import hashlib
 import json
@@ -26,8 +26,8 @@ class Cell:
     """One cell of a table."""
 
     text: str
-    mark: str = "plain"  # good, fair, bad or plain: agrees, in part, does not, nothing to say
-    picture: str = ""  # name of a small picture's file, beside the others
+    mark: str = "plain"  # good, fair, bad or plain: agrees, agrees in part, disagrees, not rated
+    picture: str = ""  # file name of a thumbnail, in the folder of the pictures
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Paragraph:
     """Plain text."""
 
     text: str
-    lead: str = ""  # words set in bold before it
-    mark: str = "plain"  # as of a cell; shown as a coloured bar or word
+    lead: str = ""  # bold text before it
+    mark: str = "plain"  # as for a cell; shown as a coloured bar or word
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Picture:
 
     stem: str  # name of its files, without suffix
     caption: str
-    width: int = 100  # share of the width of the page [%]
+    width: int = 100  # fraction of the page width [%]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +65,15 @@ class Pair:
 
     left: Picture
     right: ReportTable
-    share: int = 40  # share of the picture in the width [%]
+    share: int = 40  # fraction of the width for the picture [%]
 
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """Text as a machine reads it, line by line."""
+    """Machine-readable text in lines."""
 
     text: str
-    lead: str = ""  # words before it
+    lead: str = ""  # text before it
 
 
 Block = Paragraph | ReportTable | Picture | Pair | Listing
@@ -89,28 +89,28 @@ class ReportSection:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A whole report.
+    """A complete report.
 
     Parameters
     ----------
     title : str
         Title.
     subtitle : str
-        A line below it.
+        Line below the title.
     sections : sequence of ReportSection
         The content.
     look_at : sequence of (str, str)
-        What to look at first: a short name and a sentence.
+        Main points: a short name and a sentence.
     verdict : sequence of Paragraph
-        What matters most.
+        Main result.
     provenance : dict of str to str
         Versions and sources.
     footer : str
         Small print of every page.
     language : str
-        In which it is, as in ISO 639-1.
+        ISO 639-1 code of the language.
     look_at_title, sections_title : str
-        What stands above what to look at first, and what the list of sections is called.
+        Titles of the main points and of the list of sections.
     """
 
     title: str
@@ -121,24 +121,24 @@ class Document:
     provenance: dict[str, str] = field(default_factory=dict)
     footer: str = ""
     language: str = "en"
-    look_at_title: str = "What to look at"
+    look_at_title: str = "Main points"
     sections_title: str = "Sections"
 
     @property
     def tables(self) -> list[ReportTable]:
-        """Every table with a file name, in order."""
+        """Tables with a file name, in order."""
         blocks = (block for section in self.sections for block in section.blocks)
         return [block for block in blocks if isinstance(block, ReportTable) and block.stem]
 
     def plain(self) -> dict[str, Any]:
-        """Return everything as plain values, for the templates of Typst.
+        """Return the content as plain values, for the Typst templates.
 
         Returns
         -------
         dict
-            Fields by name; each block with its ``kind``.
+            Fields by name; each block has a ``kind``.
         """
-        sections = [(each.title, [_plain(block) for block in each.blocks]) for each in self.sections]
+        sections = [(item.title, [_plain(block) for block in item.blocks]) for item in self.sections]
         return {
             "title": self.title,
             "subtitle": self.subtitle,
@@ -146,7 +146,7 @@ class Document:
             "language": self.language,
             "look_at_title": self.look_at_title,
             "look_at": [list(pair) for pair in self.look_at],
-            "verdict": [_plain(each) for each in self.verdict],
+            "verdict": [_plain(item) for item in self.verdict],
             "sections": [{"title": title, "blocks": blocks} for title, blocks in sections],
             "provenance": [f"{name}: {value}." for name, value in self.provenance.items()],
         }
@@ -168,12 +168,12 @@ def _plain(block: Block) -> dict[str, Any]:
 def table(
     caption: str, header: Sequence[str], rows: Iterable[Iterable[object]], note: str = "", stem: str = ""
 ) -> ReportTable:
-    """Return a table from cells and anything that prints.
+    """Return a table from cells and values, which are converted to text.
 
     >>> table("", ["r [-]"], [[0.5]]).rows
     [[Cell(text='0.5', mark='plain', picture='')]]
     """
-    cells = [[each if isinstance(each, Cell) else Cell(str(each)) for each in row] for row in rows]
+    cells = [[value if isinstance(value, Cell) else Cell(str(value)) for value in row] for row in rows]
     return ReportTable(caption, header, cells, note, stem)
 
 
@@ -181,20 +181,22 @@ def answer_table(
     caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = "",
     stem: str = "", *, display: Display | None = None, marks: Mapping[str, Sequence[str]] | None = None,
 ) -> ReportTable:  # fmt: skip
-    """Return a table of an answer; names: its columns; marks: of the cells of a column, by its name."""
+    """Return a table of an answer; names: columns; marks: marks of the cells by column name."""
     columns = (display or Display()).table(rows, names)
-    marked = (map(Cell, each.cells, (marks or {}).get(each.name) or ["plain"] * len(each.cells)) for each in columns)
-    return table(caption, [each.heading for each in columns], zip(*marked, strict=True), note, stem)
+    marked = (
+        map(Cell, column.cells, (marks or {}).get(column.name) or ["plain"] * len(column.cells)) for column in columns
+    )
+    return table(caption, [column.heading for column in columns], zip(*marked, strict=True), note, stem)
 
 
 def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:
-    """Return a report with its verdict on top; under: what stands below the title, as far as there is something."""
+    """Return a report with its verdict on top; under: texts below the title, empty texts omitted."""
     subtitle = ". ".join(filter(None, under))
     return Document(title, subtitle, sections, verdict=[Paragraph(verdict, "", mark)], footer=SOFTWARE)
 
 
-def made_with() -> dict[str, str]:
-    """Return what made a result: versions, and the fingerprints of the data."""
+def software_and_data() -> dict[str, str]:
+    """Return the software versions and the fingerprints of the data of a result."""
     import scipy
 
     from rocking import evidence
@@ -206,7 +208,7 @@ def made_with() -> dict[str, str]:
         for name in (f"mao2024_table{i}.csv" for i in (1, 2, 3))
     ]
     return {
-        "Made with": f"{SOFTWARE}, Python {platform.python_version()}, numpy {np.__version__}, "
+        "Software": f"{SOFTWARE}, Python {platform.python_version()}, numpy {np.__version__}, "
         f"scipy {scipy.__version__}",
         "Measurements": f"{source['source']}, doi:{source['doi']}, {source['licence']}",
         "SHA-256": ", ".join(prints),
@@ -236,7 +238,7 @@ def _inline(folder: Path, stem: str) -> object:
     from markupsafe import Markup
 
     text = (folder / f"{stem}.svg").read_text(encoding="utf-8")
-    # ids of different pictures must not meet in one page
+    # ids of different pictures must differ within a page
     body = text[text.index("<svg") :]
     for attribute in ('id="', 'href="#', "url(#"):
         body = body.replace(attribute, f"{attribute}{stem}-")
@@ -244,7 +246,7 @@ def _inline(folder: Path, stem: str) -> object:
 
 
 def _address(jpeg: Path) -> str:
-    """Return a small picture as an address that holds it."""
+    """Return a thumbnail as a data URL."""
     return f"data:image/jpeg;base64,{b64encode(jpeg.read_bytes()).decode()}"
 
 
@@ -259,15 +261,15 @@ def render_pdf(document: Document, pictures: Path, path: Path) -> None:
 
 
 Content = tuple[Document, dict[str, Callable[[], Any]]]
-"""A document, and what draws its pictures, by stem."""
+"""A document, and the functions that draw its pictures, by stem."""
 
 
 def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], path: Path) -> None:
-    """Write a report of one body as .pdf or .html; pictures: what draws each, by stem."""
+    """Write a report of one body as .pdf or .html; pictures: drawing functions by stem."""
     from rocking.plots.style import write
 
     if path.suffix.lower() not in {".pdf", ".html"}:
-        raise InvalidValueError("a report is .pdf or .html, got {file!r}", file=path.name)
+        raise InvalidValueError("the report file must end in .pdf or .html, got {file!r}", file=path.name)
     with TemporaryDirectory(prefix="rocking-report-") as folder:
         drawn = {stem: write(draw(), Path(folder) / f"{stem}.svg") for stem, draw in pictures.items()}
         if path.suffix.lower() == ".html":
@@ -277,17 +279,17 @@ def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], 
 
 
 def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
-    """Return the report of a response as PDF, the same for the same content."""
+    """Return the report of a response as PDF; the same content gives the same bytes."""
     with TemporaryDirectory(prefix="rocking-report-") as name:
         folder = Path(name)
         for stem, data in pictures.items():
             (folder / f"{stem}.svg").write_bytes(data)
-        # its words in any script come from the fonts of the system; those of the pictures are always there
+        # text in other scripts uses the fonts of the system; the fonts of the pictures are always available
         return _pdf(document, "response.typ", folder, _fonts())
 
 
 def _fonts() -> list[str]:
-    """Return where the typeface of pictures, words and tables is; none where nothing draws."""
+    """Return the folders of the fonts of the report; none without matplotlib."""
     try:
         from matplotlib import get_data_path
     except ImportError:

@@ -1,4 +1,4 @@
-"""The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON; small pictures of its photos."""
+"""The output folder of an inventory: HTML, PDF, spreadsheet, CSV, JSON, and thumbnails of the photos."""
 
 import json
 import warnings
@@ -33,10 +33,10 @@ from rocking.tables.table import writing, written_whole
 STEM = "inventory"  # name of every file, before its suffix
 
 FILLS = {Light.GREEN: "C6E7D6", Light.AMBER: "FFE3A3", Light.RED: "F6C1BC", None: "E3E6EA"}
-"""Background of a light; the words stand in the cell."""
+"""Background colour of a rating; the cell contains its word."""
 
 MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
-"""No photo is larger: it is left aside before it is decoded."""
+"""Limits of a photo; larger photos are ignored and not decoded."""
 
 SIDE = 240  # of a thumbnail, at most [pixels]
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "GIF", "BMP")
@@ -44,17 +44,17 @@ _WIDTHS = {"number": 18, "name": 28, "words": 70, "advice": 70, "note": 28, "lig
 
 
 def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
-    """Write small pictures; return their names by the place of the object, empty where none could be made."""
-    found = {}
-    for place, verdict in enumerate(assessment.verdicts):
+    """Write thumbnails; return their file names by index of the object, empty for unreadable photos."""
+    names = {}
+    for index, verdict in enumerate(assessment.verdicts):
         if verdict.item.photo is not None:
-            name = f"photo-{place}.jpg"
-            found[place] = name if _thumbnail(verdict.item.photo, folder / name) else ""
-    return found
+            name = f"photo-{index}.jpg"
+            names[index] = name if _thumbnail(verdict.item.photo, folder / name) else ""
+    return names
 
 
 def _thumbnail(photo: Path, path: Path) -> bool:
-    """Return whether a small picture could be made of a file, whatever that is."""
+    """Write a thumbnail of a file of any content; return True if it was written."""
     try:
         image, ops = extra("PIL.Image", "thumbnails"), extra("PIL.ImageOps", "thumbnails")
         if not photo.is_file() or photo.stat().st_size > MOST_BYTES:
@@ -72,7 +72,7 @@ def _thumbnail(photo: Path, path: Path) -> bool:
 
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
-    """Write an assessment in every form; return the files, and sentences on those that need a missing library."""
+    """Write an assessment in all formats; return the files, and the messages on missing libraries."""
     with writing(f"to {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -86,17 +86,19 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
 
 
 def write_inventory_file(assessment: Assessment, path: Path) -> Path:
-    """Write an assessment in one form, which is there as a whole or not at all."""
+    """Write an assessment in one format; after an error no incomplete file remains."""
     check_form(path)
     return _write_whole(assessment, path)
 
 
 def check_form(path: Path) -> None:
-    """Refuse the name of a file in whose form no inventory can be written."""
+    """Raise an error if the extension of a file is not a format of an inventory."""
     if _form(path) not in _WRITERS:
         forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
         raise InvalidValueError(
-            "an inventory can be written as {endings}, got {ending!r:.40}", endings=forms, ending=path.suffix
+            "unknown extension {ending!r:.40}; an inventory can be written as {endings}",
+            endings=forms,
+            ending=path.suffix,
         )
 
 
@@ -117,7 +119,7 @@ def inventory_json(assessment: Assessment) -> str:
 
 def _document(assessment: Assessment, path: Path) -> None:
     write = render_pdf if _form(path) == "pdf" else write_html
-    # the renderer leaves its source beside the pictures for a moment: not among the user's files
+    # the renderer writes its source temporarily into the folder of the pictures, which is not the user's folder
     with TemporaryDirectory() as name:
         folder = Path(name)
         document = inventory_document(assessment, thumbnails(assessment, folder), _drawn(assessment, folder))
@@ -125,26 +127,26 @@ def _document(assessment: Assessment, path: Path) -> None:
 
 
 def _drawn(assessment: Assessment, folder: Path) -> list[str]:
-    """Draw the pictures at the head of the report; return their stems, none where there is no object."""
+    """Draw the pictures at the top of the report; return their stems, none without objects."""
     from rocking.plots.inventory import inventory_distribution, inventory_picture
     from rocking.plots.style import write
 
     count = len(assessment.verdicts)
     try:
         with warnings.catch_warnings():
-            # their words are text in any script, in the fonts of whoever reads them
+            # the text of the SVG may be in any script and uses the fonts of the reader
             warnings.filterwarnings("ignore", "Glyph .* missing from font")
             if count:
                 write(inventory_picture(assessment, MOST_DRAWN), folder / f"{GLANCE}.svg")
             if count > MOST_DRAWN:
                 write(inventory_distribution(assessment), folder / f"{SHARES}.svg")
         return [stem for stem in (GLANCE, SHARES) if (folder / f"{stem}.svg").exists()]
-    except MissingExtraError:  # a report without a picture says the same
+    except MissingExtraError:  # the report is complete without pictures
         return []
 
 
 def _csv(assessment: Assessment, path: Path) -> None:
-    # the byte order mark tells Excel that it is UTF-8
+    # Excel needs the byte order mark to read UTF-8
     path.write_text(as_csv(assessment), encoding="utf-8-sig", newline="")
 
 
@@ -154,50 +156,50 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     sheet = book.active
     sheet.title = say("Ranking")
     titles = header(say)[: len(COLUMNS)]
-    _fill(sheet, [titles, *(each[: len(COLUMNS)] for each in rows(assessment, say.code))])
-    lights = [each.light for each in assessment.verdicts]
+    _fill(sheet, [titles, *(item[: len(COLUMNS)] for item in rows(assessment, say.code))])
+    lights = [item.light for item in assessment.verdicts]
     _dress(sheet, [_WIDTHS.get(name, 12) for name in COLUMNS])
     _colour(sheet, [*lights, *[None] * (len(assessment.not_assessed) + len(assessment.not_objects))])
     plan = book.create_sheet(say("Measures"))
     _fill(plan, [
         [say("inventory number"), say("name"), *plan_header(say)],
-        *([escaped(each.item.number), escaped(each.item.name), *plan_row(each, say)] for each in assessment.plan),
+        *([escaped(item.item.number), escaped(item.item.name), *plan_row(item, say)] for item in assessment.plan),
     ])  # fmt: skip
     _dress(plan, [18, 28, *[16] * len(plan_header(say))])
-    about = book.create_sheet(say("What it means"))
+    about = book.create_sheet(say("Explanation"))
     meaning = assessment.thresholds.sentences(say.code).items()
     hazard = assessment.hazard
     shaking = f"{hazard.words(say.code)}; {say(hazard.source)}"
-    facts = [[say("shaking"), shaking], [say("impacts"), assessment.restitution]]
+    facts = [[say("ground motions"), shaking], [say("restitution model"), assessment.restitution]]
     sources = [] if hazard.synthetic else provenance_rows(summaries_of(hazard.motions))
-    facts += [[escaped(f"{say('shaking')}: {name}"), escaped(words)] for name, words in sources]
+    facts += [[escaped(f"{say('ground motions')}: {name}"), escaped(text)] for name, text in sources]
     if assessment.ignored:
-        facts.append([say("not read"), say("columns of the list: {columns}", columns=", ".join(assessment.ignored))])
-    if words := stated(assessment):
-        facts.append(["", words])
+        facts.append([say("ignored"), say("columns of the list: {columns}", columns=", ".join(assessment.ignored))])
+    if text := stated(assessment):
+        facts.append(["", text])
     _fill(about, [
-        *([say(LIGHT_NAMES[light]), words] for light, words in meaning),
-        *(["", each] for each in assessment.thresholds.conventions(say.code)),
+        *([say(LIGHT_NAMES[light]), text] for light, text in meaning),
+        *(["", item] for item in assessment.thresholds.conventions(say.code)),
         *facts,
         [say("Measures"), say(PLAN_NOTE)],
-        *([say("not covered"), each] for each in limits(assessment)),
+        *([say("not covered"), item] for item in limits(assessment)),
     ])  # fmt: skip
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
-    whole = BytesIO()  # a workbook that a full disk cuts off complains for long after it was closed
-    book.save(whole)
-    path.write_bytes(whole.getvalue())
+    buffer = BytesIO()  # on a full disk, openpyxl would raise again after the file was closed
+    book.save(buffer)
+    path.write_bytes(buffer.getvalue())
 
 
 def _fill(sheet: Any, lines: list[list[Any]]) -> None:
     for i, line in enumerate(lines, start=1):
         for k, value in enumerate(line, start=1):
-            place = sheet.cell(row=i, column=k)
+            cell = sheet.cell(row=i, column=k)
             if isinstance(value, str):
-                # as a string whatever it begins with; control characters cannot be stored
-                place.value = "".join(each for each in value if each.isprintable()) or None
-                place.data_type = "s" if place.value is not None else "n"
+                # always a string, never a formula; control characters cannot be stored
+                cell.value = "".join(character for character in value if character.isprintable()) or None
+                cell.data_type = "s" if cell.value is not None else "n"
             else:
-                place.value = value
+                cell.value = value
 
 
 def _dress(sheet: Any, widths: list[int]) -> None:

@@ -12,29 +12,29 @@ from rocking.reports.document import ReportTable, answer_table, table
 _MOST = 200
 
 
-def motion_sources(found: Sequence[MotionSummary]) -> ReportTable:
+def motion_sources(motions: Sequence[MotionSummary]) -> ReportTable:
     """Return the table of the source and the processing steps of motions."""
-    rows = provenance_rows(found)
+    rows = provenance_rows(motions)
     note = f"{len(rows) - _MOST} more motions; the JSON output lists all." if len(rows) > _MOST else ""
     return table("", ["motion", "source and processing steps, in order"], rows[:_MOST], note)
 
 
-def peak_display(found: Sequence[MotionSummary], **own: Quantity) -> Display:
-    """Return the display of peaks in g, on the ground or on a floor; own: quantities of the table alone."""
-    labels = zip(("pga", "pgv"), peak_names(each.support for each in found), strict=True)
+def peak_display(motions: Sequence[MotionSummary], **own: Quantity) -> Display:
+    """Return the display of peaks in g, of ground or floor motions; own: quantities of this table only."""
+    labels = zip(("pga", "pgv"), peak_names(motion.support for motion in motions), strict=True)
     peaks = {name: replace(QUANTITIES[name], label=label, digits=".3g") for name, label in labels}
     return Display(acceleration="g", own=peaks | own)
 
 
-def motion_table(found: Prediction) -> ReportTable:
-    """Return motions with the probabilities under each."""
+def motion_table(prediction: Prediction) -> ReportTable:
+    """Return the table of motions with the probabilities under each motion."""
     rows = [
         {
             "motion": motion.name, "pga": motion.peak, "pgv": motion.peak_velocity, "duration": motion.duration,
-            **{name: float(chance.per_motion[k]) for name, chance in found.chances.items()},
+            **{name: float(chance.per_motion[k]) for name, chance in prediction.chances.items()},
         }
-        for k, motion in enumerate(found.motions)
+        for k, motion in enumerate(prediction.motions)
     ]  # fmt: skip
-    chances = {name: replace(QUANTITIES["per_motion"], name=name) for name in found.chances}
-    display = peak_display(found.motions, duration=closely(duration=".3g")["duration"], **chances)
+    chances = {name: replace(QUANTITIES["per_motion"], name=name) for name in prediction.chances}
+    display = peak_display(prediction.motions, duration=closely(duration=".3g")["duration"], **chances)
     return answer_table("Probabilities under each motion", rows, display=display)

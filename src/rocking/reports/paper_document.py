@@ -1,4 +1,4 @@
-"""The report of `rocking paper`: what is recomputed, and what stands in the report, section by section."""
+"""The report of `rocking paper`: recomputed results, and the content of the report by section."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -31,7 +31,7 @@ from rocking.reports.document import (
     ReportSection,
     ReportTable,
     answer_table,
-    made_with,
+    software_and_data,
 )
 from rocking.reports.document import table as report_table
 from rocking.restitution import Housner, Ked
@@ -72,7 +72,7 @@ TABLES = {
     "Table 2": ("table2",),
     "Table 3": ("S", "M", "L"),
 }
-"""The paper's tables and the data sets they hold."""
+"""The paper's tables and their data sets."""
 
 PRINTED_CORRELATION = {"table2": "0.946", "S": "0.998", "M": "0.996", "L": "0.998"}  # section 3.2 of the paper
 _TITLES = {"table2": "Table 2", "S": "Table 3, S", "M": "Table 3, M", "L": "Table 3, L"}
@@ -83,19 +83,19 @@ _MODELS = (("Housner", Housner()), ("KED", Ked()))
 class Reproduction:
     """The paper, recomputed."""
 
-    tables: dict[str, tuple[TableRow, ...]]  # Table to rows, printed beside recomputed
-    claims: tuple[Claim, ...]  # every claim with its verdict
-    errata: tuple[Erratum, ...]  # what recomputing found
-    league: tuple[LeagueRow, ...]  # every model against every measurement
-    calibration: Calibration  # the calibrated default, where every measurement stands alone
-    coverage: Coverage  # how its intervals cover what they have not seen
-    hierarchy: HierarchicalCalibration  # that which knows laboratories, interfaces and blocks
-    left_out: tuple[LeftOut, ...]  # groups beside what the others predict of them by it
-    data: DataSet  # what league and calibrations are of
-    verdict: tuple[str, ...]  # what the evidence says, in words
+    tables: dict[str, tuple[TableRow, ...]]  # table to rows, printed and recomputed
+    claims: tuple[Claim, ...]  # claims with verdicts
+    errata: tuple[Erratum, ...]  # differences found by recomputing
+    league: tuple[LeagueRow, ...]  # all models compared with all measurements
+    calibration: Calibration  # the calibrated default, with independent measurements
+    coverage: Coverage  # coverage of its intervals for data not used in the fit
+    hierarchy: HierarchicalCalibration  # calibration with effects of laboratories, interfaces and blocks
+    left_out: tuple[LeftOut, ...]  # groups compared with predictions from the other groups
+    data: DataSet  # measurements of league and calibrations
+    verdict: tuple[str, ...]  # conclusions as sentences
 
     def answer(self) -> Answer:
-        """Return every number of the reproduction, and where it comes from."""
+        """Return all numbers of the reproduction, and their provenance."""
         covered = {name: list(counts) for name, counts in self.coverage.by_group.items()}
         return Answer({
             "verdict": self.verdict,
@@ -110,7 +110,7 @@ class Reproduction:
             "calibration": self.calibration.summary,
             "covered": {"one_by_one": [self.coverage.one_by_one, self.coverage.rows], "by_data_set": covered},
             "hierarchy": hierarchy_answer(self.hierarchy, self.left_out),
-            "provenance": made_with(),
+            "provenance": software_and_data(),
         })  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def _row_answer(row: TableRow) -> dict[str, Any]:
 
 
 def reproduce(measurements: DataSet | None = None) -> Reproduction:
-    """Recompute the paper; its league and calibration on other measurements, where they are given."""
+    """Recompute the paper; measurements: data of league and calibration, by default those of the paper."""
     data = all_measurements() if measurements is None else measurements
     standings = league(measurements=data)
     tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
@@ -138,7 +138,7 @@ def paper_document(result: Reproduction) -> Document:
         "Verdict": [Paragraph(sentence) for sentence in result.verdict],
         "Claims": _claims(result.claims),
         "League table": _league(result),
-        "What explains the measurements": explanation_blocks(explanation()),
+        "Explanations of the measurements": explanation_blocks(explanation()),
         "Calibrated default": _calibration(result),
         "Tables": [_paper_table(title, rows) for title, rows in result.tables.items()],
         "Figures": [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)],
@@ -151,62 +151,62 @@ def paper_document(result: Reproduction) -> Document:
         "doi:10.3390/buildings14072119, and all models against its 39 measurements",
         [ReportSection(title, blocks) for title, blocks in sections.items()],
         look_at=look_at(result),
-        provenance=made_with(),
+        provenance=software_and_data(),
     )
 
 
 def look_at(result: Reproduction) -> list[tuple[str, str]]:
-    """Say what to look at first."""
-    found = sum(erratum.found for erratum in result.errata)
+    """Return the main points: a short name and a sentence per point."""
+    found_count = sum(erratum.found for erratum in result.errata)
     best = result.league[0]
     return [
         (
             "Verdict",
-            f"{len(result.verdict)} sentences made from the numbers; 'not resolved' where an interval includes zero",
+            f"{len(result.verdict)} sentences from the numbers; 'not resolved' if an interval includes zero",
         ),
         ("Claims", tally(result.claims)),
         (
             "League table",
             f"{len(result.league)} models; the smallest error is that of {best.name}, RMSE {best.rmse:.4f}",
         ),
-        ("Errata", f"{found} of {len(result.errata)} found by recomputing"),
+        ("Errata", f"{found_count} of {len(result.errata)} found by recomputing"),
     ]
 
 
-def _claims(judged: Sequence[Claim]) -> list[Block]:
+def _claims(claims: Sequence[Claim]) -> list[Block]:
     rows = [
-        (one.section, one.quote, Cell(one.verdict, MARK.get(one.verdict, "plain")), one.evidence, one.test)
-        for one in judged
+        (claim.section, claim.quote, Cell(claim.verdict, MARK.get(claim.verdict, "plain")), claim.evidence, claim.test)
+        for claim in claims
     ]
     header = ["section", "claim", "verdict", "number", "test"]
-    return [Paragraph(f"{tally(judged)}."), report_table("Claims of sections 3 and 4", header, rows, stem="claims")]
+    return [Paragraph(f"{tally(claims)}."), report_table("Claims of sections 3 and 4", header, rows, stem="claims")]
 
 
-def _errata(checked: Sequence[Erratum]) -> list[Block]:
+def _errata(errata: Sequence[Erratum]) -> list[Block]:
     verdicts = {True: Cell("found"), False: Cell("not found", "bad")}
-    rows = [(one.name, one.statement, one.evidence, verdicts[bool(one.found)]) for one in checked]
+    rows = [(erratum.name, erratum.statement, erratum.evidence, verdicts[bool(erratum.found)]) for erratum in errata]
     return [
-        Paragraph("Each was found by computation on the printed tables; nothing is corrected in the data."),
-        report_table("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
+        Paragraph("Each erratum follows from computation on the printed tables. The data are not corrected."),
+        report_table("Errata", ["location", "erratum", "numbers", ""], rows, stem="errata"),
     ]
 
 
 def _paper_table(title: str, rows: Sequence[TableRow]) -> ReportTable:
     keys = list(rows[0].entries)
     columns = [f"{_COLUMNS[key]} {which}" for key in keys for which in ("printed", "recomputed")]
-    given = () if "measured" in keys else ("r_e",)
-    header = ["block or interface", "h/b", *given]
+    measured_header = () if "measured" in keys else ("r_e",)
+    header = ["block or interface", "h/b", *measured_header]
     for printed, recomputed_ in zip(columns[::2], columns[1::2], strict=True):
         header += [printed, recomputed_, "difference"]
     cells = [
         [
-            row.label, f"{row.slenderness:g}", *(f"{row.measured:g}" for _ in given),
+            row.label, f"{row.slenderness:g}", *(f"{row.measured:g}" for _ in measured_header),
             *(x for key in keys for x in _pair(row.entries[key])),
         ]
         for row in rows
     ]  # fmt: skip
     note = f"{agreement(rows)}. Values that differ are marked."
-    return report_table(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
+    return report_table(f"{title}, printed and recomputed", header, cells, note, title.lower().replace(" ", "_"))
 
 
 def _pair(entry: Entry) -> list[Cell]:
@@ -233,15 +233,15 @@ def _league(result: Reproduction) -> list[Block]:
     split = ["model", *groups, *(name for name, _, _ in BANDS), "RMSE minus KED's, 95 %"]
     return [
         Paragraph(
-            "RMSE and bias (model minus experiment) of r; errors of the energy loss 1 - r^2, absolute and logarithmic; "
-            "Lin's concordance; leave-one-out (LOO) and leave-one-data-set-out (LOG) RMSE; BIC with the rounding in "
-            "the likelihood and a scatter that grows with the loss (lower is better)."
+            "Columns: RMSE and bias (model minus experiment) of r, absolute and logarithmic errors of the energy loss "
+            "1 - r^2, Lin's concordance, and RMSE with one measurement (LOO) or one data set (LOG) left out. BIC "
+            "(lower is better) includes the rounding in the likelihood and a scatter that grows with the loss."
         ),
         answer_table(
             f"All models, all {count} measurements",
             [{**row.answer().values, "model": row.name, "fitted": row.fitted} for row in rows],
             names,
-            "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed; fitted values are kept.",
+            "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed, without new fits.",
             "league",
         ),
         report_table(
@@ -260,7 +260,7 @@ def _split_row(row: LeagueRow) -> list[object]:
 
 
 def _calibration(result: Reproduction) -> list[Block]:
-    words = {
+    meanings = {
         "eta": "interface factor",
         "k": "impulse position over half base",
         "s": "scatter scale",
@@ -269,33 +269,33 @@ def _calibration(result: Reproduction) -> list[Block]:
     both = (("Posterior", "calibration", result.calibration), ("Hierarchical posterior", "hierarchy", result.hierarchy))
     posteriors = [
         report_table(title, ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], [
-            (name, words[name], *(f"{fact[key]:.4f}" for key in ("mean", "sd", "low", "high")))
-            for name, fact in found.summary.items()
+            (name, meanings[name], *(f"{fact[key]:.4f}" for key in ("mean", "sd", "low", "high")))
+            for name, fact in posterior.summary.items()
         ], stem=stem)
-        for title, stem, found in both
+        for title, stem, posterior in both
     ]  # fmt: skip
     groups = [
         (
-            each.name,
-            each.measurements,
-            each.inside,
-            f"{each.interval_width:.3f}",
-            f"{each.probability:.3f}",
-            "yes" if each.within else "no",
+            group.name,
+            group.measurements,
+            group.inside,
+            f"{group.interval_width:.3f}",
+            f"{group.probability:.3f}",
+            "yes" if group.within else "no",
         )
-        for each in result.left_out
+        for group in result.left_out
     ]
     return [
         Paragraph(
-            f"The default is {result.calibration.model().label}: an interface factor times the shifted impulse. Its "
-            "interval is the posterior predictive one for a single measured body, with a scatter s (1 - r)^gamma. "
+            f"The default is {result.calibration.model().label}: an interface factor times the shifted impulse. The "
+            "interval is the posterior predictive interval of a single measured body, with a scatter s (1 - r)^gamma. "
             f"{result.coverage.sentence}"
         ),
         posteriors[0],
         Paragraph(sentence_of(result.hierarchy, result.left_out)),
         posteriors[1],
         report_table(
-            "Groups that the hierarchical calibration has not seen",
+            "Groups left out of the hierarchical calibration",
             ["group", "measurements", "inside", "mean width", "probability of a lower mean", "mean within 95 %"],
             groups,
             stem="left_out_groups",
@@ -305,16 +305,16 @@ def _calibration(result: Reproduction) -> list[Block]:
 
 
 def _correlations() -> list[Block]:
-    """Return correlations, concordances and zones of both models, data set by data set."""
+    """Return correlations, concordances and zones of both models, by data set."""
     return [
         Paragraph(
             "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. "
-            "The true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
+            "The correct r_H are used. Pearson's correlation hardly differs between the models; Lin's concordance does."
         ),
         report_table(
             "Correlation, concordance and zones",
             ["data", "model", "correlation printed", "correlation", "Lin", "zone I", "zone II", "zone III", "largest"],
-            [_measures(name, word, model) for name in _TITLES for word, model in _MODELS],
+            [_measures(name, title, model) for name in _TITLES for title, model in _MODELS],
             stem="correlations_and_zones",
         ),
         report_table(
@@ -326,14 +326,21 @@ def _correlations() -> list[Block]:
     ]
 
 
-def _measures(name: str, word: str, model: Housner | Ked) -> list[object]:
+def _measures(name: str, title: str, model: Housner | Ked) -> list[object]:
     data = datasets()[name]
     r = model.of_slenderness(data.slenderness)
     error = relative_error(r, data.coefficient)
-    zones, printed = zone(error), PRINTED_CORRELATION[name] if word == "KED" else ""
-    alike = f"{correlation(r, data.coefficient):.4f}", f"{concordance(r, data.coefficient):.4f}"
+    zones, printed = zone(error), PRINTED_CORRELATION[name] if title == "KED" else ""
+    measures = f"{correlation(r, data.coefficient):.4f}", f"{concordance(r, data.coefficient):.4f}"
     largest = f"{100.0 * float(error.max()):.1f} %"
-    return [_TITLES[name], word, printed, *alike, *(zones.count(each) for each in ("I", "II", "III")), largest]
+    return [
+        _TITLES[name],
+        title,
+        printed,
+        *measures,
+        *(zones.count(zone_name) for zone_name in ("I", "II", "III")),
+        largest,
+    ]
 
 
 def _errors(name: str) -> list[list[object]]:
@@ -343,45 +350,46 @@ def _errors(name: str) -> list[list[object]]:
     for i in range(len(data)):
         row: list[object] = [_TITLES[name], data.labels[i], f"{data.slenderness[i]:g}"]
         for error in errors:
-            where = zone(error)[i]
-            row += [f"{100.0 * float(error[i]):.2f} %", Cell(where, "bad" if where == "III" else "plain")]
+            zone_name = zone(error)[i]
+            row += [f"{100.0 * float(error[i]):.2f} %", Cell(zone_name, "bad" if zone_name == "III" else "plain")]
         rows.append(row)
     return rows
 
 
 def explanation_blocks(compared: Explanation) -> list[Block]:
-    """Return what explains the measurements."""
+    """Return the sections on explanations of the measurements."""
     header = [
-        "explanation", "what it says", "points", "fitted", "RMSE", "BIC", "behind", "left-out score", "over one bed",
+        "explanation", "statement", "points", "fitted", "RMSE", "BIC", "BIC minus best", "left-out score",
+        "score minus one bed",
     ]  # fmt: skip
     return [
         *(Paragraph(sentence) for sentence in compared.verdict),
         Paragraph(
             "The contact bed resolves an impact in time on springs and dashpots along the base. Each explanation is "
             "fitted to the 39 measurements by maximum likelihood of the printed digits, with a scatter "
-            "s (1 - r)^gamma; BIC counts its parameters, the number of contact points and the two of the scatter. The "
-            "left-out score is the sum over the measurements of the logarithm of the probability of each by a fit that "
-            "has not seen it."
+            "s (1 - r)^gamma. BIC counts its parameters, the number of contact points and the two parameters of the "
+            "scatter. The left-out score is the sum over the measurements of the log probability of each measurement "
+            "by a fit without this measurement."
         ),
         report_table(
             "Explanations of the measurements by the contact bed",
             header,
             map(_explanation, compared.ranked, repeat(compared.unresolved)),
-            "Over one bed: with its standard error over the measurements.",
+            "Score minus one bed: with the standard error over the measurements.",
             "explanations",
         ),
         Picture("bed_dependence", "Coefficient of restitution of the contact bed: slenderness, hardness, damping."),
         Picture(
             "explanations",
-            "BIC above the best, and left-out score above that of one bed for all, with two standard errors.",
+            "BIC minus the best BIC, and left-out score minus that of one common bed, with two standard errors.",
         ),
-        Picture("explanation_residuals", "What one bed and the best explanation leave over."),
+        Picture("explanation_residuals", "Residuals of one common bed and of the best explanation."),
     ]
 
 
-def _explanation(each: Ranked, best: tuple[str, ...]) -> list[object]:
-    fit = each.fit
+def _explanation(ranked: Ranked, best: tuple[str, ...]) -> list[object]:
+    fit = ranked.fit
     fitted = ", ".join(f"{name} = {value:.4g}" for name, value in fit.values.items())
-    scores = f"{fit.rmse:.4f}", f"{fit.bic:.1f}", f"{each.behind:.1f}", f"{each.score:.1f}"
-    name = Cell(each.name, "good" if each.name in best else "plain")
-    return [name, fit.physics.sentence, fit.points, fitted, *scores, f"{each.gain:+.1f} +- {each.gain_error:.1f}"]
+    scores = f"{fit.rmse:.4f}", f"{fit.bic:.1f}", f"{ranked.behind:.1f}", f"{ranked.score:.1f}"
+    name = Cell(ranked.name, "good" if ranked.name in best else "plain")
+    return [name, fit.physics.sentence, fit.points, fitted, *scores, f"{ranked.gain:+.1f} +- {ranked.gain_error:.1f}"]

@@ -1,4 +1,4 @@
-"""The report of one body under one motion: what it is, what an impact costs, how it rocks, and how to do it again."""
+"""The report of one body under one motion: body, energy loss of an impact, response, and how to repeat the run."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ from rocking.reports.motion_sources import motion_sources
 from rocking.reports.response_facts import ModelAgreement, measure_quantities, measures_of, restitution_words
 from rocking.version import SOFTWARE
 
-_OUTCOMES = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+_OUTCOMES = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "does not overturn", Outcome.NO_UPLIFT: "no uplift"}
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
 _KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
 _LONGEST_LISTING = 12_000
@@ -48,23 +48,23 @@ _FRICTION = ("friction_of_motion", "friction_of_impacts")
 
 @dataclass(frozen=True)
 class ResponseReport:
-    """What was computed, and what it is about."""
+    """Inputs and results of a report."""
 
     impact: ImpactAnswer  # body and coefficients
     motion: Motion | None  # the motion, scaled; None for free rocking
     measures: dict[str, Measure]  # its intensity measures
     responses: Mapping[str, Response]  # by label of the restitution; at least one
-    refused: Mapping[str, str]  # by label: why there is none
+    refused: Mapping[str, str]  # reason for a missing response, by label
     friction: float  # coefficient of friction between body and ground [-]
-    name: str = ""  # what the user calls the body
+    name: str = ""  # name of the body
     date: str = ""  # day of the report
-    toml: str = ""  # the inputs as a file of the command line; empty if they were objects in Python
-    commands: Sequence[str] = ()  # what to type for the same result
+    toml: str = ""  # the inputs as an input file; empty for Python objects
+    commands: Sequence[str] = ()  # commands that give the same result
     fingerprint: str = ""  # SHA-256 of the inputs
 
 
 PICTURES = ("body", "coefficients", "motion", "response")
-"""Stems of the pictures of a report; ``motion`` is left out for free rocking."""
+"""Stems of the pictures of a report; free rocking has no ``motion``."""
 
 
 def response_document(results: ResponseReport) -> Document:
@@ -75,13 +75,13 @@ def response_document(results: ResponseReport) -> Document:
     gravity = results.impact.gravity
     sections = [
         ReportSection("The body", [Pair(body, body_table("", results.impact.body, gravity))]),
-        ReportSection("What an impact costs", _impact(results)),
+        ReportSection("Energy loss at an impact", _impact(results)),
         ReportSection("The ground motion", _ground(results)),
         ReportSection("The response", _response(results)),
-        ReportSection("To do it again", _again(results, first)),
+        ReportSection("How to repeat the computation", _repetition(results, first)),
     ]
     about = ", ".join([SOFTWARE, *([f"inputs {results.fingerprint[:16]}"] if results.fingerprint else [])])
-    ground = "let go, the ground at rest" if results.motion is None else f"under {results.motion.name}"
+    ground = "free rocking, ground at rest" if results.motion is None else f"under {results.motion.name}"
     if first.scale != 1.0:
         ground = f"{ground}, scaled by {first.scale:g}"
     subtitle = ground[:1].upper() + ground[1:] + (f". {results.date}" if results.date else "")
@@ -90,12 +90,12 @@ def response_document(results: ResponseReport) -> Document:
 
 def _verdict(results: ResponseReport) -> list[Paragraph]:
     label, first = next(iter(results.responses.items()))
-    words = first.summary[:1].upper() + first.summary[1:] + "."
-    own = Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))
-    verdict = ModelAgreement.of({restitution_words(label): one for label, one in results.responses.items()})
+    summary = first.summary[:1].upper() + first.summary[1:] + "."
+    own = Paragraph(summary, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))
+    verdict = ModelAgreement.of({restitution_words(label): response for label, response in results.responses.items()})
     if len(results.responses) == 1:
         return [own]
-    return [own, Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain")]
+    return [own, Paragraph(verdict.sentence, "", "fair" if verdict.models_differ else "plain")]
 
 
 _OF_BODY = (
@@ -105,7 +105,7 @@ _OF_BODY = (
 
 
 def body_table(title: str, body: Body, gravity: float) -> ReportTable:
-    """Return what a body is under a gravity [m/s2]."""
+    """Return the data of a body under a gravity [m/s2]."""
     lines = [*Display().lines(body.answer(gravity).values, _OF_BODY, in_full=True)]
     return report_table(title, ["quantity", "value"], [lines[0], *assumed_rows(body), *lines[1:]])
 
@@ -114,13 +114,13 @@ def _impact(results: ResponseReport) -> list[Block]:
     tables = [_coefficients(results.impact, foot) for foot in results.impact.tables]
     rows = [row for table in results.impact.tables.values() for row in table]
     notes = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
-    picture = Picture("coefficients", "Every model for this body, and where it lies among the published measurements")
-    return [picture, *tables, *(Paragraph(words, "", "fair") for words in notes)]
+    picture = Picture("coefficients", "All models for this body, compared with the published measurements")
+    return [picture, *tables, *(Paragraph(note, "", "fair") for note in notes)]
 
 
 def _ground(results: ResponseReport) -> list[Block]:
     if results.motion is None:
-        return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
+        return [Paragraph("Free rocking: the body starts from an initial rotation, and the ground is at rest.")]
     caption = (
         f"Acceleration, velocity and displacement of the {support_of(results.motion)}, and the response spectrum for "
         "5 % damping"
@@ -131,34 +131,34 @@ def _ground(results: ResponseReport) -> list[Block]:
 
 def _response(results: ResponseReport) -> list[Block]:
     several = len(results.responses) > 1
-    caption = "The models over one another" if several else "Rotation, velocity, energy and the friction that is taken"
+    caption = "Responses with all models" if several else "Rotation, velocity, energy and friction demand"
     first_label, first = next(iter(results.responses.items()))
     blocks: list[Block] = [Picture("response", caption, 80), _outcomes(results.responses, results.friction)]
-    blocks += [Paragraph(why, f"{restitution_words(label)}:", "fair") for label, why in results.refused.items()]
+    blocks += [Paragraph(reason, f"{restitution_words(label)}:", "fair") for label, reason in results.refused.items()]
     for label, response in results.responses.items():
         blocks += [
-            Paragraph(words, f"{restitution_words(label)}:", "fair") for words in response.doubts(results.friction)
+            Paragraph(doubt, f"{restitution_words(label)}:", "fair") for doubt in response.doubts(results.friction)
         ]
     return [*blocks, _impacts(first_label, first)] if first.impacts.size else blocks
 
 
-def _again(results: ResponseReport, first: Response) -> list[Block]:
+def _repetition(results: ResponseReport, first: Response) -> list[Block]:
     toml = results.toml
     if not toml:
-        return [Paragraph(f"{SOFTWARE}.", "Made with"), Paragraph(_how(first), "Computed with")]
+        return [Paragraph(f"{SOFTWARE}.", "Software"), Paragraph(_method(first), "Method")]
     if len(toml) > _LONGEST_LISTING:
-        toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"
+        toml = toml[:_LONGEST_LISTING] + "\n# ... truncated: the file contains the complete input"
     return [
-        Listing(toml.rstrip("\n"), "This file, saved as response.toml beside the record if there is one:"),
-        Listing("\n".join(results.commands), "gives the same numbers on the command line:"),
-        Paragraph(f"{SOFTWARE}; SHA-256 of the inputs: {results.fingerprint}.", "Made with"),
-        Paragraph(_how(first), "Computed with"),
+        Listing(toml.rstrip("\n"), "Save this text as response.toml in the folder of the record, if there is one:"),
+        Listing("\n".join(results.commands), "Commands that give the same numbers:"),
+        Paragraph(f"{SOFTWARE}; SHA-256 of the inputs: {results.fingerprint}.", "Software"),
+        Paragraph(_method(first), "Method"),
     ]
 
 
-def _how(first: Response) -> str:
+def _method(first: Response) -> str:
     settings = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in first.settings.stated.items())
-    return f"engine {first.engine}; {settings}; energy adds up to {first.energy.closure:.1e} of its largest."
+    return f"engine {first.engine}; {settings}; energy balance error {first.energy.closure:.1e} of the largest energy."
 
 
 def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
@@ -168,8 +168,8 @@ def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
         for row in answer.tables[foot]
     ]  # fmt: skip
     note = (
-        "r: velocity after the impact over velocity before. The interval is that of one measured body, from each "
-        "model's misfit to the published measurements. k: place of the impulse over half the base."
+        "r: velocity after the impact over velocity before. The interval applies to one measured body and follows from "
+        "each model's misfit to the published measurements. k: impulse position over half the base width."
     )
     where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
     names = ("model", "coefficient", "impulse_ratio", "energy_loss", "friction_demand", "notes")
@@ -180,47 +180,47 @@ def _coefficients(answer: ImpactAnswer, foot: Foot) -> ReportTable:
 
 def _measures(measures: Mapping[str, Measure]) -> ReportTable:
     display = Display(own=measure_quantities(measures))
-    lines = display.lines({name: one.value for name, one in measures.items()}, [*measures], in_full=True)
+    lines = display.lines({name: measure.value for name, measure in measures.items()}, [*measures], in_full=True)
     return report_table("Intensity of the motion", ["measure", "value"], lines)
 
 
 def _outcomes(responses: Mapping[str, Response], friction: float) -> ReportTable:
     rows = [_outcome(label, response) for label, response in responses.items()]
     note = (
-        "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction demand: largest ratio "
-        "of horizontal to vertical force; while rocking, the body stands on one foot; "
-        f"{friction:g} was {given_or_assumed(friction)}."
+        "A peak above 1 means that the centre of mass passed the foot and returned. Friction demand: largest ratio of "
+        "horizontal to vertical force; during rocking, the body has contact at one foot. Coefficient of friction: "
+        f"{friction:g}, {given_or_assumed(friction)}."
     )
     marks = {name: ["bad" if row[name] > friction else "plain" for row in rows] for name in _FRICTION}
     marks["outcome"] = [_MARKS.get(response.outcome, "plain") for response in responses.values()]
-    return answer_table("How it ends", rows, (), note, marks=marks)
+    return answer_table("Outcome", rows, (), note, marks=marks)
 
 
 def _impacts(label: str, response: Response) -> ReportTable:
     shown = response.impacts[:_MOST_IMPACTS]
     rows = AnswerRows({"number": [*range(1, shown.size + 1)], **AnswerRows.of(shown).columns})
     left = response.impacts.size - shown.size
-    note = f"{left} more, smaller and smaller; the table of impacts has them all." if left > 0 else ""
+    note = f"{left} more impacts, decreasing; the table of impacts contains all." if left > 0 else ""
     return answer_table(f"Impacts with {restitution_words(label)}", rows, (), note, display=Display(own=CLOSELY))
 
 
 def _outcome(label: str, response: Response) -> dict[str, Any]:
     answer, contact = response.outcome_answer(), response.contact
-    fell = response.outcome is Outcome.OVERTURNED
+    is_overturned = response.outcome is Outcome.OVERTURNED
     return {
         "restitution": restitution_words(label),
         **{f"coefficient_{foot}": r for foot, r in answer["coefficient"].items()},
-        "outcome": _OUTCOMES[response.outcome] + (f" to the {answer['side']}" if fell else ""),
-        **{name: None if fell else answer[name] for name in ("peak_rotation", "peak_ratio")},
+        "outcome": _OUTCOMES[response.outcome] + (f" to the {answer['side']}" if is_overturned else ""),
+        **{name: None if is_overturned else answer[name] for name in ("peak_rotation", "peak_ratio")},
         "impacts": answer["impacts"],
         **{name: getattr(contact, name) for name in _FRICTION},
     }
 
 
 def response_content(response: Response, *, name: str, date: str, friction: float = DEFAULT_FRICTION) -> Content:
-    """Return the report of a response: the body, what an impact costs it, the ground, the response, with pictures."""
+    """Return the report of a response: body, energy loss at an impact, ground motion, response and pictures."""
     if response.outcome is Outcome.FAILED:
-        raise InvalidValueError("a report needs a result: {reason}", reason=response.summary)
+        raise InvalidValueError("the response has no result to report: {reason}", reason=response.summary)
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
     gravity = response.settings.gravity
     impact = ImpactAnswer.of(response.body, None, onto="both", gravity=gravity, identities=False)

@@ -1,4 +1,4 @@
-"""What several models say together, a restitution in words, and what is shown of a motion."""
+"""Agreement of several models, a restitution as text, and the data of a motion."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,27 +17,27 @@ from rocking.quantities import Quantity
 from rocking.restitution import models
 
 _ALL = {
-    Outcome.OVERTURNED: Message("With every one of these models the body overturns."),
-    Outcome.ROCKED: Message("With every one of these models the body stays standing."),
-    Outcome.NO_UPLIFT: Message("With every one of these models the body is never lifted."),
+    Outcome.OVERTURNED: Message("The body overturns with all of these models."),
+    Outcome.ROCKED: Message("The body does not overturn with any of these models."),
+    Outcome.NO_UPLIFT: Message("The body has no uplift with any of these models."),
 }
 _SOME = {
     Outcome.OVERTURNED: Message("overturns with {models}"),
-    Outcome.ROCKED: Message("stays standing with {models}"),
-    Outcome.NO_UPLIFT: Message("is never lifted with {models}"),
+    Outcome.ROCKED: Message("does not overturn with {models}"),
+    Outcome.NO_UPLIFT: Message("has no uplift with {models}"),
 }
-_ROCKING = "Still rocking when the computation ends: with {models}."
-_PULLED = "The ground would have to pull, and the verdict assumes contact: with {models}."
+_ROCKING = "The body still rocks at the end of the computation with {models}."
+_PULLED = "The contact force becomes tensile with {models}; the verdict assumes contact."
 _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True, slots=True)
 class ModelAgreement:
-    """What the models say together."""
+    """Agreement of the outcomes of several models."""
 
-    decides: bool  # whether they end differently
-    verdict: str  # the same in words
-    doubts: tuple[str, ...]  # about the computation
+    models_differ: bool  # True if the outcomes differ
+    verdict: str  # the agreement as a sentence
+    doubts: tuple[str, ...]  # limitations of the computation
 
     @property
     def sentence(self) -> str:
@@ -47,10 +47,10 @@ class ModelAgreement:
     @classmethod
     def of(cls, responses: Mapping[str, Response]) -> "ModelAgreement":
         groups: dict[Outcome, list[str]] = {}
-        for name, one in responses.items():
-            groups.setdefault(one.outcome, []).append(name)
-        rocking = ", ".join(name for name, one in responses.items() if one.still_rocking)
-        pulled = ", ".join(name for name, one in responses.items() if one.lost_contact)
+        for name, response in responses.items():
+            groups.setdefault(response.outcome, []).append(name)
+        rocking = ", ".join(name for name, response in responses.items() if response.still_rocking)
+        pulled = ", ".join(name for name, response in responses.items() if response.lost_contact)
         doubts = [Message(_ROCKING, {"models": rocking})] if rocking else []
         if pulled:
             doubts.append(Message(_PULLED, {"models": pulled}))
@@ -60,11 +60,15 @@ class ModelAgreement:
         first, *others = (_SOME[outcome].of({"models": ", ".join(names)}) for outcome, names in groups.items())
         for other in others:
             first = Message("{first}, {second}", {"first": first, "second": other})
-        return cls(True, Message("The model decides: the body {outcomes}.", {"outcomes": first}), tuple(doubts))
+        return cls(
+            True,
+            Message("The result depends on the restitution model: the body {outcomes}.", {"outcomes": first}),
+            tuple(doubts),
+        )
 
 
 def restitution_words(label: str) -> str:
-    """Return what a restitution is called: a model by its short name, a coefficient with its symbol.
+    """Return the name of a restitution: the short name of a model, or the symbol and value of a coefficient.
 
     >>> restitution_words("ked"), restitution_words("shifted-impulse:k=0.6").replace(chr(160), " ")
     ('KED', 'shifted impulse, k = 0.6')
@@ -74,7 +78,10 @@ def restitution_words(label: str) -> str:
     factor, _, model = label.rpartition("*")
     name, _, parameters = model.partition(":")
     if name in (kinds := models()) and kinds[name].short_name:
-        named = [kinds[name].short_name, *(one.strip().replace("=", _EQUALS) for one in parameters.split(",") if one)]
+        named = [
+            kinds[name].short_name,
+            *(parameter.strip().replace("=", _EQUALS) for parameter in parameters.split(",") if parameter),
+        ]
         times = f"{factor}\N{NO-BREAK SPACE}\N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}" if factor else ""
         return times + ", ".join(named)
     if label.startswith("left "):
@@ -89,11 +96,11 @@ def restitution_words(label: str) -> str:
 def measures_of(
     motion: GroundMotion | Pulse, samples: GroundMotion, curves: Traces | None = None
 ) -> dict[str, Measure]:
-    """Return the intensity measures of a motion; those of a pulse that its formulas give come from these."""
+    """Return the intensity measures of a motion; peaks of a pulse come from its formulas."""
     measures = intensity_measures(samples)
     if not isinstance(motion, Pulse):
         return measures
-    # these three are known from the formulas, not only from samples
+    # the formulas give these three exactly
     peaks = (traces(motion) if curves is None else curves).peaks
     exact = {f"pg{name[0]}": abs(value) for name, (_, value) in peaks.items()}
     return measures | {key: replace(measures[key], value=value) for key, value in exact.items()}
@@ -102,29 +109,29 @@ def measures_of(
 def measure_quantities(measures: Mapping[str, Measure]) -> dict[str, Quantity]:
     """Return the quantities of intensity measures."""
     return {
-        name: Quantity(name, "1" if one.unit == "-" else one.unit, one.name, digits=".5g")
-        for name, one in measures.items()
+        name: Quantity(name, "1" if measure.unit == "-" else measure.unit, measure.name, digits=".5g")
+        for name, measure in measures.items()
     }
 
 
 def record_answer(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> Answer:
-    """Return what a motion is and how strong."""
-    record = isinstance(motion, GroundMotion)
+    """Return source, duration and intensity of a motion."""
+    is_record = isinstance(motion, GroundMotion)
     metadata = motion.metadata if isinstance(motion, GroundMotion) else {}
     return Answer(
         {
-            "kind": "record" if record else "pulse",
+            "kind": "record" if is_record else "pulse",
             "name": motion.name,
             **{key: metadata.get(key) for key in ("format", "event", "station", "component")},
             "vertical_component": metadata.get("vertical component"),
             "file_unit": metadata.get("unit"),
-            "samples": len(samples) if record else None,
-            "time_step": samples.time_step if record else None,
+            "samples": len(samples) if is_record else None,
+            "time_step": samples.time_step if is_record else None,
             "duration": motion.duration,
             "warnings": motion.doubts,
             "provenance": provenance_of(motion),
             "peak_vertical_acceleration": None if samples.vertical is None else samples.peak_vertical,
-            "intensity": {name: one.value for name, one in measures.items()},
+            "intensity": {name: measure.value for name, measure in measures.items()},
         },
         measure_quantities(measures),
     )

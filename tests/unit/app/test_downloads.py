@@ -68,7 +68,7 @@ def test_pictures_are_pictures(what):
 def test_the_picture_of_responses_tells_the_verdict():
     """That of several responses says whether the model decides, that of one with which it was computed."""
     words = "".join(ET.fromstring(pictured("response", INPUTS)).itertext())
-    assert "With every one of these models the body stays standing." in words
+    assert "The body does not overturn with any of these models." in words
     alone = pictured("response", {**INPUTS, "restitution": {"models": ["housner"]}})
     assert "restitution: Housner;" in "".join(ET.fromstring(alone).itertext())
 
@@ -144,12 +144,12 @@ def test_the_report_has_its_parts(client):
             "21 November 2026",
             f"{rk.coefficient_of_restitution(BLOCK, 'ked'):.6f}",
             "3.15",
-            "How it ends",
+            "Outcome",
             "Housner",
             "[restitution]",
         ):
             assert part in words
-        read, _, typed = words.partition("To do it again")  # from there on it is what a machine reads
+        read, _, typed = words.partition("How to repeat the computation")  # from there on it is what a machine reads
         assert "housner" in typed
         assert "housner" not in read
         assert not re.search(r"\bked\b", read)

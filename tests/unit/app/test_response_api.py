@@ -163,7 +163,7 @@ def test_verdict_says_whether_the_model_decides(client):
     assert answer["verdict"]["decides"] is (len(outcomes) > 1)
     alone = asked(client, restitution={"value": 0.3})["verdict"]
     assert alone["decides"] is False
-    assert alone["sentence"].startswith("With every one of these models the body ")
+    assert alone["sentence"].startswith("The body ")
 
 
 def test_a_restitution_that_creates_energy_has_an_error_of_its_own(client):

@@ -1,4 +1,4 @@
-"""The report of an assessment: which history is drawn, and what its tables count."""
+"""The report of an assessment: which history is plotted, and what its tables count."""
 
 import math
 
@@ -26,18 +26,18 @@ def record(peak, period=0.8, name="sine"):
         ([SyntheticSet("firm-ground", 9, 1, pga=7.0)[8]], False),
     ],
 )
-def test_a_history_that_overturns_is_drawn(motions, falls):
-    """The motion that overturns as it is, or that of the least factor at this one; what is drawn is said."""
+def test_a_history_that_overturns_is_plotted(motions, falls):
+    """The motion that overturns as recorded, or that of the smallest factor at this factor."""
     found = rk.assess(CABINET, motions, [0.85, 0.92], count=8)
-    drawn = governing_history(found)
-    assert drawn.history.outcome is rk.Outcome.OVERTURNED
+    governing = governing_history(found)
+    assert governing.history.outcome is rk.Outcome.OVERTURNED
     fell = bool((found.fallen > 0.0).any())
     assert fell is falls
-    assert drawn.words.startswith(
-        f"The body{' mirrored,' if 'mirrored' in drawn.words else ''} under {drawn.motion.name}"
+    assert governing.description.startswith(
+        f"The body{' mirrored,' if 'mirrored' in governing.description else ''} under {governing.motion.name}"
     )
-    assert ("as it is" in drawn.words) is fell
-    assert fell or f"at {found.lowest.factor:.3g} times" in drawn.words
+    assert ("as recorded" in governing.description) is fell
+    assert fell or f"scaled by {found.lowest.factor:.3g}," in governing.description
     # negative control: without a factor the history of the least margin stands where no motion overturns
-    as_it_is = rk.simulate(CABINET, drawn.motion, 0.92)
+    as_it_is = rk.simulate(CABINET, governing.motion, 0.92)
     assert fell or as_it_is.outcome is not rk.Outcome.OVERTURNED

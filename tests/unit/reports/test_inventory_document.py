@@ -58,7 +58,7 @@ def test_page_is_complete_in_itself_and_says_what_it_rests_on(html):
     for words in (
         "&lt;script&gt;alert(1)&lt;/script&gt;", "&lt;b&gt;mirror&lt;/b&gt;",
         "At least 20% of the motions", "seed 3", "point-source", "illustrative ranges", "no hazard model", "housner",
-        "Sliding is not assessed", "not of a code of practice", "Columns of the list that were not read:", "room",
+        "Sliding is not assessed", "not of a code of practice", "Ignored columns of the list:", "room",
         "line</th>", "width_cm is &#39;?&#39;",
     ):  # fmt: skip
         assert words in html, words
@@ -105,14 +105,14 @@ def test_spreadsheet_holds_numbers_and_no_formula(assessment, tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
     write_spreadsheet(assessment, tmp_path / "x.xlsx")
     book = openpyxl.load_workbook(tmp_path / "x.xlsx")
-    assert book.sheetnames == ["Ranking", "Measures", "What it means"]
+    assert book.sheetnames == ["Ranking", "Measures", "Explanation"]
     rows = list(book["Ranking"].iter_rows())
     assert [row[0].value for row in rows[1:]] == [1, 2, 3, 4, None]
     assert [row[1].value for row in rows[1:]] == ["red", "amber", "green", "green", "not assessed"]
     assert {cell.data_type for sheet in book for row in sheet.iter_rows() for cell in row} <= {"n", "s"}
     assert isinstance(rows[1][7].value, float)
     assert "'=cmd()" in {row[3].value for row in rows}
-    assert "Sliding is not assessed" in " ".join(str(row[1].value) for row in book["What it means"].iter_rows())
+    assert "Sliding is not assessed" in " ".join(str(row[1].value) for row in book["Explanation"].iter_rows())
 
 
 def test_spreadsheet_and_csv_name_the_columns_that_were_not_read(assessment, tmp_path):
@@ -122,12 +122,12 @@ def test_spreadsheet_and_csv_name_the_columns_that_were_not_read(assessment, tmp
     complete = assess(parse_inventory("name,width_cm,depth_cm,height_cm\nvase,12,12,95"), assessment.hazard)
     for given, named in ((assessment, "room"), (whole, "room, note 2"), (complete, None)):
         write_spreadsheet(given, tmp_path / "list.xlsx")
-        sheet = openpyxl.load_workbook(tmp_path / "list.xlsx")["What it means"]
+        sheet = openpyxl.load_workbook(tmp_path / "list.xlsx")["Explanation"]
         facts = {row[0]: row[1] for row in sheet.iter_rows(values_only=True)}
         last = as_csv(given).splitlines()[-1]
         if named is None:
-            assert "not read" not in facts
+            assert "ignored" not in facts
             assert "not read" not in last
         else:
-            assert facts["not read"] == f"columns of the list: {named}"
+            assert facts["ignored"] == f"columns of the list: {named}"
             assert f"columns of the list that were not read: {named}" in last

@@ -71,7 +71,7 @@ def test_pdf_takes_any_words(folder):
     [
         ("typst", ["report.html", "results.json"], "no report.pdf: the PDF report needs typst"),
         ("jinja2", ["report.pdf", "results.json"], "no report.html: the HTML report needs jinja2"),
-        ("matplotlib", ["results.json"], "no figures, and no report.html and report.pdf"),
+        ("matplotlib", ["results.json"], "no figures, no report.html and no report.pdf"),
     ],
 )
 def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, monkeypatch):

@@ -154,7 +154,7 @@ def responses_answer(
             else response_answer(label, one, problem, points, window)
             for label, one in answers.items()
         ],
-        "verdict": {"decides": verdict.decides, "sentence": verdict.verdict, "doubts": list(verdict.doubts)},
+        "verdict": {"decides": verdict.models_differ, "sentence": verdict.verdict, "doubts": list(verdict.doubts)},
         "body": problem.body.answer(problem.settings.gravity) | outline_answer(problem.body) | {"name": name},
         "motion": motion_answer(problem.motion, problem.scale),
     })  # fmt: skip
