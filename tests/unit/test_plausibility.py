@@ -67,7 +67,7 @@ DOUBTFUL = {
 
 
 # what is scaled to 2750 g throws the block as well, and that is another warning
-@pytest.mark.filterwarnings("ignore:the ground would have to pull")
+@pytest.mark.filterwarnings("ignore:the contact force becomes tensile")
 @pytest.mark.parametrize("name", DOUBTFUL)
 def test_doubts(name):
     """One warning of our class, at the user's own line, with the value, the limit and the likely cause."""

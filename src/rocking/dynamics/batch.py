@@ -15,17 +15,17 @@ from rocking.dynamics.settings import Settings, thread_count
 
 @dataclass(frozen=True)
 class Batch:
-    """What to compute many times: the motions, the law of impact, the settings."""
+    """Motions, law of impact and settings of many histories."""
 
     motions: Sequence[Any]  # `Segments`, all of records or all of pulses; in space `Components` too [m/s2]
-    law: ImpactLaw = field(default_factory=ConstantRestitution)  # how the coefficient changes from impact to impact
-    settings: Settings = field(default_factory=PlaneSettings)  # how to integrate
-    threads: int | None = None  # threads of the fast engine; as many as the processor has, if not given
-    engine: str = "auto"  # which engine
+    law: ImpactLaw = field(default_factory=ConstantRestitution)  # law of the coefficient of restitution
+    settings: Settings = field(default_factory=PlaneSettings)  # of the integration
+    threads: int | None = None  # threads of the fast engine; default: number of processors
+    engine: str = "auto"  # "auto", "fast" or "reference"
 
     def __post_init__(self) -> None:
         thread_count(self.threads)
-        mechanics_of(self.settings).check_laid_out(self.motions)
+        mechanics_of(self.settings).check_motions(self.motions)
 
     def run(
         self,
@@ -34,9 +34,9 @@ class Batch:
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return arrays by the keys of `fast_engine.RESULTS`, and the steps taken (none by the reference engine)."""
-        taken = thread_count(self.threads if threads is None else threads)
-        return run_rows(self._runner, self.law, count, rows, taken, progress)
+        """Return arrays by the keys of `fast_engine.RESULTS`, and counts of steps (empty for the reference engine)."""
+        worker_count = thread_count(self.threads if threads is None else threads)
+        return run_rows(self._runner, self.law, count, rows, worker_count, progress)
 
     @cached_property
     def _runner(self) -> RowRunner:

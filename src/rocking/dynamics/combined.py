@@ -1,4 +1,4 @@
-"""What `simulate_many` takes of plane bodies, and the labelled dataset that it returns of them."""
+"""Inputs of `simulate_many` for plane bodies, and its labelled dataset."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ _START_UNITS = {
 
 
 def plane_inputs(cases: Combinations) -> tuple[list[Body], list[Motion], FloatArray, list[Start] | None]:
-    """Return plane bodies, their motions, scales, and starts where any are stated; refuse everything else."""
+    """Return plane bodies, motions, scales, and starts (None if not stated); refuse other inputs."""
     bodies = _several("bodies", cases.bodies, (Body,))
     motions = [in_plane(motion) for motion in _several("motions", cases.motions, (GroundMotion, Pulse, Mapping))]
     scales = row_of("scale", cases.scales)
@@ -45,7 +45,7 @@ def dataset_of(
     settings: Settings,
     attributes: dict[str, Any],
 ) -> "xr.Dataset":
-    """Return results, one after another over body, motion and the axes, with units and provenance."""
+    """Return a dataset of flat results over body, motion and the axes, with units and provenance."""
     xarray = extra("xarray", "simulate_many")
     axes = {name: row for name, row in axes.items() if row is not None}
     starts = axes.get("start", [])
@@ -53,8 +53,8 @@ def dataset_of(
     shape = (len(bodies), len(motions), *map(len, axes.values()))
     sides = [body.side("right", settings.gravity) for body in bodies]
     numbers = [name for name in ("scale", "friction") if name in axes]
-    counted: dict[str, Any] = {name: (name, axes[name], {"units": "1"}) for name in numbers}
-    made: xr.Dataset = xarray.Dataset(
+    factors: dict[str, Any] = {name: (name, axes[name], {"units": "1"}) for name in numbers}
+    dataset: xr.Dataset = xarray.Dataset(
         {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()},
         coords={
             "slenderness_angle": ("body", [side.slenderness_angle for side in sides], {"units": "rad"}),
@@ -62,7 +62,7 @@ def dataset_of(
             "motion": [m.name for m in motions],
             "motion_provenance": ("motion", ["; ".join(provenance_of(m)) for m in motions]),
             "restitution": axes["restitution"],
-            **counted,
+            **factors,
             **_coordinates(starts),
         },
         attrs={
@@ -71,11 +71,11 @@ def dataset_of(
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.integration.items()},
         },
     )
-    return made
+    return dataset
 
 
 def _coordinates(starts: list[Start]) -> dict[str, Any]:
-    """Return the coordinates of starts: rotation and angular velocity, and what else one of them has."""
+    """Return the coordinates of starts: rotation, angular velocity, and other quantities that are not zero."""
     if not starts:
         return {}
     rows = {name: [getattr(start, name) for start in starts] for name in _START_UNITS}
@@ -105,7 +105,7 @@ def _several(name: str, value: Any, kinds: tuple[type, ...]) -> list[Any]:
 
 
 def label_of(restitution: Any) -> str:
-    """Return a restitution in a few words."""
+    """Return the label of a restitution."""
     if is_none(restitution):
         return COMPLEMENTARITY
     label = getattr(restitution, "label", None)

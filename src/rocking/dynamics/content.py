@@ -1,4 +1,4 @@
-"""What a thing is made of, as plain values: so that two which differ never bear one name."""
+"""Content of objects as plain values, and hashes of arrays."""
 
 import hashlib
 import math
@@ -12,31 +12,31 @@ from rocking.errors import InvalidValueError
 
 def hash_of(values: np.ndarray) -> str:
     """Return the SHA-256 of an array of numbers; 64 hexadecimal digits, the same on every machine."""
-    little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
-    made = hashlib.sha256(str((little.dtype.str, little.shape)).encode())
-    made.update(little.view(np.uint8).data)
-    return made.hexdigest()
+    ordered = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+    digest = hashlib.sha256(str((ordered.dtype.str, ordered.shape)).encode())
+    digest.update(ordered.view(np.uint8).data)
+    return digest.hexdigest()
 
 
 def full_name(kind: type) -> str:
-    """Return the name of a class: ours alone, since no two share one; of others with its module, where two may."""
+    """Return the name of a class; with its module if the class is not part of rocking."""
     module = "rocking" if kind.__module__.startswith("rocking.") else kind.__module__
     return f"{module}.{kind.__qualname__}"
 
 
-def fields_of(thing: object) -> dict[str, Any]:
-    """Return the fields of a dataclass as plain values, arrays as their SHA-256."""
-    # without `times` that is a model: what a law multiplies is in the coefficients already
-    kind = type(thing)
-    if "__dataclass_fields__" not in vars(kind) or _closes_over_something(kind):
+def fields_of(instance: object) -> dict[str, Any]:
+    """Return the fields of a dataclass as plain values by name, arrays as their SHA-256."""
+    # a model in `times` is left out: the coefficients contain it already
+    cls = type(instance)
+    if "__dataclass_fields__" not in vars(cls) or _has_closure(cls):
         raise InvalidValueError(
-            _ADVICE + "; {type} is no dataclass, or its functions hold other values", type=full_name(kind)
+            "{type} is not a dataclass, or its functions hold other values; " + _ADVICE, type=full_name(cls)
         )
-    found = {each.name: getattr(thing, each.name, None) for each in fields(thing)}  # type: ignore[arg-type]
-    return {name: _plain(kind, name, value) for name, value in found.items() if name != "times" or _word(value)}
+    values = {entry.name: getattr(instance, entry.name, None) for entry in fields(instance)}  # type: ignore[arg-type]
+    return {name: _plain(cls, name, value) for name, value in values.items() if name != "times" or _is_plain(value)}
 
 
-_ADVICE = "a law of your own must say what makes it, by content()"
+_ADVICE = "define content() for a law of your own"
 
 
 def _plain(kind: type, name: str, value: object) -> Any:
@@ -45,23 +45,26 @@ def _plain(kind: type, name: str, value: object) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, (list, tuple)):
-        return [_plain(kind, name, each) for each in value]
-    if _word(value):
+        return [_plain(kind, name, item) for item in value]
+    if _is_plain(value):
         return value
     raise InvalidValueError(
-        _ADVICE + "; {field} of {type} is {content}", field=name, type=full_name(kind), content=f"{value!r:.60}"
+        "{field} of {type} must be a number, a text or an array, got {content}; " + _ADVICE,
+        field=name,
+        type=full_name(kind),
+        content=f"{value!r:.60}",
     )
 
 
-def _word(value: object) -> bool:
+def _is_plain(value: object) -> bool:
     if isinstance(value, np.generic):
         value = value.item()
     return isinstance(value, (bool, int, str, type(None))) or (isinstance(value, float) and math.isfinite(value))
 
 
-def _closes_over_something(kind: type) -> bool:
-    """Whether a function of the class sees variables of a function around it; `super` sees the class, which is fine."""
-    written = [each for name, each in vars(kind).items() if not name.startswith("__")]  # others the decorator made
-    functions = [getattr(each, "__func__", getattr(each, "fget", each)) for each in written]
-    codes = [each.__code__ for each in functions if hasattr(each, "__code__")]
+def _has_closure(kind: type) -> bool:
+    """Return True if a function of the class uses variables of an enclosing function; `super` is allowed."""
+    members = [member for name, member in vars(kind).items() if not name.startswith("__")]
+    functions = [getattr(member, "__func__", getattr(member, "fget", member)) for member in members]
+    codes = [member.__code__ for member in functions if hasattr(member, "__code__")]
     return any(set(code.co_freevars) - {"__class__"} for code in codes)

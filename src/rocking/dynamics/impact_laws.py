@@ -1,4 +1,4 @@
-"""How the coefficient of restitution may change from impact to impact: not at all, with speed, or at random."""
+"""Laws of the coefficient of restitution: constant, dependent on speed, or random."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,24 +13,24 @@ from rocking.errors import InvalidValueError
 
 _MASK = (1 << 64) - 1
 _MOST_POINTS = 100_000
-# as of a coefficient: what exceeds the bound of a side is cut off, and that may be above 1 on one of two
+# limit of a coefficient by side: the bound of one side may exceed 1, and larger values are truncated
 _MOST_BY_SIDE = 10.0
 
 
 class ImpactLaw:
-    """A factor on the coefficient of restitution of the side onto which the body lands; the base of all laws.
+    """Base class of the laws: a factor on the coefficient of restitution of the side of landing.
 
     A law of your own overrides `factor`, and `largest` if the factor can exceed one; it runs on the reference engine.
-    For studies it also says what makes it: as a dataclass of numbers, words and arrays, or by `content`.
+    For studies it must be a dataclass of numbers, texts and arrays, or define `content`.
 
     Attributes
     ----------
     kind : int
-        0 constant, 1 a table over the speed, 2 a random number; -1 a law that only `factor` knows.
+        0 constant, 1 a table over the speed, 2 a random number; -1 a law defined by `factor` only.
     per_history : bool
-        Whether all impacts of a history share one draw; such a law has `draws` for many histories at once.
+        True if all impacts of a history have the same draw; the law then defines `draws` for many histories.
     at, factors : ndarray
-        The table, of laws that have one.
+        The table of laws with a table.
     seed : int
         Seed of the random numbers.
     """
@@ -44,18 +44,18 @@ class ImpactLaw:
     def __init__(self) -> None:
         if type(self) is ImpactLaw:
             raise InvalidValueError(
-                "ImpactLaw is the base of the laws: take ConstantRestitution, SpeedRestitution or RandomRestitution, "
-                "or override factor() in a class of your own"
+                "ImpactLaw is a base class; use ConstantRestitution, SpeedRestitution, RandomRestitution or a subclass "
+                "with factor()"
             )
 
     @property
     def tabulated(self) -> bool:
-        """Whether the fast engine knows it; a class of your own is known by its `factor` alone."""
+        """True if the fast engine supports the law; laws of your own run on the reference engine."""
         return type(self).__module__ == __name__
 
     @property
     def largest(self) -> float:
-        """Largest factor it can give [-]."""
+        """Largest possible factor [-]."""
         factors = getattr(self, "factors", None)
         return 1.0 if factors is None else float(factors.max())
 
@@ -79,7 +79,7 @@ class ImpactLaw:
         raise NotImplementedError
 
     def content(self) -> dict[str, Any]:
-        """Return what makes this law this one, beside its class: two that differ in it may give different factors.
+        """Return the values that define the law, in addition to its class.
 
         Returns
         -------
@@ -93,12 +93,12 @@ class ImpactLaw:
         return {"seed": int(getattr(self, "seed", 0)), **tables}
 
     def draws(self, numbers: Any) -> FloatArray:
-        """Return the factors of many histories, of a law that draws once for each.
+        """Return the factors of many histories, for a law with one draw per history.
 
         Parameters
         ----------
         numbers : array_like of int
-            Numbers of histories.
+            Indices of the histories.
 
         Returns
         -------
@@ -110,14 +110,14 @@ class ImpactLaw:
 
 @dataclass(frozen=True, eq=False)
 class ConstantRestitution(ImpactLaw):
-    """The coefficient of the side, always.
+    """Constant coefficient of restitution of each side.
 
     Parameters
     ----------
     at, factors : ndarray, optional
-        Zero and one: nothing changes with the speed.
+        Zero and one: the factor does not depend on speed.
     seed : int, optional
-        Not used: nothing is drawn.
+        Not used.
     """
 
     kind: ClassVar[int] = 0
@@ -126,24 +126,24 @@ class ConstantRestitution(ImpactLaw):
     seed: int = 0
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return one."""
+        """Return 1 [-]."""
         return 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class SpeedRestitution(ImpactLaw):
-    """A coefficient that depends on the speed of the impact: straight lines through points, constant outside them.
+    """Coefficient that depends on impact speed: linear interpolation between points, constant outside.
 
     Parameters
     ----------
     at : array_like
         Angular velocities before the impact, without sign, increasing [rad/s].
     factors : array_like
-        Coefficients there; factors, if `times` is given [-].
+        Coefficients at these velocities; factors on `times` if it is given [-].
     times : optional
-        What they multiply: a coefficient, a model or its name; 1 if not given.
+        Base of the factors: a coefficient, a model or its name; default 1.
     seed : int, optional
-        Not used: nothing is drawn.
+        Not used.
 
     Raises
     ------
@@ -171,29 +171,28 @@ class SpeedRestitution(ImpactLaw):
         factors = checks.finite("factors", self.factors, least=2)
         if factors.size != speeds.size:
             raise InvalidValueError(
-                "{parameter} must be as many as the speeds, {speeds}, got {count}", parameter="factors",
+                "{parameter} must have one value per speed, {speeds}, got {count}", parameter="factors",
                 speeds=speeds.size, count=factors.size,
             )  # fmt: skip
         object.__setattr__(self, "at", speeds)
         object.__setattr__(self, "factors", _factors(factors))
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the coefficient at a speed."""
+        """Return the coefficient at a speed [-]."""
         return interpolated(self.at, self.factors, speed)
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnRestitution(ImpactLaw):
-    """A coefficient drawn from a distribution that is known by its quantiles: what all such laws share.
+    """Base class of random coefficients, with a distribution given by quantiles.
 
-    Of a body on which the largest draws would create energy, a side draws from what lies within its bound:
-    the distribution is truncated, so that the draws are those of r on condition that r is at most the bound. Both
-    sides draw with the same number, so that a large draw on one side is a large one on the other. For the parameters
-    see `RandomRestitution`.
+    Draws that would create energy are excluded: the distribution is truncated at the energy bound of each side. Both
+    sides use the same random number, so that a large draw on one side is large on the other. For the parameters see
+    `RandomRestitution`.
     """
 
     kind: ClassVar[int] = 2
-    factors: Any  # an array once checked: a row, or those of the right and the left side
+    factors: Any  # an array after the checks: one row, or one row for the right and one for the left side
     seed: int
     times: Any = 1.0
     cut: tuple[float, float] = (0.0, 0.0)
@@ -215,23 +214,23 @@ class DrawnRestitution(ImpactLaw):
 
     @classmethod
     def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025) -> Self:
-        """Return draws from a normal distribution cut to [0, 1].
+        """Return a law with a normal distribution truncated to [0, 1].
 
         Parameters
         ----------
         mean, deviation : float
-            Of the distribution before it is cut [-].
+            Mean and standard deviation of the distribution before truncation [-].
         seed : int
             Seed of the draws.
         times : optional
-            What the draws multiply.
+            Base of the draws: a coefficient, a model or its name.
         points : int
-            Quantiles that stand for it, from 2 to 100,000.
+            Number of quantiles, from 2 to 100,000.
 
         Returns
         -------
         DrawnRestitution
-            The law, of the class that is asked.
+            The law, of the class on which the method is called.
 
         Raises
         ------
@@ -245,13 +244,13 @@ class DrawnRestitution(ImpactLaw):
         deviation = checks.within("deviation", deviation, 0.0, 1.0, open_low=True)
         low, high = ndtr((0.0 - mean) / deviation), ndtr((1.0 - mean) / deviation)
         levels = low + (high - low) * np.linspace(0.0, 1.0, points)
-        # the normal's ends are infinite: the outermost levels stand a quarter of a step inside
+        # the ends of the normal distribution are infinite: the outermost levels are moved inside by a quarter of a step
         inside = np.clip(levels, low + 0.25 * (high - low) / points, high - 0.25 * (high - low) / points)
         return cls(np.clip(mean + deviation * ndtri(inside), 0.0, 1.0), seed, times)
 
     @classmethod
     def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> Self:
-        """Return draws from measured or simulated values, for instance a posterior.
+        """Return a law with the distribution of measured or simulated values, for example a posterior.
 
         Parameters
         ----------
@@ -260,12 +259,12 @@ class DrawnRestitution(ImpactLaw):
         seed : int
             Seed of the draws.
         times : optional
-            What the draws multiply.
+            Base of the draws: a coefficient, a model or its name.
 
         Returns
         -------
         DrawnRestitution
-            The law, of the class that is asked.
+            The law, of the class on which the method is called.
         """
         if isinstance(values, Mapping):
             return cls({foot: _quantiles_of(sample) for foot, sample in values.items()}, seed, times)
@@ -273,7 +272,7 @@ class DrawnRestitution(ImpactLaw):
 
     @property
     def truncates(self) -> bool:
-        """Whether draws beyond an energy bound are cut off; a class of your own may draw otherwise, and is refused."""
+        """True if the law truncates at the energy bound; other classes are refused where they exceed the bound."""
         return type(self).__module__.partition(".")[0] == "rocking"
 
     def table(self, onto: Foot | None = None) -> FloatArray:
@@ -281,11 +280,11 @@ class DrawnRestitution(ImpactLaw):
         if self.factors.ndim == 1:
             return np.asarray(self.factors)
         if onto is None:
-            raise InvalidValueError("this law draws for each foot from a table of its own: give onto=, left or right")
+            raise InvalidValueError("this law has one table per foot; give onto='left' or onto='right'")
         return np.asarray(self.factors[int(checks.foot("onto", onto) == "left")])
 
     def quantile(self, probability: float, onto: Foot | None = None) -> float:
-        """Return what is not exceeded with a probability [-]."""
+        """Return the quantile of a probability [-]."""
         return interpolated(self.at, self.table(onto), probability)
 
     def share_within(self, most: float, onto: Foot) -> float:
@@ -294,22 +293,22 @@ class DrawnRestitution(ImpactLaw):
         k = int(np.searchsorted(table, most, side="right"))
         if k in {0, table.size}:
             return float(k > 0)
-        part = (most - table[k - 1]) / (table[k] - table[k - 1])
-        return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)  # Eq. 42
+        fraction = (most - table[k - 1]) / (table[k] - table[k - 1])
+        return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * fraction)  # Eq. 42
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the draw for an impact, of a law that is the same for both sides."""
+        """Return the draw for an impact, for a law with the same table on both sides [-]."""
         return self.draw(stream, impact)
 
     def draw(self, stream: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
-        """Return the draw for an impact on a foot, from the lowest share of the distribution [-]."""
+        """Return the draw for an impact on a foot, from the lower fraction `share` of the distribution [-]."""
         return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), onto)  # Eq. 41
 
 
 class RandomRestitution(DrawnRestitution):
-    """A coefficient drawn anew for every impact from a distribution, the same for the same seed, history and impact.
+    """Random coefficient for every impact; the same seed, history and impact give the same draw.
 
-    Draws that would create energy are cut off, for each side at its own bound: see `DrawnRestitution`.
+    Draws that would create energy are excluded, with one bound per side: see `DrawnRestitution`.
 
     Parameters
     ----------
@@ -319,9 +318,9 @@ class RandomRestitution(DrawnRestitution):
     seed : int
         Seed of the draws.
     times : optional
-        What they multiply: a coefficient, a model or its name; 1 if not given.
+        Base of the draws: a coefficient, a model or its name; default 1.
     cut : (float, float)
-        Probability that the quantiles onto the left and the right foot leave out already [-].
+        Truncated probability of the quantiles for the left and the right foot [-].
 
     Raises
     ------
@@ -338,7 +337,7 @@ class RandomRestitution(DrawnRestitution):
 
 
 def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
-    """Return the value of straight lines through points, constant outside them."""
+    """Return the linear interpolation between points, constant outside them."""
     if not x > at[0]:
         return float(values[0])
     if x >= at[-1]:
@@ -348,7 +347,7 @@ def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
 
 
 def uniform(seed: int, stream: int, impact: int) -> float:
-    """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64)."""
+    """Return a number in [0, 1) that depends on seed, history and impact only (splitmix64)."""
     return (_mixed(_mixed(_mixed(seed) + stream & _MASK) + impact & _MASK) >> 11) * 2.0**-53  # Eq. 43
 
 
@@ -372,7 +371,7 @@ def _factors(values: Any, most: float = 1.0) -> FloatArray:
 
 
 def _by_side(values: Any) -> FloatArray:
-    """Quantiles as a row, or as two where the sides differ, that of the right first, of which one may exceed 1."""
+    """Return quantiles as one row, or as two if the sides differ, right side first; one of two may exceed 1."""
     if isinstance(values, Mapping):
         if set(values) != set(FEET):
             raise InvalidValueError(
@@ -385,7 +384,7 @@ def _by_side(values: Any) -> FloatArray:
     right, left = (_factors(row, _MOST_BY_SIDE) for row in values)
     if right.size != left.size:
         raise InvalidValueError(
-            "{parameter} must be as many for both sides, got {left} left and {right} right", parameter="factors",
+            "{parameter} must have equal length for both sides, got {left} left and {right} right", parameter="factors",
             left=left.size, right=right.size,
         )  # fmt: skip
     if np.array_equal(right, left) and right[-1] <= 1.0:

@@ -1,6 +1,6 @@
-"""The mechanics, and the one place where a history, a batch or a study chooses one.
+"""All mechanics, and the choice among them for a history, a batch or a study.
 
-A mechanics more is a folder with a `mechanics.py`, and a line in `MECHANICS`.
+A new mechanics is a folder with a `mechanics.py`, and an entry in `MECHANICS`.
 """
 
 from collections.abc import Mapping
@@ -19,19 +19,19 @@ MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking
 
 
 def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
-    """Return how a body moves, with friction or with None; study: in a study."""
+    """Return the mechanics of a body; friction: a coefficient or None; study: True in a study."""
     return next(mechanics for mechanics in MECHANICS if mechanics.takes(body, friction, study=study))
 
 
 def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
-    """Return how one or several bodies move together: in space where all that are bodies are in space."""
+    """Return the mechanics of one or several bodies; in space only if all bodies are in space."""
     several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
     plane = [body for body in several if isinstance(body, Body)]
     return mechanics_for(next(iter(plane or filter(in_space, several)), None), friction)
 
 
 def mechanics_of(settings: Settings) -> Mechanics:
-    """Return the mechanics that settings are of."""
+    """Return the mechanics to which settings belong."""
     return next(
         mechanics for mechanics in MECHANICS if isinstance(settings, (mechanics.settings, mechanics.batch_settings))
     )

@@ -1,4 +1,4 @@
-"""What one mechanics offers: which bodies it takes, its settings, one history, many histories, rows of a study."""
+"""Interface of a mechanics: bodies, settings, one history, many histories, rows of a study."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.rows import RowRunner
 
 Sample = tuple[list[Any], ImpactLaw, Settings]
-"""Laid out motions, law and settings of some histories by which the last digits of an engine are told."""
+"""Prepared motions, law and settings of histories that identify the last digits of an engine."""
 
 UNCHANGED: dict[str, tuple[Any, ...]] = {
     "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "linear": (False,), "rest_speed": (None,),
@@ -32,21 +32,21 @@ UNCHANGED: dict[str, tuple[Any, ...]] = {
     "start": (None,), "scale": (1.0,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,),
     "threads": (None,), "twin": (False,), "progress": (None,),
 }  # fmt: skip
-"""Values of options that change nothing, the default first: also the mechanics that lack an option take them."""
+"""Neutral values of options, default first; a mechanics accepts them for options that it lacks."""
 
 
 def in_space(body: Any) -> bool:
-    """Return whether a body is one in space: it has a base to stand on, not two feet."""
+    """Return True for a body in space, which has a base instead of two feet."""
     return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
 
 
 def listed(value: Any) -> list[Any]:
-    """Return a sequence as a list, anything else as a list of one."""
+    """Return a sequence as a list, another value as a list with one item."""
     return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
 
 
 def row_of(name: str, values: Any) -> FloatArray:
-    """Return one number or several as a row of finite numbers."""
+    """Return numbers as a row, finite and within 1e6."""
     row = np.atleast_1d(checks.real_array(name, values))
     if row.ndim != 1 or not row.size:
         raise InvalidValueError(
@@ -63,19 +63,19 @@ def row_of(name: str, values: Any) -> FloatArray:
 
 
 def frictions_of(friction: Any) -> FloatArray:
-    """Return one coefficient of friction or several as a row, which is empty without any."""
+    """Return coefficients of friction as a row; empty for None."""
     return np.empty(0) if friction is None else row_of("friction", friction)
 
 
 @dataclass(frozen=True)
 class Combinations:
-    """What `simulate_many` computes, as users give it: every body under every motion at every scale, and so on."""
+    """Arguments of `simulate_many`: all combinations of bodies, motions, scales, restitutions and frictions."""
 
     bodies: Any
     motions: Any
     restitutions: list[Any]
     scales: Any  # [-]
-    frictions: FloatArray  # none without friction [-]
+    frictions: FloatArray  # empty without friction [-]
     start: Any = None
     rotation: Any = 0.0
     angular_velocity: Any = 0.0
@@ -87,17 +87,17 @@ class Combinations:
 
 
 class Mechanics(ABC):
-    """One way in which bodies move."""
+    """A mechanics: equations of motion with the bodies and settings for which they hold."""
 
-    name: ClassVar[str]  # one word
-    in_plane: ClassVar[bool] = True  # whether a body has one horizontal motion
-    slides: ClassVar[bool] = False  # whether bodies slide, hop and fly; a restitution may then be none
-    is_compared: ClassVar[bool] = False  # whether restitutions are compared, with linear equations too and two engines
+    name: ClassVar[str]  # identifier
+    in_plane: ClassVar[bool] = True  # True if the ground has one horizontal component
+    slides: ClassVar[bool] = False  # True if bodies slide, hop and fly; the restitution may then be None
+    is_compared: ClassVar[bool] = False  # True if studies compare restitutions, linear equations and engines
     title: ClassVar[str]  # as a noun
-    subject: ClassVar[str]  # bodies that move like this, in messages
+    subject: ClassVar[str]  # its bodies, in messages
     settings: ClassVar[type[Settings]]
-    options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, beside settings, start and duration
-    # of `follow_many`, beside settings
+    options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, in addition to settings, start and duration
+    # of `follow_many`, in addition to settings
     batch_options: ClassVar[frozenset[str]] = frozenset({"start", "duration", "engine", "threads", "progress"})
     at_rest: ClassVar[Any] = None  # ground at rest as a motion of `follow`
 
@@ -108,25 +108,25 @@ class Mechanics(ABC):
 
     @abstractmethod
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        """Return whether a body moves like this, with friction or with None; study: in a study."""
+        """Return True if the mechanics applies to a body; friction: a coefficient or None; study: True in a study."""
 
     @abstractmethod
     def motion(self, motion: Any) -> Any:
-        """Return what a user gives as the motion in the form that `follow` takes, or refuse it."""
+        """Return a motion of the user in the form for `follow`; an error if it does not apply."""
 
     @abstractmethod
     def start_class(self) -> type:
-        """Return the class that states how a body starts."""
+        """Return the class of the start of a body."""
 
     def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        """Return how a body starts, from the rotation [rad] and the angular velocity [rad/s]."""
+        """Return the start of a body from its rotation [rad] and angular velocity [rad/s]."""
         return self.start_class()(rotation, angular_velocity)
 
     @abstractmethod
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: Any, *, start: Any, **options: Any
     ) -> "ResponseBase":
-        """Return one history; options: scale, duration, and those of the mechanics."""
+        """Return the response of one body; options: scale, duration, and those of the mechanics."""
 
     @property
     @abstractmethod
@@ -135,43 +135,43 @@ class Mechanics(ABC):
 
     @abstractmethod
     def follow_many(self, combinations: Combinations, settings: Any) -> "xr.Dataset":
-        """Return every combination."""
+        """Return the results of every combination."""
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
-        """Return what computes the rows of a study."""
+        """Return the runner of the rows of a study."""
         raise InvalidValueError("studies do not take {subject}", subject=self.subject)
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
-        """Return a body with its restitution, as the rows of a study take it."""
+        """Return the parameters of a body with its restitution, for the rows of a study."""
         return RockingParameters.of_body(body, restitution, settings.gravity, may_be_none=self.slides)
 
-    def check_laid_out(self, motions: Sequence[Any]) -> None:
-        """Refuse motions of a study that these mechanics do not take."""
+    def check_motions(self, motions: Sequence[Any]) -> None:
+        """Refuse motions of a study to which the mechanics does not apply."""
         if any(isinstance(motion, Components) for motion in motions):
-            raise InvalidValueError("a motion of several components is for bodies in space; a plane body takes one")
+            raise InvalidValueError("a plane body needs a motion with one horizontal component, got several")
 
     def engine_of_study(self, *, fast: bool) -> str:
-        """Return which engine computes the rows of a study, in words; fast: whether the compiled one ran."""
+        """Return the name of the engine of a study; fast: True if the compiled engine ran."""
         return "fast" if fast else "reference"
 
     def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
-        """Return histories that tell the last digits of the engine, of pulses and of records without and with z."""
+        """Return histories that identify the last digits of the engine, for pulses and records without and with z."""
         return []
 
     def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:
-        """Return the rows of these histories, limited to what these mechanics take."""
+        """Return the rows of these histories, limited to values that the mechanics accepts."""
         return values
 
     def instruction_set(self) -> str:
-        """Return the instruction set that decides last digits of the compiled engine, if it has several."""
+        """Return the instruction set on which the last digits of the engine depend; empty if there is only one."""
         return ""
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        """Return how a body starts: the start that is stated, or one of rotation and angular velocity."""
+        """Return the start of a body: `start` if stated, otherwise from rotation and angular velocity."""
         if start is None:
             return self.start_of(rotation, angular_velocity)
         if np.any(rotation) or np.any(angular_velocity):
-            raise InvalidValueError("give either start or rotation and angular_velocity, got both")
+            raise InvalidValueError("use start, or rotation and angular_velocity, not both")
         kind = self.start_class()
         if not isinstance(start, kind):
             raise InvalidValueError(parameter="start", allowed=f"a {kind.__name__}(...)", value=start)
@@ -180,17 +180,17 @@ class Mechanics(ABC):
     def split(
         self, options: Mapping[str, Any], kind: type[Settings], own: frozenset[str]
     ) -> tuple[Settings, dict[str, Any]]:
-        """Return the settings, and the other options that these mechanics have; refuse what they have not."""
+        """Return the settings and the other options of the mechanics; refuse unknown options."""
         names = kind.names()
         self.refuse_others(options, {*names, *own})
-        stated = {name: value for name, value in options.items() if value is not None or None not in _usual(name)}
+        stated = {name: value for name, value in options.items() if value is not None or None not in _neutral(name)}
         settings = kind(**{name: stated[name] for name in names if name in stated})
         return settings, {name: stated[name] for name in own if name in stated}
 
     def refuse_others(self, options: Mapping[str, Any], allowed: set[str]) -> None:
-        """Refuse options that these mechanics do not have, unless they change nothing."""
+        """Refuse options that the mechanics lacks, unless their values are neutral."""
         for name, value in options.items():
-            if name not in allowed and not _changes_nothing(name, value):
+            if name not in allowed and not _is_neutral(name, value):
                 raise InvalidValueError(
                     "{parameter} does not apply to {subject}, got {value}; options: {options}", parameter=name,
                     value=value, subject=self.subject, options=", ".join(sorted(allowed)),
@@ -198,10 +198,10 @@ class Mechanics(ABC):
 
 
 class PlaneMechanics(Mechanics):
-    """Mechanics of plane bodies, which start as `Start` states."""
+    """Mechanics of plane bodies; their starts are of class `Start`."""
 
     def motion(self, motion: Any) -> Any:
-        """Return the motion along x, and z as its vertical part."""
+        """Return the motion along x, with z as its vertical component."""
         return in_plane(motion)
 
     def start_class(self) -> type:
@@ -212,7 +212,7 @@ class PlaneMechanics(Mechanics):
 
 
 class SpatialMechanics(Mechanics):
-    """Mechanics of bodies in space, which start as `SpatialStart` states."""
+    """Mechanics of bodies in space; their starts are of class `SpatialStart`."""
 
     in_plane, at_rest = False, (None, None, None)
 
@@ -221,7 +221,7 @@ class SpatialMechanics(Mechanics):
         return components_of(motion)
 
     def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        """Return how a body that leans towards x starts."""
+        """Return the start of a body that is tilted towards x."""
         if not np.ndim(angular_velocity) and angular_velocity:
             raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
         spin = angular_velocity if np.ndim(angular_velocity) else (0.0, 0.0, 0.0)
@@ -234,10 +234,10 @@ class SpatialMechanics(Mechanics):
         return SpatialStart
 
 
-def _changes_nothing(name: str, value: Any) -> bool:
-    usual = _usual(name)  # 0 is not False
-    return any(value is each for each in usual) or (not np.ndim(value) and name != "linear" and value in usual)
+def _is_neutral(name: str, value: Any) -> bool:
+    values = _neutral(name)  # 0 is not False
+    return any(value is option for option in values) or (not np.ndim(value) and name != "linear" and value in values)
 
 
-def _usual(name: str) -> tuple[Any, ...]:
+def _neutral(name: str) -> tuple[Any, ...]:
     return UNCHANGED.get(name, ())

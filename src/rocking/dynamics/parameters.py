@@ -1,4 +1,4 @@
-"""A body as the equations of motion see it: angle, frequency parameter and coefficient on either side."""
+"""Parameters of the equations of motion of a body: angle, frequency parameter and coefficient of each side."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from rocking.restitution._implied import energy_bound
 from rocking.restitution.registry import BOUND_ROUNDING, energy_refusal
 from rocking.restitution.registry import coefficients_of as _coefficients_of
 
-COMPLEMENTARITY = "complementarity alone"  # what restitution=None is called, with friction
-UNIMPOSED = -1.0  # a coefficient that stands for none: impacts are plastic by complementarity, or as `bounce` says [-]
+COMPLEMENTARITY = "complementarity alone"  # label of restitution=None with friction
+UNIMPOSED = -1.0  # no coefficient: impacts are plastic by complementarity, or follow `bounce` [-]
 
-_SAID = 1e-4
+_NEGLIGIBLE = 1e-4
 
 
-# what rows call the properties of a `RockingSide`
+# column names of the properties of a `RockingSide` in rows
 _SHORT = {
     "alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient", "q": "inertia_ratio",
     "share": "share",
@@ -45,7 +45,7 @@ class RockingSide:
     inertia_ratio : float
         m R^2 / I_o, with the moment of inertia I_o about the foot; 3/4 for a rectangle [-].
     share : float
-        Lowest part of a distribution from which its law draws: 1, less where the rest would create energy [-].
+        Lower fraction of the distribution that is sampled; below 1 where larger values would create energy [-].
     """
 
     slenderness_angle: float
@@ -58,16 +58,16 @@ class RockingSide:
 
 @dataclass(frozen=True)
 class RockingParameters:
-    """Both sides, and how the coefficient changes from impact to impact.
+    """Parameters of both sides, and the law of the coefficient of restitution.
 
     Parameters
     ----------
     right, left : RockingSide
-        The sides; a positive rotation stands on the right one.
+        The sides; at a positive rotation the body turns about the right foot.
     law : ImpactLaw
         Factor on the coefficients.
     label : str
-        The restitution in words.
+        Text that describes the restitution.
     """
 
     right: RockingSide
@@ -76,7 +76,7 @@ class RockingParameters:
     label: str
 
     def side(self, sign: float) -> RockingSide:
-        """Return the side that a rotation of this sign stands on.
+        """Return the side about which the body turns at a rotation of this sign.
 
         Parameters
         ----------
@@ -91,7 +91,7 @@ class RockingParameters:
         return self.right if sign > 0.0 else self.left
 
     def largest(self, sign: float) -> float:
-        """Return the largest coefficient that landing on a side can meet.
+        """Return the largest coefficient of an impact on a side.
 
         Parameters
         ----------
@@ -104,8 +104,8 @@ class RockingParameters:
             Coefficient [-].
         """
         side, law = self.side(sign), self.law
-        if drawn := _truncated(law):
-            return side.coefficient * drawn.quantile(side.share, _foot(sign))
+        if distribution := _truncated(law):
+            return side.coefficient * distribution.quantile(side.share, _foot(sign))
         return side.coefficient * law.largest
 
     def coefficient(self, sign: float, speed: float, stream: int, impact: int) -> float:
@@ -130,15 +130,15 @@ class RockingParameters:
         Raises
         ------
         InvalidValueError
-            If a law of one's own gives a factor outside its range.
+            If a user-defined law returns a factor outside its range.
         """
         side, law = self.side(sign), self.law
-        if drawn := _truncated(law):
-            return side.coefficient * drawn.draw(stream, impact, _foot(sign), side.share)
+        if distribution := _truncated(law):
+            return side.coefficient * distribution.draw(stream, impact, _foot(sign), side.share)
         factor = law.factor(speed, stream, impact)
         if not 0.0 <= factor <= law.largest:
             raise InvalidValueError(
-                "{law}.factor must be in [0, {largest:g}], its largest, got {factor}",
+                "{law}.factor() must return a number in [0, {largest:g}], got {factor}",
                 law=type(law).__name__,
                 largest=law.largest,
                 factor=f"{factor!r}",
@@ -147,30 +147,30 @@ class RockingParameters:
 
     @classmethod
     def of_body(cls, body: Any, restitution: Any, gravity: float, *, may_be_none: bool = False) -> "RockingParameters":
-        """Return a body with its coefficients of restitution.
+        """Return the parameters of a body with its coefficients of restitution.
 
         Parameters
         ----------
         body : Body
             The body.
         restitution : str, RestitutionModel, float, pair of float, mapping or ImpactLaw
-            A model or its name; one coefficient; one for landing left and one for landing right, as
-            ``{"left": .., "right": ..}``; or a law for what changes from impact to impact.
+            A model or its name; one coefficient, or one per foot as ``{"left": .., "right": ..}``; or a law that
+            varies from impact to impact.
         gravity : float
             Acceleration of gravity [m/s2].
         may_be_none : bool
-            Whether the restitution may be None, as that of a body that may slide and hop: no coefficient is imposed,
-            impacts are plastic by complementarity, or as `bounce` says.
+            True if the restitution may be None, for a body with friction: impacts are then plastic by complementarity,
+            or follow `bounce`.
 
         Returns
         -------
         RockingParameters
-            The body as the equations see it; coefficients are `UNIMPOSED` where none is imposed.
+            The parameters; coefficients are `UNIMPOSED` where none is imposed.
 
         Raises
         ------
         InvalidValueError
-            If it is no body, or a coefficient is negative, not finite, or would create energy.
+            If the body has another type, or a coefficient is negative, not finite, or would create energy.
         """
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
@@ -180,13 +180,13 @@ class RockingParameters:
             coefficients, label = dict.fromkeys(FEET, UNIMPOSED), COMPLEMENTARITY
         else:
             coefficients, label = coefficients_of(base, body)
-        made: dict[Foot, RockingSide] = {}
+        sides: dict[Foot, RockingSide] = {}
         for foot in FEET:
-            most, side = energy_bound(body, foot), body.side(foot, gravity)
-            share = _share(law, foot, coefficients[foot], most)
+            bound, side = energy_bound(body, foot), body.side(foot, gravity)
+            share = _share(law, foot, coefficients[foot], bound)
             if share < 1.0:
-                plausibility.warn(plausibility.of_truncation(1.0 - share, foot, most))
-            made[foot] = RockingSide(
+                plausibility.warn(plausibility.of_truncation(1.0 - share, foot, bound))
+            sides[foot] = RockingSide(
                 side.slenderness_angle,
                 side.frequency_parameter,
                 side.semi_diagonal,
@@ -194,16 +194,16 @@ class RockingParameters:
                 body.mass * side.semi_diagonal**2 / side.moment_of_inertia,  # Eq. 27
                 share,
             )
-        return cls(made["right"], made["left"], law, _label(law, {foot: made[foot].share for foot in FEET}, label))
+        return cls(sides["right"], sides["left"], law, _label(law, {foot: sides[foot].share for foot in FEET}, label))
 
 
 def is_none(restitution: Any) -> bool:
-    """Whether no coefficient is imposed: None, or the word for it that files and options have."""
+    """Return True if no coefficient is imposed: None, or its name in files and options."""
     return restitution is None or (isinstance(restitution, str) and restitution == COMPLEMENTARITY.split(maxsplit=1)[0])
 
 
 def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
-    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN where there is no body."""
+    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN for None."""
     return {
         f"{short}_{foot}": np.array([np.nan if body is None else getattr(getattr(body, foot), name) for body in bodies])
         for short, name in _SHORT.items()
@@ -212,17 +212,17 @@ def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray
 
 
 def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
-    """Return the probability by foot that is cut off a law's distribution, where impacts would create energy [-]."""
+    """Return the truncated probability of a law's distribution by foot; larger values would create energy [-]."""
     coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
     return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
 
 
 def cut_words(cut: Mapping[Foot, float]) -> str:
-    """Return what is cut off of a distribution, for the end of a label; nothing below a ten-thousandth."""
-    said = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _SAID]
-    if said and cut["left"] == cut["right"]:
-        said = [percent(cut["left"])]
-    return f" (of the distribution {' and '.join(said)} cut off, where impacts would create energy)" if said else ""
+    """Return the truncated probability as text for the end of a label; empty below 0.0001."""
+    texts = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _NEGLIGIBLE]
+    if texts and cut["left"] == cut["right"]:
+        texts = [percent(cut["left"])]
+    return f" (of the distribution {' and '.join(texts)} cut off, where impacts would create energy)" if texts else ""
 
 
 def _foot(sign: float) -> Foot:
@@ -233,17 +233,17 @@ def _truncated(law: ImpactLaw) -> DrawnRestitution | None:
     return law if isinstance(law, DrawnRestitution) and law.truncates else None
 
 
-def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
-    """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
-    drawn = _truncated(law)
-    largest = r * (drawn.quantile(1.0, onto) if drawn else law.largest)
-    if largest <= most * (1.0 + BOUND_ROUNDING):
+def _share(law: ImpactLaw, onto: Foot, r: float, bound: float) -> float:
+    """Return the fraction of a distribution below the energy bound of a side; refuse other laws that exceed it."""
+    distribution = _truncated(law)
+    largest = r * (distribution.quantile(1.0, onto) if distribution else law.largest)
+    if largest <= bound * (1.0 + BOUND_ROUNDING):
         return 1.0
-    if drawn:
-        share = drawn.share_within(most / r, onto)
-        plausibility.of_truncation(1.0 - share, onto, most)  # refuses what next to nothing is left of
+    if distribution:
+        share = distribution.share_within(bound / r, onto)
+        plausibility.of_truncation(1.0 - share, onto, bound)  # refuses an almost empty distribution
         return share
-    raise energy_refusal(onto, most, largest)
+    raise energy_refusal(onto, bound, largest)
 
 
 def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:
@@ -252,7 +252,7 @@ def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:
 
 
 def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
-    """Return the restitution in words, with what is cut off of its distribution."""
+    """Return the label of a restitution, with the truncated probability of its distribution."""
     if law.kind <= 0:
         return f"{type(law).__name__} times {base}" if law.kind < 0 else base
     if not isinstance(law, DrawnRestitution):
@@ -266,7 +266,7 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], st
     """Return the coefficients for landing left and right, and their label [-]; None leaves them to complementarity."""
     if is_none(restitution):
         raise InvalidValueError(
-            "{parameter}={value} leaves impacts to complementarity, which needs friction=: give it, or a model",
+            "{parameter}={value} needs friction; give friction= or a restitution model",
             parameter="restitution", value=restitution,
         )  # fmt: skip
     return _coefficients_of(restitution, body)

@@ -17,7 +17,7 @@ from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.equations import EventKind, Trajectory
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.settings import PlaneSettings
-from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, max_duration, motion_provenance
 from rocking.dynamics.settings import SHORTEST_STEP
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.messages import Message
@@ -54,18 +54,18 @@ _OVERTURNED = {
     ),
 }
 _FLIGHT_UNKNOWN = (
-    "the ground would have to pull, with up to {force:.2g} of the weight: {leaves}; rocking alone: {outcome}; if it "
-    "may fly, nothing is known: {reason}"
+    "the contact force becomes tensile, up to {force:.2g} of the weight: {leaves}. Rocking alone: {outcome}. With "
+    "flight: no result, {reason}"
 )
 _FLIGHT = (
-    "the ground would have to pull, with up to {force:.2g} of the weight: {leaves}; rocking alone: {outcome}; if it "
-    "may fly, with a coefficient of friction of {friction:g}, {origin}: {flight}"
+    "the contact force becomes tensile, up to {force:.2g} of the weight: {leaves}. Rocking alone: {outcome}. With "
+    "flight and a coefficient of friction of {friction:g}, {origin}: {flight}"
 )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response(ResponseBase):
-    """What `simulate` returns; everything that takes time is computed when first asked for.
+    """Response of a plane body without friction; costly quantities are computed at first access.
 
     Parameters
     ----------
@@ -74,17 +74,17 @@ class Response(ResponseBase):
     motion : GroundMotion or Pulse, optional
         The motion; None for free rocking.
     parameters : RockingParameters
-        The body as the equations see it, with its coefficients of restitution.
+        Parameters of the equations, with the coefficients of restitution.
     settings : PlaneSettings
-        How it was integrated.
+        Settings of the integration.
     segments : Segments
-        The motion as it was integrated, rest of the ground after it included [m/s2].
+        The integrated motion, followed by ground at rest [m/s2].
     scale : float
         Factor on the motion [-].
     stream : int
         Number of the history, for random coefficients.
     trajectory : Trajectory
-        What the engine returned.
+        Result of the engine.
     """
 
     body: Body
@@ -103,12 +103,12 @@ class Response(ResponseBase):
 
     @cached_property
     def time(self) -> FloatArray:
-        """Times of the samples, to the end or until the body lies [s]."""
+        """Times of the samples, up to the end or until the body lies [s]."""
         return np.asarray(np.arange(self._finite) * self.segments.step, dtype=np.float64)
 
     @property
     def rotation(self) -> FloatArray:
-        """Rotation theta at the samples, positive clockwise, standing on the right foot [rad]."""
+        """Rotation theta at the samples, positive clockwise, about the right foot [rad]."""
         return self.trajectory.rotation[: self._finite]
 
     @property
@@ -118,68 +118,67 @@ class Response(ResponseBase):
 
     @cached_property
     def impacts(self) -> np.ndarray:
-        """Impacts in order: time, velocity_before, velocity_after, coefficient, onto."""
-        found = [
+        """Impacts in order of time, with the fields of `IMPACT`."""
+        rows = [
             (e.time, e.before, e.after, e.coefficient, "right" if e.side > 0 else "left")
             for e in self.trajectory.events
             if e.kind is EventKind.IMPACT
         ]
-        return np.array(found, dtype=IMPACT)
+        return np.array(rows, dtype=IMPACT)
 
     @cached_property
     def uplifts(self) -> FloatArray:
-        """Times at which the body was lifted from rest [s]."""
+        """Times of uplift from rest [s]."""
         return np.array([e.time for e in self.trajectory.events if e.kind is EventKind.UPLIFT])
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation, between the samples too; a quarter turn if it overturned [rad]."""
+        """Largest rotation, also between the samples; a quarter turn after overturning [rad]."""
         return abs(self.trajectory.peak_rotation)
 
     @property
     def side(self) -> int:
-        """Side to which it overturned: 1 right, -1 left, 0 if it did not; as `simulate_many` has it [-]."""
+        """Side of overturning, as in `simulate_many`: 1 right, -1 left, 0 without overturning [-]."""
         return int(self.trajectory.side) if self.outcome is Outcome.OVERTURNED else 0
 
     @property
     def peak_ratio(self) -> float:
-        """Peak rotation over the slenderness angle of its side; beyond 1 is not overturning [-]."""
+        """Peak rotation over the slenderness angle of its side; a value above 1 need not mean overturning [-]."""
         return self.peak_rotation / self.parameters.side(self.trajectory.peak_rotation).slenderness_angle
 
     @property
     def coefficients(self) -> dict[str, float]:
-        """Coefficient of restitution by the foot landed on [-]."""
+        """Coefficient of restitution by foot of landing [-]."""
         return {foot: getattr(self.parameters, foot).coefficient for foot in FEET}
 
     @property
     def least_force(self) -> float:
-        """Smallest normal force of the ground while rocking over the weight; NaN if it never rocked [-].
+        """Smallest normal contact force during rocking over the weight; NaN without rocking [-].
 
-        Below zero the ground would have to pull. At the samples, uplifts and impacts; of a body that overturns, up to
-        the instant at which it passes over its foot for good. Between them the force is curved to second order in the
-        step of the motion: of 24 random records at .005 s two have a smaller one inside a step, by 1e-4 of the
-        weight. The same number as of `simulate_many`.
+        A negative force is tensile. The force is evaluated at the samples, uplifts and impacts; for a body that
+        overturns, up to the overturning time. Inside a step the force may be smaller: for 2 of 24 random records at
+        0.005 s, by 1e-4 of the weight. `simulate_many` gives the same number.
         """
         return self.trajectory.least_force
 
     @property
     def lost_contact(self) -> bool | None:
-        """Whether the ground would have to pull, so that the verdict assumes contact; None if there is no result."""
+        """True if the contact force becomes tensile, so that the outcome assumes contact; None without a result."""
         return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
 
     def with_contact(self, friction: float = math.inf) -> "ContactResponse":
-        """Return what the body does if it may slide, hop and fly: the same question to `simulate` with friction.
+        """Return the response of the body with sliding, hopping and flight: `simulate` with friction.
 
         Parameters
         ----------
         friction : float
-            Coefficient of friction [-]; if infinite, the largest of 10, 3 and 1 that has a response, so that feet
-            that carry do not slide.
+            Coefficient of friction [-]; if infinite, the largest of 10, 3 and 1 with a response, so that feet in
+            contact do not slide.
 
         Returns
         -------
         ContactResponse
-            With the full equations.
+            Response with the full equations.
 
         Raises
         ------
@@ -193,66 +192,66 @@ class Response(ResponseBase):
         parameters, run = self.parameters, self.trajectory
         if parameters.law.kind:
             raise InvalidValueError(
-                "{parameter} must be constant where the body may fly, got {law}", parameter="restitution",
+                "{parameter} must be constant for a body that may fly, got {law}", parameter="restitution",
                 law=parameters.label,
             )  # fmt: skip
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
         for mu in (10.0, 3.0, 1.0) if friction == math.inf else (friction,):
-            with warnings.catch_warnings():  # what was asked has been doubted
+            with warnings.catch_warnings():  # this response has warned already
                 warnings.simplefilter("ignore", PlausibilityWarning)
-                found = response_with_contact(
+                response = response_with_contact(
                     self.body, self.motion, {f: getattr(parameters, f).coefficient for f in FEET},
                     ContactSettings(self.settings.gravity, friction=mu), start=start, scale=self.scale,
                     duration=self.segments.count * self.segments.step,
                 )  # fmt: skip
-            if found.outcome is not Outcome.FAILED:
+            if response.outcome is not Outcome.FAILED:
                 break
-        return found
+        return response
 
     def doubts(self, friction: float = math.inf) -> list[str]:
-        """Return why pure rocking is not credible; where contact is lost, with what the body does if it may fly.
+        """Return the reasons against pure rocking; where contact is lost, with the response with flight.
 
         Parameters
         ----------
         friction : float
-            Coefficient of friction between body and ground [-]; if infinite, only loss of contact is looked at.
+            Coefficient of friction between body and ground [-]; if infinite, only loss of contact is checked.
 
         Returns
         -------
         list of str
-            Sentences; empty if it is credible.
+            Sentences; empty if pure rocking is credible.
         """
-        # what nobody gave decides no flight: the feet are then kept from sliding
-        given = math.inf if isinstance(friction, Assumed) else friction
-        if self.lost_contact and given not in self._flights:
-            self._flights[given] = self._flown(given)
-        told = [self._flights[given]] if self.lost_contact else []
-        return told if friction == math.inf else [*told, *self.contact.slips(friction)]
+        # an assumed friction is not used for flight: the feet do not slide
+        stated = math.inf if isinstance(friction, Assumed) else friction
+        if self.lost_contact and stated not in self._flights:
+            self._flights[stated] = self._flight_text(stated)
+        reasons = [self._flights[stated]] if self.lost_contact else []
+        return reasons if friction == math.inf else [*reasons, *self.contact.slips(friction)]
 
     @cached_property
     def _flights(self) -> dict[float, str]:
-        """What the body does if it may fly, by the coefficient of friction: a history of its own, followed once."""
+        """Descriptions of the response with flight by coefficient of friction, each computed once."""
         return {}
 
-    def _flown(self, friction: float) -> str:
+    def _flight_text(self, friction: float) -> str:
         from rocking.dynamics.plane.energy_balance import LEAVES
 
         facts: dict[str, Any] = {"force": -self.least_force, "leaves": Message(LEAVES), "outcome": self._verdict}
         try:
-            found = self.with_contact(friction)
+            response = self.with_contact(friction)
         except InvalidValueError as error:
             return Message(_FLIGHT_UNKNOWN, {**facts, "reason": str(error)})
-        origin = "since none was given" if friction == math.inf else f"as {given_or_assumed(friction)}"
-        facts |= {"friction": found.law.friction, "origin": Message(origin), "flight": found.summary}
+        origin = "since friction is not given" if friction == math.inf else f"as {given_or_assumed(friction)}"
+        facts |= {"friction": response.law.friction, "origin": Message(origin), "flight": response.summary}
         return Message(_FLIGHT, facts)
 
     @property
     def _ending(self) -> str:
-        """The outcome in one sentence; also where the motion was cut, if that may have decided."""
+        """The outcome in one sentence, with the end of a motion that was cut."""
         if not self._is_cut:
             return self._verdict
         return Message(
-            "{outcome}; the motion was cut at {time:.4g} s, where the ground is taken to stop",
+            "{outcome}; the motion was cut at {time:.4g} s, with ground at rest afterwards",
             {"outcome": self._verdict, "time": self.segments.count * self.segments.step},
         )
 
@@ -287,7 +286,7 @@ class Response(ResponseBase):
     @property
     def _is_cut(self) -> bool:
         end = self.segments.count * self.segments.step
-        over = self._finite < self.trajectory.rotation.size  # it lay before, or there is no result
+        over = self._finite < self.trajectory.rotation.size  # the body lies before the end, or there is no result
         return not over and self.motion is not None and end < self.motion.duration * (1.0 - _ROUNDING)
 
     @cached_property
@@ -319,12 +318,12 @@ class Response(ResponseBase):
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
-        """Horizontal acceleration of the ground at the samples; the motion's last value where it ends [m/s2]."""
+        """Horizontal acceleration of the ground at the samples; the last value of the motion at its end [m/s2]."""
         return self._at_samples(self.segments.horizontal)
 
     @cached_property
     def vertical_ground_acceleration(self) -> FloatArray | None:
-        """Vertical acceleration of the ground at the samples; None if the motion has no vertical part [m/s2]."""
+        """Vertical acceleration of the ground at the samples; None without a vertical component [m/s2]."""
         return None if self.segments.vertical is None else self._at_samples(self.segments.vertical)
 
     def _at_samples(self, polynomials: FloatArray) -> FloatArray:
@@ -337,22 +336,22 @@ class Response(ResponseBase):
 
     @cached_property
     def error_estimate(self) -> float:
-        """Largest change of theta in a twin with every step halved: what the integration leaves open [rad].
+        """Largest change of theta in a second run with half steps: the integration error [rad].
 
-        It grows with the length of a history, since rocking multiplies small differences; where another step changes
-        the outcome, it is infinite.
+        The error grows with the duration, since rocking amplifies small differences. If the smaller step changes the
+        outcome, the estimate is infinite.
         """
         name, settings, first = "reference", self.settings, self.trajectory
-        half = 0.5 * settings.longest_step
-        if self.engine.startswith("fast") and half >= SHORTEST_STEP:  # the reference engine takes shorter ones
-            name, settings = "fast", replace(settings, longest_step=half)
-        again = run(
+        half_step = 0.5 * settings.longest_step
+        if self.engine.startswith("fast") and half_step >= SHORTEST_STEP:  # the reference engine accepts shorter steps
+            name, settings = "fast", replace(settings, longest_step=half_step)
+        twin = run(
             self.parameters, self.segments.refined(2), settings, engine=name, scale=self.scale, stream=self.stream,
             rotation=float(first.rotation[0]), velocity=float(first.angular_velocity[0]),
         )  # fmt: skip
-        if again.outcome is not first.outcome:
+        if twin.outcome is not first.outcome:
             return math.inf
-        return float(np.nanmax(np.abs(again.rotation[::2] - first.rotation)))  # Eq. 47
+        return float(np.nanmax(np.abs(twin.rotation[::2] - first.rotation)))  # Eq. 47
 
     def at(self, time: Any) -> FloatArray:
         """Return the rotation at any times within the response.
@@ -370,28 +369,28 @@ class Response(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or before the start or after the end by more than rounding: the last sample, or
-            where the body lies.
+            If a time is not finite, or outside the response by more than rounding; the response ends with the last
+            sample, or when the body lies.
         """
         output = self.dense_output
-        t = self._known(time, float(output.end[-1]))
+        t = self._times_within(time, float(output.end[-1]))
         k = np.clip(np.searchsorted(output.start, t, side="right") - 1, 0, output.start.size - 1)
         x = (t - output.start[k]) / output.length[k]
         c = output.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
     def answer(self, friction: float = DEFAULT_FRICTION) -> Answer:
-        """Return what is shown of the response.
+        """Return the results of the response.
 
         Parameters
         ----------
         friction : float
-            Coefficient of friction between body and ground, with which the demand is compared [-].
+            Available coefficient of friction between body and ground, for comparison with the demand [-].
 
         Returns
         -------
         Answer
-            Body, motion, restitution, outcome, peaks, impacts, friction demand, accuracy, and doubts.
+            Body, motion, restitution, outcome, peaks, impacts, friction demand, accuracy, and warnings.
         """
         contact = self.contact
         return super().answer() | {
@@ -406,7 +405,7 @@ class Response(ResponseBase):
         }  # fmt: skip
 
     def outcome_answer(self) -> Answer:
-        """Return what is shown of the response where it stands beside others.
+        """Return the results of the response for a comparison.
 
         Returns
         -------
@@ -442,7 +441,8 @@ class Response(ResponseBase):
             "kinetic_energy": energy.kinetic, "potential_energy": energy.potential, "work_of_ground": energy.work,
             "energy_lost": energy.lost, "horizontal_force": contact.horizontal, "vertical_force": contact.vertical,
         }  # fmt: skip
-        return {name: each[: self._finite] for name, each in values.items()}  # a fall may come after the last sample
+        # overturning may come after the last sample
+        return {name: series[: self._finite] for name, series in values.items()}
 
     def _plot(self, **options: Any) -> "Figure":
         from rocking.plots import response_picture
@@ -477,14 +477,14 @@ class Response(ResponseBase):
         }
 
     def report(self, path: str | Path, **options: Any) -> Path:
-        """Write a report: the body, what an impact costs it, the ground, the response, with pictures.
+        """Write a report with pictures: body, energy loss at impact, ground motion, response.
 
         Parameters
         ----------
         path : str or Path
-            A document (.pdf), or a web page of one file (.html).
+            A document (.pdf), or a web page in one file (.html).
         **options
-            Of `rocking.reports.report`: name, date, friction.
+            Options of `rocking.reports.report`: name, date, friction.
 
         Returns
         -------
@@ -494,7 +494,7 @@ class Response(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If the ending of the path is another.
+            If the path has another extension.
         MissingExtraError
             If matplotlib, and typst or jinja2, are not installed.
         """
@@ -503,11 +503,11 @@ class Response(ResponseBase):
         return report(self, path, **options)
 
 
-# p times: the step between samples of a pulse's response, what is followed after a motion, and on ground at rest
+# p times the step between samples under a pulse, the time after the motion, and the time on ground at rest
 _FINE, _AFTER, _FREE = 0.05, 15.0, 300.0
 
 
-def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
+def response_of_rocking(  # noqa: PLR0913 - the arguments of `simulate`
     body: Body,
     motion: Motion | None,
     restitution: Any,
@@ -519,18 +519,18 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     engine: str = "auto",
     stream: int = 0,
 ) -> Response:
-    """Return how a plane body rocks without sliding or flying; on ground at rest without a motion."""
-    # start: theta [rad] and theta' [rad/s]; duration: how long to follow the body
-    # [s]; if not given, the motion and 15 / p after it, and where the body then still rocks until it rests, at most 300
-    # / p after the motion; on ground at rest until it rests or lies, at most 300 / p
+    """Return the response of a plane body that neither slides nor flies; on ground at rest if motion is None."""
+    # start: theta [rad] and theta' [rad/s]; duration [s]: by default the motion and 15 / p after it; while the body
+    # still rocks, until it rests, at most 300 / p after the motion; on ground at rest until the body rests or lies, at
+    # most 300 / p
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
     frequencies = parameters.right.frequency_parameter, parameters.left.frequency_parameter
     slow, quick = min(frequencies), max(frequencies)
     rotation, velocity = start_within(parameters, *start)
-    usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
-    length = usual if duration is None else checks.positive("duration", duration, "s")
+    default_length = _FREE / slow if motion is None else motion.duration + _AFTER / slow
+    length = default_length if duration is None else checks.positive("duration", duration, "s")
     stream = checks.whole("stream", stream)
 
     def computed(length: float) -> tuple[Any, Segments]:
@@ -539,53 +539,70 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
         else:
             segments = motion.segments()
             segments = followed(segments, length, math.ceil(quick * segments.step / _FINE), motion)
-        found = run(
+        trajectory = run(
             parameters, segments, settings, engine=engine, scale=scale, stream=stream, rotation=rotation,
             velocity=velocity,
         )  # fmt: skip
-        return found, segments
+        return trajectory, segments
 
-    found, segments = computed(length)
+    trajectory, segments = computed(length)
     if duration is None and motion is None:
-        found, segments = _until_rest(found, segments, 0)
-    elif duration is None and motion is not None and found.still_rocking and not is_lossless(parameters):
-        found, segments = _extended(computed, motion.duration + _FREE / slow, found, segments)
-    return Response(body, motion, parameters, settings, segments, scale, stream, found)
+        trajectory, segments = _until_rest(trajectory, segments, 0)
+    elif duration is None and motion is not None and trajectory.still_rocking and not is_lossless(parameters):
+        trajectory, segments = _extended(computed, motion.duration + _FREE / slow, trajectory, segments)
+    return Response(body, motion, parameters, settings, segments, scale, stream, trajectory)
 
 
 def start_within(parameters: RockingParameters, rotation: Any, angular_velocity: Any) -> tuple[float, float]:
     """Return theta [rad] and theta' [rad/s] at the start, within a quarter turn and 100 p."""
     half_pi = 0.5 * math.pi
-    most = 100.0 * max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
+    max_velocity = 100.0 * max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     return (
         checks.within(
-            "rotation", rotation, -half_pi, half_pi, unit="rad", open_low=True, open_high=True, hint="degrees?"
+            "rotation",
+            rotation,
+            -half_pi,
+            half_pi,
+            unit="rad",
+            open_low=True,
+            open_high=True,
+            hint="in radians",
         ),
-        checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?"),
+        checks.within(
+            "angular_velocity",
+            angular_velocity,
+            -max_velocity,
+            max_velocity,
+            unit="rad/s",
+            hint="in radians",
+        ),
     )
 
 
 def is_lossless(parameters: RockingParameters) -> bool:
-    """Return whether no impact loses energy, so that the body never comes to rest."""
+    """Return True if no impact loses energy, so that the body never comes to rest."""
     return parameters.left.coefficient * parameters.right.coefficient >= 1.0
 
 
-def _extended(computed: Any, length: float, found: Any, segments: Segments) -> tuple[Any, Segments]:
-    """Return the response until the body rests, up to a length [s]; the given one where that cannot be computed."""
-    length = min(length, most_samples_last(segments.step))
+def _extended(computed: Any, length: float, trajectory: Any, segments: Segments) -> tuple[Any, Segments]:
+    """Return the response until the body rests, up to a length [s]; the former one if the longer one fails."""
+    length = min(length, max_duration(segments.step))
     if length <= segments.duration:
-        return found, segments
+        return trajectory, segments
     longer, longer_segments = computed(length)
     if longer.outcome is Outcome.FAILED:
-        return found, segments
+        return trajectory, segments
     return _until_rest(longer, longer_segments, segments.count)
 
 
-def _until_rest(found: Any, segments: Segments, least: int) -> tuple[Any, Segments]:
-    """Return a response without the samples at rest at its end; at least so many stretches are kept."""
-    moving = (found.rotation != 0.0) | (found.angular_velocity != 0.0)
-    last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, least)
-    if last >= found.rotation.size:
-        return found, segments
-    shorter = replace(found, rotation=found.rotation[: last + 1], angular_velocity=found.angular_velocity[: last + 1])
+def _until_rest(trajectory: Any, segments: Segments, min_stretches: int) -> tuple[Any, Segments]:
+    """Return a response without the samples at rest at its end; a number of stretches is kept."""
+    moving = (trajectory.rotation != 0.0) | (trajectory.angular_velocity != 0.0)
+    last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, min_stretches)
+    if last >= trajectory.rotation.size:
+        return trajectory, segments
+    kept = slice(last + 1)
+    shorter = replace(
+        trajectory, rotation=trajectory.rotation[kept], angular_velocity=trajectory.angular_velocity[kept]
+    )
     return shorter, segments.first(last)

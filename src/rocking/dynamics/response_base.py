@@ -1,4 +1,4 @@
-"""What the responses of every mechanics share: how they end, in words, in files, and how long a motion lasts."""
+"""Base class of the responses of all mechanics: outcome, texts, files; duration of motions."""
 
 import math
 from abc import abstractmethod
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def motion_provenance(motion: Any) -> str:
-    """Return where a motion comes from."""
+    """Return the provenance of a motion as text."""
     return "ground at rest" if motion is None else "; ".join(provenance_of(motion))
 
 
@@ -43,69 +43,70 @@ def interval_rows(intervals: Sequence[tuple[Any, ...]], *names: str) -> AnswerRo
 
 
 class ResponseBase(Exported):
-    """One history: how it ends, in words, in a picture, and on its way out."""
+    """Response of one body: outcome, text, picture and export."""
 
     _blank = False
 
     settings: Settings
-    trajectory: Any  # what the engine returned: outcome, status, overturning_time, still_rocking, engine
+    trajectory: Any  # result of the engine: outcome, status, overturning_time, still_rocking, engine
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self.summary} [{self.engine}]>"
 
     @property
     def outcome(self) -> Outcome:
-        """How it ended."""
+        """Outcome of the response."""
         outcome: Outcome = self.trajectory.outcome
         return outcome
 
     @property
     def status(self) -> Status:
-        """Whether it could be computed."""
+        """Status of the computation."""
         status: Status = self.trajectory.status
         return status
 
     @property
     def engine(self) -> str:
-        """Which engine ran, and how."""
+        """Name of the engine, with its method."""
         engine: str = self.trajectory.engine
         return engine
 
     @property
     def overturning_time(self) -> float:
-        """When the centre of mass passed over the contact for good; NaN if it did not overturn [s]."""
+        """Time of the last passage of the centre of mass over the contact; NaN without overturning [s]."""
         return float(self.trajectory.overturning_time)
 
     @property
     def still_rocking(self) -> bool:
-        """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
+        """True if the body has not overturned and still moves at the end; `impacts` excludes later impacts."""
         return bool(self.trajectory.still_rocking)
 
     @property
     def unfinished(self) -> str:
-        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
+        """Sentence about a motion that continues at the end of the response; empty for a body at rest."""
         if not self.still_rocking:
             return ""
-        doing, end, place = self._last_motion
+        doing, end, state = self._last_motion
         unfinished = Message(
-            "it is still {activity} when the computation ends at {time:.4g} s, {state}; later impacts are not counted",
-            {"activity": Message(doing), "time": end, "state": place},
+            "the body is still {activity} at the end of the computation, {time:.4g} s, {state}; later impacts are not "
+            "counted",
+            {"activity": Message(doing), "time": end, "state": state},
         )
         return Message.followed(unfinished, self._end_reason)
 
     @property
     def _end_reason(self) -> str:
-        """Why the body does not come to rest within the response; empty if the duration alone ends it."""
-        return "no impact loses energy, so that it never comes to rest" if self._never_rests else ""
+        """Reason for the motion at the end of the response; empty if the duration is the reason."""
+        return "no impact loses energy, so that the body never comes to rest" if self._never_rests else ""
 
     @property
     def _never_rests(self) -> bool:
-        """Whether impacts lose no energy."""
+        """True if impacts lose no energy."""
         return False
 
     @property
     def summary(self) -> str:
-        """The outcome in one sentence; also whether it still rocks where the response ends."""
+        """The outcome in one sentence, with a motion that continues at the end."""
         if self.outcome is Outcome.FAILED:
             return Message("{outcome}: {reason}", {"outcome": self.outcome.value, "reason": self.status.value})
         return Message.followed(self._ending, self.unfinished)
@@ -113,35 +114,35 @@ class ResponseBase(Exported):
     @property
     @abstractmethod
     def _ending(self) -> str:
-        """The outcome, where there is one, in one sentence."""
+        """The outcome of a successful computation in one sentence."""
 
     @property
     @abstractmethod
     def _last_motion(self) -> tuple[str, float, str]:
-        """What a body that still rocks does where the response ends, when that is [s], and how it stands then."""
+        """Activity at the end of the response, time of the end [s], and state."""
 
     @property
     @abstractmethod
     def _samples(self) -> dict[str, FloatArray]:
-        """Values over `time`, by their names in `rocking.quantities`."""
+        """Values over `time` by name in `rocking.quantities`."""
 
     @property
     @abstractmethod
     def _tables(self) -> dict[str, AnswerRows]:
-        """Tables beside the samples: impacts, and intervals of one contact."""
+        """Tables of impacts and of intervals of one contact."""
 
     @property
     @abstractmethod
     def _facts(self) -> dict[str, Any]:
-        """What was computed from what, beside software, engine, outcome and settings, as plain values."""
+        """Inputs and provenance as plain values; without software, engine, outcome and settings."""
 
     def answer(self) -> Answer:
-        """Return what is shown of the response.
+        """Return the results of the response.
 
         Returns
         -------
         Answer
-            What was computed, the outcome, peaks, energy, and tables of impacts and contacts.
+            Engine, outcome, peaks, energy, and tables of impacts and contacts.
         """
         time = self.overturning_time
         return Answer({
@@ -156,12 +157,12 @@ class ResponseBase(Exported):
     @property
     @abstractmethod
     def _values(self) -> dict[str, Any]:
-        """What an answer of these mechanics has beside what all have."""
+        """Results of this mechanics alone."""
 
     @property
     @abstractmethod
     def _last_state(self) -> dict[str, Any]:
-        """State of a body that still rocks where the response ends."""
+        """State of the body at the end of the response."""
 
     def plot(self, path: str | Path | None = None, **options: Any) -> "Figure":
         """Draw the response.
@@ -169,9 +170,9 @@ class ResponseBase(Exported):
         Parameters
         ----------
         path : str or Path, optional
-            Where to write the picture, too: .png, .svg or .pdf.
+            File for the picture: .png, .svg or .pdf.
         **options
-            Of the picture of this kind of response in `rocking.plots`: `friction` where it rocks alone.
+            Options of the picture in `rocking.plots`: `friction` for a response without friction.
 
         Returns
         -------
@@ -183,7 +184,7 @@ class ResponseBase(Exported):
         MissingExtraError
             If matplotlib is not installed.
         RockingError
-            If the ending of the path is another.
+            If the path has another extension.
         """
         from rocking.plots import write
 
@@ -194,31 +195,31 @@ class ResponseBase(Exported):
 
     @abstractmethod
     def _plot(self, **options: Any) -> "Figure":
-        """Draw the response by the picture of its kind."""
+        """Draw the picture of this kind of response."""
 
     def exported(self) -> "Table":
-        """Return samples, with tables of impacts and the like beside them."""
+        """Return the table of samples, with tables of impacts and intervals."""
         from rocking.tables import Table
 
-        ended = {
+        outcome = {
             "software": SOFTWARE, "engine": self.engine, "outcome": self.outcome.name, "status": self.status.name,
             "still_rocking": self.still_rocking, "summary": self.summary,
         }  # fmt: skip
         settings = {f"setting_{name}": value for name, value in self.settings.integration.items()}
-        beside = {name.removesuffix("s"): rows.arrays for name, rows in self._tables.items()}
-        tables = {row: Table.of(row, arrays) for row, arrays in beside.items()}
-        provenance = with_units(ended | self._facts | settings)
+        details = {name.removesuffix("s"): rows.arrays for name, rows in self._tables.items()}
+        tables = {row: Table.of(row, arrays) for row, arrays in details.items()}
+        provenance = with_units(outcome | self._facts | settings)
         return Table.of("time", self._samples, provenance=provenance, beside=tables, no_unit="-")
 
     def animate(self, path: str | Path, **options: Any) -> Path:
-        """Write the response as it moves.
+        """Write an animation of the response.
 
         Parameters
         ----------
         path : str or Path
-            A web page of one file (.html), or a film (.gif).
+            A web page in one file (.html), or a film (.gif).
         **options
-            Of a film, as of `rocking.plots.animate_gif`: fps, speed, progress.
+            Options of a film, `rocking.plots.animate_gif`: fps, speed, progress.
 
         Returns
         -------
@@ -228,51 +229,51 @@ class ResponseBase(Exported):
         Raises
         ------
         InvalidValueError
-            If the ending of the path is another, or these mechanics have no animation.
+            If the path has another extension, or the mechanics has no animation.
         MissingExtraError
-            If matplotlib is not installed, which films need.
+            If matplotlib, which films need, is not installed.
         """
         from rocking.plots import animate_gif, animate_html
 
         suffix = Path(path).suffix.lower()
         if suffix not in {".html", ".gif"}:
             raise InvalidValueError(
-                "an animation is .html or .gif, got {value}", parameter="path", value=Path(path).name
+                "an animation must be .html or .gif, got {value}", parameter="path", value=Path(path).name
             )
         if suffix == ".html" and options:
             raise InvalidValueError(
-                "{options}: these are for films (.gif); the page has its own controls", options=", ".join(options)
+                "{options}: for films (.gif) only; the page has its own controls", options=", ".join(options)
             )
         response: Any = self
         return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)
 
-    def _known(self, time: Any, end: float) -> FloatArray:
-        """Return times up to an end, to rounding; what lies outside is refused [s]."""
+    def _times_within(self, time: Any, end: float) -> FloatArray:
+        """Return times between 0 and an end, to rounding; refuse times outside [s]."""
         times = checks.real_array("time", time, "s")
         bad = times[~((times >= -_ROUNDING * end) & (times <= (1.0 + _ROUNDING) * end))]
         if bad.size:
             raise InvalidValueError(
-                "time must be in [0, {end:g}] s, where the response is known, got {time:g}", end=end, time=bad[0]
+                "time must be in [0, {end:g}] s, the duration of the response, got {time:g}", end=end, time=bad[0]
             )
         return np.clip(times, 0.0, end)
 
 
-_MOST_SAMPLES = 2_000_000
+_MAX_SAMPLES = 2_000_000
 
 
-def most_samples_last(step: float) -> float:
-    """Return the longest duration of which a response may have samples [s]."""
-    return _MOST_SAMPLES * step
+def max_duration(step: float) -> float:
+    """Return the longest duration of a response with this step [s]."""
+    return _MAX_SAMPLES * step
 
 
 def ground_at_rest(step: float, length: float) -> Segments:
-    """Return ground at rest in steps, for a length [s]."""
+    """Return ground at rest for a length [s], in steps [s]."""
     check_samples(length / step)
     return Segments.still(step, max(1, math.ceil(length / step - 1e-9)))
 
 
 def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
-    """Return a motion cut or followed by rest to a length [s]; the stretches of a pulse in so many parts."""
+    """Return a motion cut or extended by rest to a length [s]; parts: subdivision of the stretches of a pulse."""
     if isinstance(motion, Pulse):
         segments = segments.refined(parts)
     check_samples(length / segments.step)
@@ -282,9 +283,9 @@ def followed(segments: Segments, length: float, parts: int, motion: Motion) -> S
 
 
 def check_samples(count: float) -> None:
-    """Refuse more samples than memory should hold."""
-    if not count <= _MOST_SAMPLES:
+    """Refuse more than two million samples."""
+    if not count <= _MAX_SAMPLES:
         raise InvalidValueError(
-            "the response would have {samples:.3g} samples, more than {limit:g}", samples=count, limit=_MOST_SAMPLES,
-            hint="a shorter duration, please",
+            "the response would have {samples:.3g} samples, more than {limit:g}", samples=count, limit=_MAX_SAMPLES,
+            hint="use a shorter duration",
         )  # fmt: skip

@@ -13,42 +13,42 @@ from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError
 
 PIECE = 1 << 16
-"""Histories that are handed to the engine at a time: memory beside the results does not grow with their number."""
+"""Histories per call of the engine, so that only the memory for results grows with their number."""
 
 ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
     "share_right", "share_left", "scale", "rotation", "velocity", "friction", "azimuth",
 )  # fmt: skip
-"""Numbers that make a history, beside the number of its motion and its stream."""
+"""Columns that define a history, with the index of its motion and its stream."""
 
-SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
-"""What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
+SIDE_DEFAULTS = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
+"""Values of columns of a side that are not stated: unknown ground forces, full distribution."""
 
-_UNTOLD = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan, "azimuth": np.nan}
+_DEFAULTS = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan, "azimuth": np.nan}
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Histories to compute, one entry each; a piece of a larger whole."""
+    """Histories to compute, one entry per history."""
 
-    # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side, share the part of a
-    # distribution that its coefficient is drawn from; the friction is that of the settings where it is NaN, and the
-    # azimuth by which the motion of a body in space is turned [rad] is none
+    # columns of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side; share is the fraction of
+    # the distribution that is sampled; a NaN friction means that of the settings; the azimuth [rad] turns the motion
+    # of a body in space, NaN means no turn
     values: dict[str, FloatArray]
-    motion: np.ndarray  # number of the motion
+    motion: np.ndarray  # index of the motion
     stream: np.ndarray  # number of the history, for random coefficients
 
     @classmethod
     def of(cls, count: int, motion: Any = 0, stream: Any = None, **values: Any) -> "Rows":
         """Return rows from numbers and arrays, which are repeated to the count."""
-        given = _UNTOLD | SIDES_UNTOLD | values
-        if set(given) != set(ROWS):
-            odd = sorted(set(given) ^ set(ROWS))
+        columns = _DEFAULTS | SIDE_DEFAULTS | values
+        if set(columns) != set(ROWS):
+            unexpected = sorted(set(columns) ^ set(ROWS))
             raise InvalidValueError(
-                "rows have {names}; missing or unknown: {others}", names=", ".join(ROWS), others=", ".join(odd)
+                "rows have {names}; missing or unknown: {others}", names=", ".join(ROWS), others=", ".join(unexpected)
             )
         try:
-            rows = {name: _repeated(given[name], count, np.float64) for name in ROWS}
+            rows = {name: _repeated(columns[name], count, np.float64) for name in ROWS}
             streams = np.arange(count) if stream is None else stream
             return cls(rows, _repeated(motion, count, np.int64), _repeated(streams, count, np.int64))
         except (TypeError, ValueError) as error:
@@ -65,10 +65,10 @@ class Rows:
 
 
 class RowRunner(Protocol):
-    """Motions as the engine of a mechanics keeps them, and histories under them as rows."""
+    """Motions in the form of an engine; runs histories given as rows."""
 
     def run(self, piece: Rows, threads: int) -> tuple[Arrays, dict[str, int]]:
-        """Return columns, among them those of `fast_engine.RESULTS` that the mechanics fills, and the steps taken."""
+        """Return columns, with those of `fast_engine.RESULTS` that the mechanics fills, and counts of steps."""
 
 
 def run_rows(
@@ -79,7 +79,7 @@ def run_rows(
     threads: int,
     progress: Callable[[int], None] | None = None,
 ) -> tuple[Arrays, dict[str, int]]:
-    """Return the results of rows, piece by piece, and the steps taken; law: of which coefficients are drawn."""
+    """Return the results of rows, computed in pieces, and counts of steps; law: source of random coefficients."""
     check_progress(progress)
     results, total = empty_results(count), dict[str, int]()
     for first in range(0, count, PIECE):
@@ -94,18 +94,18 @@ def run_rows(
 
 
 def law_of_rows(law: ImpactLaw) -> ImpactLaw:
-    """Return the law of rows, into whose coefficients a draw for every history goes beforehand."""
+    """Return the law for the engine; constant if the coefficients of the rows contain the draws."""
     return ConstantRestitution() if law.per_history else law
 
 
 def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
-    """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history."""
+    """Return rows with coefficients multiplied by the draws of a law that draws once per history."""
     draws: Any = law.draws
-    drawn, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
+    coefficients, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
     for foot in FEET:
-        where = (foot, rows.values[f"share_{foot}"]) if cut else ()
-        drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.stream, *where)
-    return replace(rows, values=rows.values | drawn)
+        options = (foot, rows.values[f"share_{foot}"]) if cut else ()
+        coefficients[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.stream, *options)
+    return replace(rows, values=rows.values | coefficients)
 
 
 def _repeated(values: Any, count: int, dtype: Any) -> np.ndarray:

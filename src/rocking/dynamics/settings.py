@@ -1,4 +1,4 @@
-"""How to integrate: what the settings of all mechanics share, and which engine runs on how many threads."""
+"""Settings of the integration common to all mechanics; choice of the engine and of the number of threads."""
 
 import math
 import os
@@ -16,34 +16,34 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 BOUNCE_LAWS = ("newton", "poisson", "stronge")
-"""What the coefficient of normal restitution may be the ratio of: velocities, impulses or, squared, energies."""
+"""Definitions of the coefficient of normal restitution: ratio of velocities, impulses or, squared, energies."""
 
-# friction of a body in space for which a study is told none: it may hop, fly and fall into another pose [-]
+# friction of a body in space in a study without friction: it may hop, fly and fall into another pose [-]
 NEVER_SLIDES = 1e6
 
-SHORTEST_STEP = 1e-6  # least `longest_step` of settings [-]
+SHORTEST_STEP = 1e-6  # smallest `longest_step` of settings [-]
 
 
 _FIRST_IN_FILES = ("gravity", "linear", "rest_speed", "most_events")
 
 
 def checked(default: Any, check: Callable[[str, Any], Any]) -> Any:
-    """Return a field of settings: its default, and the function of name and value that checks it."""
+    """Return a field of settings with its default and the function of name and value that checks it."""
     return field(default=default, metadata={"check": check})
 
 
 def ranged(default: float, low: float, high: float, **options: Any) -> Any:
-    """Return a field of settings that is a number within limits; options of `checks.within`."""
+    """Return a numeric field of settings with limits; options: those of `checks.within`."""
     return checked(default, partial(checks.within, low=low, high=high, **options))
 
 
 def counted(default: int, low: int, high: int) -> Any:
-    """Return a field of settings that is a whole number within limits."""
+    """Return an integer field of settings with limits."""
     return checked(default, partial(checks.whole, low=low, high=high))
 
 
 def checked_friction(name: str, value: Any) -> float:
-    """Return a coefficient of friction; one that nobody gave remains told apart."""
+    """Return a coefficient of friction within its limits; an assumed value stays marked as assumed."""
     number = checks.within(name, value, 0.0, 1e6, hint="1e6 for feet that never slide")
     plausibility.warn(plausibility.of_friction(number))
     return value if isinstance(value, conventions.Assumed) else number
@@ -57,14 +57,14 @@ def _checked_gravity(name: str, value: Any) -> float:
 
 @dataclass(frozen=True)
 class Settings:
-    """How to integrate: what the settings of all mechanics have. Each mechanics has a class of its own.
+    """Settings of the integration common to all mechanics; each mechanics has its own subclass.
 
     Parameters
     ----------
     gravity : float
         Acceleration of gravity [m/s2].
     most_events : int
-        A history with more impacts and changes of contact is stopped, with a status that says so.
+        Largest number of impacts and changes of contact; a longer history is stopped with an error status.
 
     Raises
     ------
@@ -82,29 +82,29 @@ class Settings:
     most_events: int = counted(100_000, 1, 2**63 - 1)
 
     def __post_init__(self) -> None:
-        for each in fields(self):  # numbers of one kind: 9 and 9.0 are the same settings
-            object.__setattr__(self, each.name, each.metadata["check"](each.name, getattr(self, each.name)))
+        for entry in fields(self):  # checks convert types: 9 and 9.0 are the same settings
+            object.__setattr__(self, entry.name, entry.metadata["check"](entry.name, getattr(self, entry.name)))
 
     @classmethod
     def names(cls) -> tuple[str, ...]:
         """Return the names of the settings."""
-        return tuple(each.name for each in fields(cls))
+        return tuple(entry.name for entry in fields(cls))
 
     @property
     def stated(self) -> dict[str, Any]:
-        """Values by name, in the order in which files have them."""
-        order = {name: place for place, name in enumerate(_FIRST_IN_FILES)}
+        """Values by name, in the order of files."""
+        order = {name: position for position, name in enumerate(_FIRST_IN_FILES)}
         names = sorted(self.names(), key=lambda name: order.get(name, len(order)))
         return {name: getattr(self, name) for name in names}
 
     @property
     def integration(self) -> dict[str, Any]:
-        """Values by name, without those of the ground, which are among the facts of a response."""
+        """Values by name, without those of the ground."""
         return self.stated
 
     @property
     def linear(self) -> bool:
-        """Whether the equations are the slender-linear ones."""
+        """True for the slender-linear equations."""
         return False
 
     @property
@@ -118,13 +118,13 @@ ENGINES = ("auto", "fast", "reference")
 
 @dataclass(frozen=True)
 class CompiledEngine:
-    """An engine in C++, which an installation may lack."""
+    """An optional engine in C++."""
 
     name: str  # of its module
-    not_built: str  # what is said where it was not built
-    instead: str = "the reference engine runs instead"
+    not_built: str  # message if it was not built
+    fallback: str = "the reference engine runs instead"
     floats: tuple[str, ...] = ()  # columns of its results, NaN without a result
-    wholes: tuple[str, ...] = ()  # columns of whole numbers
+    integers: tuple[str, ...] = ()  # columns of integers
 
     def built(self) -> ModuleType | None:
         try:
@@ -133,62 +133,62 @@ class CompiledEngine:
             return None
 
     def available(self) -> bool:
-        """Return whether the engine was built with this installation; otherwise the reference engine serves."""
+        """Return True if the engine was built with this installation; otherwise the reference engine runs."""
         return self.built() is not None
 
     def module(self) -> ModuleType:
-        """Return the compiled module, or say what it takes."""
-        found = self.built()
-        if found is None:
+        """Return the compiled module; an error if it was not built."""
+        compiled = self.built()
+        if compiled is None:
             raise MissingExtraError(self.not_built, hint='engine="reference" gives the same results, slowly')
-        return found
+        return compiled
 
-    def chosen(self, asked: str) -> str:
-        """Return which engine will run, and say so if it is not the one that users expect."""
-        asked = checks.one_of("engine", asked, ENGINES)
-        if asked == "auto" and not self.available():
-            errors.warn(f"{self.not_built}; {self.instead}", SlowEngineWarning)
+    def chosen(self, requested: str) -> str:
+        """Return the name of the engine that runs; warn if "auto" leads to the slow one."""
+        requested = checks.one_of("engine", requested, ENGINES)
+        if requested == "auto" and not self.available():
+            errors.warn(f"{self.not_built}; {self.fallback}", SlowEngineWarning)
             return "reference"
-        if asked != "reference":
+        if requested != "reference":
             self.module()
-        return "reference" if asked == "reference" else "fast"
+        return "reference" if requested == "reference" else "fast"
 
     def instruction_sets(self) -> list[str]:
-        """Return what the engine can use on this processor, the fastest first."""
+        """Return the instruction sets that the engine can use on this processor, fastest first."""
         return list(self.module().instruction_sets())
 
     def instruction_set(self) -> str:
-        """Return what it will use: what the environment variable ROCKING_ISA names, or the fastest there is."""
-        known, wanted = self.instruction_sets(), os.environ.get("ROCKING_ISA", "")
-        if wanted and wanted not in known:
-            raise InvalidValueError(parameter="ROCKING_ISA", allowed=f"one of {', '.join(known)}", value=wanted)
-        return wanted or known[0]
+        """Return the instruction set in use: that of the environment variable ROCKING_ISA, or the fastest."""
+        supported, requested = self.instruction_sets(), os.environ.get("ROCKING_ISA", "")
+        if requested and requested not in supported:
+            raise InvalidValueError(parameter="ROCKING_ISA", allowed=f"one of {', '.join(supported)}", value=requested)
+        return requested or supported[0]
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of its results."""
-        return (*self.wholes, *self.floats)
+        """Names of the results."""
+        return (*self.integers, *self.floats)
 
-    def room(self, count: int) -> tuple[FloatArray, IntArray]:
-        """Return tables for the results of some rows: `floats`, and `wholes`."""
-        return np.full((count, len(self.floats)), np.nan), np.zeros((count, len(self.wholes)), np.int64)
+    def empty_tables(self, count: int) -> tuple[FloatArray, IntArray]:
+        """Return tables for the results of rows: `floats` and `integers`."""
+        return np.full((count, len(self.floats)), np.nan), np.zeros((count, len(self.integers)), np.int64)
 
-    def named(self, results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
-        """Return the columns of such tables by name."""
-        whole = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(self.wholes)}
-        return whole | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(self.floats)}
+    def columns_by_name(self, results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
+        """Return the columns of these tables by name."""
+        integers = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(self.integers)}
+        return integers | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(self.floats)}
 
 
 MOST_THREADS = 4096
 
 
 def thread_count(threads: object) -> int:
-    """Return how many threads to run on: every processor if None."""
+    """Return the number of threads; that of the processors for None."""
     return processors() if threads is None else checks.whole("threads", threads, 1, MOST_THREADS)
 
 
 def check_progress(progress: object) -> None:
-    """Refuse what cannot be told how far the work is."""
+    """Refuse a `progress` that is not a function."""
     if progress is not None and not callable(progress):
         raise InvalidValueError(
             parameter="progress", allowed="a function of the histories done, or None", value=progress

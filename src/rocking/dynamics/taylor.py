@@ -7,14 +7,14 @@ from operator import mul
 
 _SMALLEST = 1e-22
 _NEAR = 1e-9
-_HALVINGS = 80
+_MAX_ITERATIONS = 80
 
 
 def series(
     u: float, rate: float, kappa: float, push: Sequence[float], weight: Sequence[float], order: int, *, linear: bool
 ) -> list[float]:
     """Return coefficients of ``u'' = kappa { weight * S + push * C }``, S = sin u, C = cos u."""
-    # as many as are above rounding
+    # the series ends where terms are below rounding
     coefficients, rates = [u, rate], [rate]
     if linear:
         sines, cosines = coefficients, [1.0]
@@ -66,24 +66,24 @@ def slope(polynomial: Sequence[float], x: float) -> float:
 
 
 def first_fall(polynomial: Sequence[float]) -> float | None:
-    """Return where on (0, 1] a polynomial that starts above zero first goes below it, to rounding."""
-    # touching is not falling
+    """Return the first x in (0, 1] where a polynomial, above zero at 0, becomes negative, to rounding; else None."""
+    # a double zero does not count
     if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
     return next((x for x in _zeros(polynomial) if 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0), None)
 
 
 def last_fall(polynomial: Sequence[float]) -> float | None:
-    """Return where on [0, 1) a polynomial that ends below zero last goes below it; None if it is below throughout."""
+    """Return the last x in [0, 1) where a polynomial, negative at 1, becomes negative; None if negative throughout."""
     if polynomial[0] + sum(max(c, 0.0) for c in polynomial[1:]) < 0.0:
         return None
-    # backwards in time and upside down it is a first fall
+    # reversed in x and in sign, this is the first fall
     back = first_fall([-c for c in shifted(polynomial, 1.0, -1.0)])
     return None if back is None else 1.0 - back
 
 
 def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
-    """Return zeros of the slope on (0, until], in order; where it only just touches zero there may be one or none."""
+    """Return zeros of the slope on (0, until], in order; a double zero may be missing."""
     return [min(x, until) for x in _zeros(_slopes(polynomial)) if 0.0 < x <= until + _NEAR]
 
 
@@ -92,28 +92,28 @@ def _slopes(polynomial: Sequence[float]) -> list[float]:
 
 
 def _zeros(polynomial: Sequence[float]) -> list[float]:
-    """Where on [0, 1], and a little beyond, the sign changes: at most once between two zeros of the slope (Rolle)."""
-    start, rest = polynomial[0], polynomial[1:]
-    if start == 0.0 and rest:  # a zero at 0 itself is no change of sign after it
-        return _zeros(rest)
-    if not rest or start + sum(min(c, 0.0) for c in rest) > 0.0 or start + sum(max(c, 0.0) for c in rest) < 0.0:
+    """Return changes of sign on [0, 1 + 1e-9]; at most one lies between two zeros of the slope (Rolle)."""
+    start, tail = polynomial[0], polynomial[1:]
+    if start == 0.0 and tail:  # a zero at 0 itself is no change of sign after it
+        return _zeros(tail)
+    if not tail or start + sum(min(c, 0.0) for c in tail) > 0.0 or start + sum(max(c, 0.0) for c in tail) < 0.0:
         return []
     stops = [0.0, *_zeros(_slopes(polynomial)), 1.0 + _NEAR]
     below = [value(polynomial, x) < 0.0 for x in stops]
     pairs = zip(pairwise(stops), pairwise(below), strict=True)
-    return [_zero_between(polynomial, *ends) for ends, (first, last) in pairs if first is not last]
+    return [_zero_between(polynomial, *limits) for limits, (first, last) in pairs if first is not last]
 
 
 def _zero_between(polynomial: Sequence[float], low: float, high: float) -> float:
-    """Newton's method, kept between two points at which the signs differ."""
-    rises = value(polynomial, low) < 0.0
+    """Return a zero between two points of opposite signs, by Newton's method with bisection."""
+    is_rising = value(polynomial, low) < 0.0
     x = 0.5 * (low + high)
-    for _ in range(_HALVINGS):
-        height, rate = value(polynomial, x), slope(polynomial, x)
-        low, high = (x, high) if (height < 0.0) is rises else (low, x)
-        after = x - height / rate if rate else low  # Eq. 56
-        after = after if low < after < high else 0.5 * (low + high)
-        if abs(after - x) <= 2e-16 * abs(x):
+    for _ in range(_MAX_ITERATIONS):
+        residual, rate = value(polynomial, x), slope(polynomial, x)
+        low, high = (x, high) if (residual < 0.0) is is_rising else (low, x)
+        x_next = x - residual / rate if rate else low  # Eq. 56
+        x_next = x_next if low < x_next < high else 0.5 * (low + high)
+        if abs(x_next - x) <= 2e-16 * abs(x):
             break
-        x = after
+        x = x_next
     return x

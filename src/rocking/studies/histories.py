@@ -17,7 +17,7 @@ from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.dynamics.plane.settings import PlaneSettings
-from rocking.dynamics.rows import PIECE, ROWS, SIDES_UNTOLD, Rows
+from rocking.dynamics.rows import PIECE, ROWS, SIDE_DEFAULTS, Rows
 from rocking.dynamics.settings import Settings, check_progress
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -316,7 +316,7 @@ class Product(Histories):
     def __post_init__(self) -> None:
         names = {name for name in ROWS if name[-5:] in {"right", "_left"}}
         shape = np.shape(next(iter(self.sides.values()), ()))
-        unknown = {name: np.full(shape, value) for name, value in SIDES_UNTOLD.items()}
+        unknown = {name: np.full(shape, value) for name, value in SIDE_DEFAULTS.items()}
         object.__setattr__(self, "sides", unknown | self.sides)
         shapes = {np.shape(values) for values in self.sides.values()}
         (size, *others) = shapes

@@ -47,7 +47,7 @@ def test_page_says_it(printed, answered):
     words = f"{WORDS} {end['time']:.4g} s, at {degrees:.3g} degrees and {end['angular_velocity']:.3g} rad/s"
     assert page.count(words) == 1
     assert words in end["unfinished"]
-    assert "no impact loses energy, so that it never comes to rest" in end["unfinished"]
+    assert "no impact loses energy, so that the body never comes to rest" in end["unfinished"]
 
 
 @pytest.mark.verifies("closed form", "the linear equations from impact to impact", within="1e-6", room="doors")

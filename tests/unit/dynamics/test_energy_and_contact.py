@@ -82,9 +82,9 @@ def test_warnings_of_friction() -> None:
     assert contact.friction_of_impacts == pytest.approx(1.0, rel=1e-13, abs=0.0)
     low = contact.warnings(0.1)
     assert len(low) == 2
-    assert f"rocking without slip takes a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
-    assert "with 0.1 the body would slide" in low[0]
-    assert "impacts without slip take a coefficient of friction of 1.00; with 0.1 the foot would slip" in low[1]
+    assert f"rocking without slip needs a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
+    assert "with 0.1 the body slides" in low[0]
+    assert "impacts without slip need a coefficient of friction of 1.00; with 0.1 the foot slips" in low[1]
     assert contact.warnings(1.0) == []
     assert len(contact.warnings()) == 1
     assert not contact.loses_contact

@@ -56,7 +56,7 @@ def test_lies_within_the_first_step(name: str) -> None:
     assert contact.loses_contact
     assert response.at(response.overturning_time) == pytest.approx(ALPHA, rel=1e-8)
     assert response.at(response.dense_output.end[-1]) > 0.5 * math.pi
-    with pytest.raises(InvalidValueError, match="where the response is known"):
+    with pytest.raises(InvalidValueError, match="the duration of the response"):
         response.at(1.0)
 
 

@@ -69,7 +69,7 @@ def test_speed_law_in_a_response(name: str) -> None:
         ([[0.0, 1.0]], [0.5, 0.5], "at must be a row"),
         (None, [0.5, 0.5], "at must be numbers"),
         (["0", "1"], [0.5, 0.5], "at must be numbers"),
-        ([0.0, 1.0], [0.5, 0.5, 0.5], "factors must be as many as the speeds, 2, got 3"),
+        ([0.0, 1.0], [0.5, 0.5, 0.5], "factors must have one value per speed, 2, got 3"),
         ([0.0, 1.0], [0.5, 1.1], r"factors must be in \[0, 1\], got 0.5 to 1.1"),
         ([0.0, 1.0], [-0.1, 1.0], r"factors must be in \[0, 1\], got -0.1 to 1"),
         ([0.0, 1.0], [0.5, math.nan], "factors must be finite"),
@@ -131,7 +131,7 @@ class Wild(rk.dynamics.ImpactLaw):
 
 def test_a_law_beyond_its_largest_factor() -> None:
     """What a law returns is checked at every impact."""
-    with pytest.raises(InvalidValueError, match=r"Wild.factor must be in \[0, 1\]"):
+    with pytest.raises(InvalidValueError, match=r"Wild.factor\(\) must return a number in \[0, 1\]"):
         rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Wild())
 
 

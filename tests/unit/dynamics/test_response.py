@@ -213,7 +213,7 @@ def test_how_long_it_is_followed() -> None:
 def test_a_motion_that_was_cut_is_told(name: str) -> None:
     """A motion followed for 2 s only is said to be cut there, whatever came of it; a whole one is not."""
     record = rk.GroundMotion(np.concatenate([np.zeros(61), np.full(40, 12.0)]), 0.05)
-    told = "; the motion was cut at 2 s, where the ground is taken to stop"
+    told = "; the motion was cut at 2 s, with ground at rest afterwards"
     for rotation, start in ((0.0, "stayed at rest"), (0.15, "rocked and stayed standing")):
         response = rk.simulate(BLOCK, record, R, engine=name, rotation=rotation, duration=2.0)
         assert response.summary.startswith(start)
@@ -222,7 +222,7 @@ def test_a_motion_that_was_cut_is_told(name: str) -> None:
         assert "cut" not in rk.simulate(BLOCK, record, R, engine=name, rotation=rotation, duration=5.0).summary
         assert "cut" not in rk.simulate(BLOCK, record, R, engine=name, rotation=rotation).summary
     short = sine(1.3, name, duration=0.5)
-    assert f"cut at 0.5141 s, where the ground is taken to stop; {short.unfinished}" in short.summary
+    assert f"cut at 0.5141 s, with ground at rest afterwards; {short.unfinished}" in short.summary
     assert "cut" not in let_go(name, duration=0.5).summary, "ground at rest stays so"
     lies = rk.simulate(BLOCK, record, R, engine=name, duration=4.9)
     assert lies.outcome is Outcome.OVERTURNED

@@ -203,7 +203,7 @@ def test_laws_that_do_not_say_what_makes_them_are_refused():
         pass
 
     for law in (Bare(0.9), Worn(np.sin), Worn([1.0, {}]), Worn(float("nan")), Around(), Undeclared(0.9)):
-        with pytest.raises(InvalidValueError, match=r"a law of your own must say what makes it, by content\(\)"):
+        with pytest.raises(InvalidValueError, match=r"define content\(\) for a law of your own"):
             product(law=law).key()
 
 

@@ -199,5 +199,5 @@ def test_one_history_tells_both_verdicts():
     (assumed, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
     (none,) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts()
     assert assumed == none != words
-    assert "with a coefficient of friction of 10, since none was given: " in none
+    assert "with a coefficient of friction of 10, since friction is not given: " in none
     assert not any("pull" in each for each in rk.simulate(LEANING, LIGHT[0], 0.8).answer(0.5)["warnings"])

@@ -173,9 +173,9 @@ class Start:
     def __post_init__(self) -> None:
         half = 0.5 * math.pi
         checks.within(
-            "rotation", self.rotation, -half, half, unit="rad", open_low=True, open_high=True, hint="degrees?"
+            "rotation", self.rotation, -half, half, unit="rad", open_low=True, open_high=True, hint="in radians"
         )
-        checks.within("angular_velocity", self.angular_velocity, -1e4, 1e4, unit="rad/s", hint="degrees?")
+        checks.within("angular_velocity", self.angular_velocity, -1e4, 1e4, unit="rad/s", hint="in radians")
         checks.within("horizontal_velocity", self.horizontal_velocity, -1e4, 1e4, unit="m/s")
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")

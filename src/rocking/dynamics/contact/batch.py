@@ -87,12 +87,12 @@ def run_compiled(
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, bounce_law, touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
-    results, counts = _COMPILED.room(len(numbers))
+    results, counts = _COMPILED.empty_tables(len(numbers))
     library.run(
         numbers, choices, results, counts, settings.gravity, settings.rest_speed, settings.tolerance,
         settings.most_events, threads,
     )  # fmt: skip
-    return _COMPILED.named(results, counts)
+    return _COMPILED.columns_by_name(results, counts)
 
 
 class RowsWithContact:

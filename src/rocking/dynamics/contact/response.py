@@ -18,7 +18,7 @@ from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.settings import ContactSettings
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, is_none
-from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, most_samples_last, motion_provenance
+from rocking.dynamics.response_base import ResponseBase, followed, ground_at_rest, max_duration, motion_provenance
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
@@ -243,7 +243,7 @@ class ContactResponse(ResponseBase):
         InvalidValueError
             If a time is not finite, or before the start or after the end by more than rounding.
         """
-        return places_of(self.trajectory, self._known(time, self.trajectory.end))
+        return places_of(self.trajectory, self._times_within(time, self.trajectory.end))
 
     @property
     def _values(self) -> dict[str, Any]:
@@ -346,7 +346,7 @@ def response_with_contact(
     history, slow = computed(segments), math.sqrt(base.size / settings.gravity)
     for after in LONGER if duration is None and not law.is_lossless else ():
         length = (0.0 if motion is None else motion.duration) + after * slow
-        if not history.still_rocking or length > most_samples_last(segments.step):
+        if not history.still_rocking or length > max_duration(segments.step):
             break
         if length > segments.duration:
             longer = _segments(motion, base, settings.gravity, length)

@@ -104,12 +104,12 @@ def traced(
     state, plane = numbers_of(body, start)[None], _plane(ground)
     numbers = numbers_of_rows(value, 1.0, friction, state, ground.gravity, plane, horizon)
     library = library_of([body], [ground.motion], {code})
-    results, counts = _COMPILED.room(1)
+    results, counts = _COMPILED.empty_tables(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
     nodes, impacts, members, stuck, struck, least, fell = library.trace(
         numbers, np.array([[0, 0, code, body.base]]), results, counts, *limits
     )
-    found = {name: column.item() for name, column in _COMPILED.named(results, counts).items()}
+    found = {name: column.item() for name, column in _COMPILED.columns_by_name(results, counts).items()}
     if not nodes.size:
         raise InvalidValueError("a number of the start, the ground or the duration is not within [-1e9, 1e9]")
     contacts = [HullContact(*each) for each in zip(_groups(members), _groups(stuck), strict=True)]
@@ -239,13 +239,13 @@ class HullRows:
         size = PIECE if self.engine == "fast" else 1
         for first in range(0, len(numbers), size):
             some, which = numbers[first : first + size], choices[first : first + size]
-            results, counts = _COMPILED.room(len(some))
+            results, counts = _COMPILED.empty_tables(len(some))
             if self.engine == "fast":
                 how = self.settings
                 self.library.run(some, which, results, counts, how.rest_speed, how.tolerance, how.most_events, threads)
             else:
                 results[0], counts[0] = self._one(some[0], which[0].tolist())
-            pieces.append(_COMPILED.named(results, counts))
+            pieces.append(_COMPILED.columns_by_name(results, counts))
             if progress is not None:
                 progress(len(some))
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
@@ -255,7 +255,7 @@ class HullRows:
         known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
         bounded = which[2] in CODES.values() or 0.0 <= row[0] <= 1.0
         if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
-            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.wholes) - 3)]
+            refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.integers) - 3)]
             return [math.nan] * len(_COMPILED.floats), refused
         named = {code: name for name, code in CODES.items()}
         law = FixedPosition(row[0]) if which[2] == POSITION else named.get(which[2], float(row[0]))

@@ -54,7 +54,7 @@ class HullRocking(SpatialMechanics):
         side = RockingSide(law.slenderness_angle, law.frequency, law.size, r)
         return RockingParameters(side, side, law, law.label)
 
-    def check_laid_out(self, motions: Sequence[Any]) -> None:
+    def check_motions(self, motions: Sequence[Any]) -> None:
         """Take motions of one component and of several."""
 
     def engine_of_study(self, *, fast: bool) -> str:

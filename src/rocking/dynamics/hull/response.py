@@ -266,7 +266,7 @@ class HullResponse(ResponseBase):
             If a time is not finite, or before the start or after the end by more than rounding.
         """
         stops, places, attitudes, velocities, turning = self._nodes
-        times = np.atleast_1d(self._known(time, float(stops[-1])))
+        times = np.atleast_1d(self._times_within(time, float(stops[-1])))
         k = np.clip(np.searchsorted(stops, times, side="right") - 1, 0, max(len(stops) - 2, 0))
         last = np.minimum(k + 1, len(stops) - 1)
         k = np.where((times >= stops[-1]), len(stops) - 1, k)

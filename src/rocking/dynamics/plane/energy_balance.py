@@ -63,7 +63,7 @@ def energies(
 
 
 LEAVES = "the body would leave the ground, which pure rocking cannot do"
-_FOLLOWS = "simulate(body, motion, friction=...) follows it"
+_FOLLOWS = "use simulate(body, motion, friction=...)"
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,7 +99,7 @@ class GroundForces:
         if not self.loses_contact:
             return slips
         facts = {"leaves": Message(LEAVES), "consequence": Message(_FOLLOWS)}
-        return [Message("the ground would have to pull: {leaves}; {consequence}", facts), *slips]
+        return [Message("the contact force becomes tensile: {leaves}; {consequence}", facts), *slips]
 
     def slips(self, friction: float = 0.5) -> list[str]:
         """Return why feet that do not slip are not credible, in plain words; empty if they are."""
@@ -108,16 +108,16 @@ class GroundForces:
         if not self.loses_contact and self.friction_of_motion > friction:
             found.append(
                 Message(
-                    "rocking without slip takes a coefficient of friction of {needed:.2f}; with "
-                    "{friction:g} the body would slide; {consequence}",
+                    "rocking without slip needs a coefficient of friction of {needed:.2f}; with "
+                    "{friction:g} the body slides; {consequence}",
                     {"needed": self.friction_of_motion, "friction": friction, "consequence": _FOLLOWS},
                 )
             )
         if self.friction_of_impacts > friction:
             found.append(
                 Message(
-                    "impacts without slip take a coefficient of friction of {needed:.2f}; with "
-                    "{friction:g} the foot would slip and lose more energy; {consequence}",
+                    "impacts without slip need a coefficient of friction of {needed:.2f}; with "
+                    "{friction:g} the foot slips and loses more energy; {consequence}",
                     {"needed": self.friction_of_impacts, "friction": friction, "consequence": _FOLLOWS},
                 )
             )

@@ -207,7 +207,7 @@ def _run_reference(
     bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, settings: SpaceBatchSettings, progress: Progress
 ) -> tuple[Results, str]:
     """Return the results of all rows by the reference engine."""
-    results, counts = fast_engine.room(len(table))
+    results, counts = fast_engine.empty_tables(len(table))
     own = SpaceSettings(settings.gravity, settings.most_events, settings.rest_speed)
     for k in range(len(table)):
         (numbers,), ((body, motion, _),) = table.piece(k, k + 1)
@@ -215,13 +215,13 @@ def _run_reference(
         results[k], counts[k] = _one(bodies[body], grounds[motion], law.law or law.label, numbers, own)
         if progress is not None:
             progress(1)
-    return fast_engine.named(results, counts), "reference, row by row"
+    return fast_engine.columns_by_name(results, counts), "reference, row by row"
 
 
 def _one(
     body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpaceSettings
 ) -> tuple[FloatArray, list[int]]:
-    refused = fast_engine.room(1)[0][0], [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
+    refused = fast_engine.empty_tables(1)[0][0], [Outcome.FAILED.code, Status.INVALID.code, -1, -1, *[0] * 5]
     if body is None or not (np.abs(row) <= 1e9).all():
         return refused
     scaled = SpatialGround(ground.times, row[1] * ground.coefficients)

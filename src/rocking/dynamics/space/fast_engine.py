@@ -50,7 +50,8 @@ _COMPILED = CompiledEngine(
 )  # fmt: skip
 available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.chosen
 COLUMNS = _COMPILED.columns
-instruction_set, room, named = _COMPILED.instruction_set, _COMPILED.room, _COMPILED.named
+instruction_set = _COMPILED.instruction_set
+empty_tables, columns_by_name = _COMPILED.empty_tables, _COMPILED.columns_by_name
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def run_compiled(
 ) -> tuple[Results, str]:
     """Return the results of all rows, and which engine gave them."""
     stock = _stock(bodies, grounds, table, settings.gravity)
-    results, counts = room(len(table))
+    results, counts = empty_tables(len(table))
     limits = {"threads": thread_count(threads), **_limits(settings)}
     for first in range(0, len(table), PIECE):
         last = min(first + PIECE, len(table))
@@ -126,7 +127,7 @@ def run_compiled(
         if progress is not None:
             progress(last - first)
     used = f"fast ({instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
-    return named(results, counts), used
+    return columns_by_name(results, counts), used
 
 
 def steps_of(
@@ -144,7 +145,7 @@ def steps_of(
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
     stock = _stock([body], [ground], table, settings.gravity)
-    rows: FloatArray = stock.trace(*table.piece(0, 1), *room(1), **_limits(settings))
+    rows: FloatArray = stock.trace(*table.piece(0, 1), *empty_tables(1), **_limits(settings))
     return rows.view(STEP)[:, 0]
 
 

@@ -306,7 +306,7 @@ class SpatialResponse(ResponseBase):
         InvalidValueError
             If a time is not finite, or before the start or after the end by more than rounding.
         """
-        times = np.atleast_1d(self._known(time, self.trajectory.pieces[-1].end))
+        times = np.atleast_1d(self._times_within(time, self.trajectory.pieces[-1].end))
         return states_of(self.body, self.trajectory, times)
 
     @property
@@ -431,7 +431,7 @@ def _loses_energy(history: SpatialTrajectory, since: float) -> bool:
 def started(start: SpatialStart, pace: float) -> SpatialStart:
     """Return how a body starts, checked; pace: frequency parameter, or sqrt(g / size) [1/s]."""
     most = 100.0 * pace
-    tilt = checks.within("tilt", start.tilt, 0.0, 0.5 * math.pi, unit="rad", open_high=True, hint="degrees?")
+    tilt = checks.within("tilt", start.tilt, 0.0, 0.5 * math.pi, unit="rad", open_high=True, hint="in radians")
     azimuth, yaw = (checks.number(name, getattr(start, name), "rad") for name in ("azimuth", "yaw"))
     spin = checks.real_array("angular_velocity", start.angular_velocity, "rad/s")
     if spin.shape != (3,) or not (np.abs(spin) <= most).all():

@@ -102,7 +102,7 @@ def test_a_sticking_corner_that_would_need_a_pull_is_counted():
 def test_times_outside_are_refused():
     """States are known from the start to the end, and nowhere else."""
     run = rk.free_rocking(BOX, restitution="housner", start=SpatialStart(0.1), duration=1.0)
-    with pytest.raises(InvalidValueError, match="where the response is known"):
+    with pytest.raises(InvalidValueError, match="the duration of the response"):
         run.at([0.5, 9.0])
     np.testing.assert_allclose(np.linalg.norm(run.quaternion, axis=1), 1.0, rtol=0.0, atol=1e-15)
 

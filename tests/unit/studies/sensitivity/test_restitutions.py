@@ -207,7 +207,7 @@ def test_key_sees_the_classes_of_base_and_draw():
     keys = [SampledHistories.of(each, law).key() for each in (base, other) for law in laws]
     assert len(set(keys)) == 6
     assert SampledHistories.of(histories(), replace(LAW)).key() == keys[0]
-    with pytest.raises(InvalidValueError, match=r"must say what makes it, by content\(\)"):
+    with pytest.raises(InvalidValueError, match=r"define content\(\)"):
         SampledHistories.of(base, Halved(LAW.factors, 11)).key()
 
 
