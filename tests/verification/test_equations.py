@@ -159,7 +159,7 @@ def test_friction_demand_at_uplift(ratio):
 @pytest.mark.verifies(
     "closed form", "friction that uplift takes, 12 digits, and its limit 5/3", within="1e-10; 4e-4 of the limit"
 )
-@pytest.mark.filterwarnings("ignore:the contact force becomes tensile")  # of a block thrown over only the start counts here
+@pytest.mark.filterwarnings("ignore:the contact force becomes tensile")  # only the start counts here
 @pytest.mark.parametrize("engine", ENGINES)
 def test_friction_demand_of_a_response(engine):
     """REF: friction at the first instant of a rectangular pulse; 5 / 3 is the limit of strong ones."""
