@@ -48,9 +48,9 @@ def test_what_is_known_of_a_body_is_typed_beside_its_size(page: Any, shot: Calla
     settled(page, "Mass kg", 300.0)
     assert page.get_by_label("Density").input_value() == ""
     page.get_by_role("textbox", name="Centre of mass x").fill("0.42")
-    expect(page.get_by_test_id("sizes").get_by_text("Give both x and y")).to_be_visible()
+    expect(page.get_by_test_id("sizes").get_by_text("Enter both x and y")).to_be_visible()
     page.get_by_role("textbox", name="Centre of mass y").fill("0.7")
-    expect(page.get_by_test_id("sizes").get_by_text("Give both x and y")).to_have_count(0)
+    expect(page.get_by_test_id("sizes").get_by_text("Enter both x and y")).to_have_count(0)
     expect(page.get_by_text("moment of inertia assumed", exact=False).first).to_be_visible()
     page.get_by_role("radio", name="cm", exact=True).check()
     assert page.get_by_role("textbox", name="Centre of mass y").input_value() == "70"
@@ -75,7 +75,7 @@ def test_the_unit_changes_the_numbers_typed_and_not_the_body(page: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "A number is needed"),
+        ("", "Enter a number"),
         ("wide", "not a number"),
         ("-1", "More than 0"),
         ("0", "More than 0"),
@@ -288,9 +288,9 @@ def test_what_an_empty_field_means_is_said(page: Any) -> None:
     assert "Empty: 1\u00a0m" in about("Depth")
     assert "Empty: 2400\u00a0kg/m\u00b3" in about("Density")
     page.get_by_label("Left foot").fill("0.1")
-    assert "one alone is not used" in about("Right foot")
+    assert "Enter both feet or neither" in about("Right foot")
     page.get_by_label("Name").fill("a name changes nothing about it")
-    assert "one alone is not used" in about("Right foot")
+    assert "Enter both feet or neither" in about("Right foot")
     expect(page.locator(".card.stale")).to_have_count(2)
     page.get_by_label("Right foot").fill("0.4")
     expect(page.locator(".card.stale")).to_have_count(0)

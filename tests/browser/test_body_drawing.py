@@ -17,7 +17,7 @@ def test_pasted_points_become_the_body(page: Any, shot: Callable[..., Any]) -> N
     page.get_by_label("Shape").select_option("section")
     page.get_by_text("Paste points from Excel").click()
     text = "x\ty\n" + "\n".join(f"{x:.2f}\t{y:.2f}".replace(".", ",") for x, y in L_SHAPE)
-    page.get_by_label("Points, x and y on each line").fill(text)
+    page.get_by_label("Points: x and y per line").fill(text)
     assert "6 points read" in page.get_by_test_id("editor").inner_text()
     page.get_by_role("button", name="Use as outline").click()
     centre = ((1.0 * 4.0 * 0.5 + 1.0 * 1.0 * 1.5) / 5.0, (4.0 * 2.0 + 1.0 * 0.5) / 5.0)
@@ -168,16 +168,16 @@ def test_what_is_wrong_has_the_keyboard(page: Any) -> None:
     """Points that cannot be read, an arc without a rise, a file without a unit: marked, and the keyboard is there."""
     open_board(page)
     paste(page, "0 0 0", "Use as outline")
-    points = page.get_by_label("Points, x and y on each line")
+    points = page.get_by_label("Points: x and y per line")
     expect(points).to_be_focused()
     expect(points).to_have_attribute("aria-invalid", "true")
     points.fill("0 0\n1 0\n0 1")
     expect(points).not_to_have_attribute("aria-invalid", "true")
     page.get_by_test_id("edge").locator("summary").click()
-    page.get_by_role("button", name="Make it an arc").click()
+    page.get_by_role("button", name="Replace by an arc").click()
     rise = page.get_by_label("Rise of the arc")
     expect(rise).to_be_focused()
-    expect(rise).to_have_accessible_description("How far does the arc rise? A number other than 0.")
+    expect(rise).to_have_accessible_description("Enter a rise other than 0.")
     rise.fill("0.1")
     expect(rise).not_to_have_attribute("aria-invalid", "true")
     wkt = {"name": "a.wkt", "mimeType": "text/plain", "buffer": b"POLYGON ((0 0, 1 0, 1 2, 0 2, 0 0))"}
@@ -201,9 +201,9 @@ def square(x: float, y: float, width: float, height: float) -> str:
 
 def paste(page: Any, text: str, use: str) -> None:
     """Paste points into the editor and use them."""
-    if not page.get_by_label("Points, x and y on each line").is_visible():
+    if not page.get_by_label("Points: x and y per line").is_visible():
         page.get_by_text("Paste points from Excel").click()
-    page.get_by_label("Points, x and y on each line").fill(text)
+    page.get_by_label("Points: x and y per line").fill(text)
     page.get_by_role("button", name=use).click()
 
 
@@ -268,7 +268,7 @@ def test_a_pasted_outline_is_the_whole_body(page: Any, tmp_path: Path, shot: Cal
     assert page.get_by_label("Left foot").input_value() == ""
     told = page.get_by_test_id("editor").locator(".paste [role=status]")
     expect(told).to_contain_text("1 hole, 1 other region and the feet")
-    expect(told).to_contain_text("Undo brings them back")
+    expect(told).to_contain_text("Undo restores them")
     shot(page, "body-pasted")
     undo, redo = (page.get_by_role("button", name=name, exact=True) for name in ("Undo", "Redo"))
     undo.click()

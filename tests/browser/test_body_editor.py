@@ -23,7 +23,7 @@ def drawn(page: Any, outline: list[tuple[float, float]] | None = None) -> Any:
     open_board(page)
     if outline:
         page.get_by_text("Paste points from Excel").click()
-        page.get_by_label("Points, x and y on each line").fill("\n".join(f"{x} {y}" for x, y in outline))
+        page.get_by_label("Points: x and y per line").fill("\n".join(f"{x} {y}" for x, y in outline))
         page.get_by_role("button", name="Use as outline").click()
         expect(page.locator(".vertex")).to_have_count(len(outline))
         page.get_by_text("Paste points from Excel").click()
@@ -214,7 +214,7 @@ def test_pen_by_keyboard(page: Any) -> None:
     # the cursor begins at the middle of what is seen or at the chosen vertex: it is moved to a known place by its words
     page.keyboard.press("ArrowUp")
     told = page.get_by_test_id("board-told")
-    expect(told).to_contain_text("the cursor stands at x")
+    expect(told).to_contain_text("cursor at x")
     words = told.inner_text().split("at x ")[1].split(" m")[0].replace("\u2212", "-")
     x, y = (round(10 * float(part)) for part in words.split(", y "))
 
@@ -263,7 +263,7 @@ def test_an_error_stands_at_its_place(page: Any, shot: Callable[..., Any]) -> No
     page.get_by_role("button", name="Undo").click()
     expect(mark).to_have_count(0)
     page.get_by_text("Paste points from Excel").click()
-    page.get_by_label("Points, x and y on each line").fill("0 2\n0.2 2\n0.5 2")
+    page.get_by_label("Points: x and y per line").fill("0 2\n0.2 2\n0.5 2")
     page.get_by_role("button", name="Add as region").click()
     expect(page.locator(".board-refusal")).to_contain_text("Region 2")  # without any width, it touches itself
     assert middle(mark.locator("circle")) == pytest.approx(pixel(page, 0.2, 2.0), abs=0.5)
@@ -282,7 +282,7 @@ def test_a_refused_outline_has_no_feet(page: Any) -> None:
     expect(marks).to_have_count(1)
     paste = page.get_by_text("Paste points from Excel")
     paste.click()
-    page.get_by_label("Points, x and y on each line").fill("0 0\n2 0\n0 3\n1 4")
+    page.get_by_label("Points: x and y per line").fill("0 0\n2 0\n0 3\n1 4")
     page.get_by_role("button", name="Use as outline").click()
     expect(page.locator(".board-refusal")).to_contain_text("crosses or touches itself")
     expect(marks).to_have_count(0)
@@ -351,8 +351,8 @@ def test_an_edge_becomes_an_arc(page: Any, most: float) -> None:
     edge = page.get_by_test_id("edge")
     edge.locator("summary").click()
     edge.get_by_label("Rise of the arc").fill("1")
-    edge.get_by_label("At most off the arc").fill(str(most))
-    edge.get_by_role("button", name="Make it an arc").click()
+    edge.get_by_label("Largest deviation from the arc").fill(str(most))
+    edge.get_by_role("button", name="Replace by an arc").click()
     points = outline(page)[2:]
     chords = len(points) - 1
     assert all(math.dist(each, (1.0, 2.0)) == pytest.approx(1.0, rel=1e-11) for each in points)
@@ -362,7 +362,7 @@ def test_an_edge_becomes_an_arc(page: Any, most: float) -> None:
         return 1.0 - math.cos(0.5 * math.pi / count)
 
     assert off(chords) <= most < off(chords - 1)
-    expect(page.get_by_test_id("board-told")).to_contain_text(f"An arc of {chords} chords")
+    expect(page.get_by_test_id("board-told")).to_contain_text(f"Arc of {chords} chords")
     # area of the polygon of chords: n equal triangles under half a circle
     area = 4.0 + chords * 0.5 * math.sin(math.pi / chords)
     settled(page, "Mass kg", area * 0.5 * 2400.0)
@@ -383,7 +383,7 @@ def test_mirrors(page: Any) -> None:
         page.get_by_label(foot).fill("")
     page.get_by_role("button", name="Vertex 4 of region 1").focus()
     page.get_by_test_id("edge").locator("summary").click()
-    page.get_by_role("button", name="Double over this edge").click()
+    page.get_by_role("button", name="Complete by symmetry").click()
     settled(page, "Mass kg", 2.0 * 4.5 * 0.5 * 2400.0)
     assert sorted(outline(page)) == sorted([(0, 0), (2, 0), (1, 3), (0, 3), (-1, 3), (-2, 0)])
 
@@ -462,11 +462,11 @@ def test_a_photograph_stays_in_the_browser(page: Any, record: Any) -> None:
     assert "section" in kept
     assert "blob:" not in kept
     assert "statue" not in kept
-    part.get_by_role("button", name="Take the picture away").click()
+    part.get_by_role("button", name="Remove the picture").click()
     expect(page.locator(f"{BOARD} image")).to_have_count(0)
     words = {"name": "x.png", "mimeType": "image/png", "buffer": json.dumps("no picture").encode()}
     part.get_by_label("Picture", exact=True).set_input_files(words)
-    expect(page.get_by_test_id("board-told")).to_contain_text("no picture that the browser can show")
+    expect(page.get_by_test_id("board-told")).to_contain_text("cannot show this file")
 
 
 DAY = {"color_scheme": "light"}

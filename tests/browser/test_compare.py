@@ -50,8 +50,8 @@ def test_every_model_is_that_of_python(open_page: Callable[..., Any], motion: st
     words = page.get_by_test_id("compare-verdict").inner_text()
     most = max(len(fallen), len(ALL) - len(fallen))
     assert f"{most} of {len(ALL)} models" in words
-    assert ("The model matters" in words) is (0 < len(fallen) < len(ALL))
-    assert (motion == DECISIVE) is ("The model matters" in words)
+    assert ("depends on the restitution model" in words) is (0 < len(fallen) < len(ALL))
+    assert (motion == DECISIVE) is ("depends on the restitution model" in words)
     shot(page, f"compare-{'decides' if fallen else 'agrees'}")
 
 
@@ -70,7 +70,7 @@ def test_one_cursor_for_every_figure(open_page: Callable[..., Any]) -> None:
     page.mouse.down()
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 50, steps=3)
     page.mouse.up()
-    reset = page.get_by_role("button", name="Show all of the time")
+    reset = page.get_by_role("button", name="Show the full duration")
     reset.wait_for()
     stages = page.get_by_test_id("compare-figures").locator("[role=img]")
     reset.click()
@@ -104,7 +104,7 @@ def test_margins_are_those_of_the_command_line(open_page: Callable[..., Any], se
 
     before = kept()
     page = compared(open_page, GENTLE)
-    page.get_by_role("button", name="Find the margins").click()
+    page.get_by_role("button", name="Compute the margins").click()
     cell = row(page, "housner").locator("td").last
     expect(cell).to_have_text(re.compile(r"\d"))
     until(page, lambda: kept() == before)
@@ -119,7 +119,7 @@ def test_margins_are_those_of_the_command_line(open_page: Callable[..., Any], se
     page.evaluate("(hash) => { location.hash = hash; }", link(DECISIVE).replace("view=response", "view=compare"))
     expect(cell).to_have_text("\u2013")
     with page.expect_response(lambda one: one.url.endswith("/api/questions") and one.request.method == "POST") as sent:
-        page.get_by_role("button", name="Find the margins").click()
+        page.get_by_role("button", name="Compute the margins").click()
     late = sent.value.json()["id"]
     page.evaluate("(hash) => { location.hash = hash; }", link(GENTLE).replace("view=response", "view=compare"))
     until(page, lambda: late not in kept())
@@ -140,13 +140,13 @@ def test_studies_are_compared(open_page: Callable[..., Any], served: Any) -> Non
     section = page.locator("#view-compare")
     section.get_by_label("Study", exact=True).select_option("two models")
     picture = section.locator("img.drawing")
-    expect(section.get_by_text("Being drawn")).to_have_count(0)
+    expect(section.get_by_text("Drawing the comparison")).to_have_count(0)
     assert picture.evaluate("image => image.naturalWidth") > 100
     sent = page.request.get(picture.evaluate("image => image.src")).body()
     assert saved(page, "SVG", "picture Models compared: two models").path().read_bytes() == sent
     assert saved(page, "PNG", "picture Models compared: two models").path().read_bytes().startswith(b"\x89PNG")
     with page.expect_download() as waiting:
-        section.get_by_role("button", name="What the choice changes as CSV").click()
+        section.get_by_role("button", name="Effect of the choice as CSV").click()
     assert "overturned: median ratio" in waiting.value.path().read_text(encoding="utf-8-sig")
     section.get_by_label("Study", exact=True).select_option("one model")
     expect(page.get_by_test_id("not-compared")).to_contain_text("one model")  # drawn by the server too

@@ -116,8 +116,8 @@ class Hands:
         self.page.wait_for_selector(f"#view-{name}[data-ready=true]:not([hidden])")
 
     def ask(self, step: str) -> Any:
-        """Press Ask, and wait for the answer."""
-        self.to("Ask #")
+        """Press Compute and wait for the answer."""
+        self.to("Compute #")
         self.press("Enter")
         outcome = self.page.locator(f"#view-{step}").get_by_test_id("outcome")
         expect(outcome).not_to_have_attribute("data-state", re.compile("waiting|running"))
@@ -194,7 +194,7 @@ def test_an_engineer(hands: Hands, tmp_path: Path) -> None:
     hands.press("ArrowRight", "ArrowUp", "+", "0")
     expect(page.get_by_test_id("map-told")).to_contain_text(" = ")
     hands.step("decide")
-    hands.to("Signed by")
+    hands.to("Author")
     hands.write("E. Ngineer")
     outcome = hands.ask("decide")
     assert hands.save("Report (PDF)", tmp_path).startswith(b"%PDF")
@@ -206,7 +206,7 @@ def test_a_conservator(hands: Hands, tmp_path: Path) -> None:
     page = hands.page
     hands.step("inventory")
     hands.choose("Choose a file", examples.path("objects"))
-    hands.to("How many motions")
+    hands.to("Number of motions")
     hands.write("10")
     outcome = hands.ask("inventory")
     expect(outcome.get_by_test_id("verdict")).to_contain_text("not assessed")
@@ -219,7 +219,7 @@ def test_a_conservator(hands: Hands, tmp_path: Path) -> None:
     page.get_by_test_id("space-stage").wait_for()
     hands.to("[space-stage]")
     hands.press("ArrowLeft", "+")
-    hands.to("Set down in")
+    hands.to("Stable pose")
     hands.press("ArrowDown")
     hands.step("takeaway")
     assert hands.save("[take-report]", tmp_path).startswith(b"%PDF")

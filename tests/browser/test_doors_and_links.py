@@ -121,7 +121,7 @@ def test_the_door_keeps_the_link_that_led_to_it(browser: Any, served: Any, signe
 def test_a_signed_in_browser_lets_another_in(page: Any, browser: Any) -> None:
     """The button at the foot shows a link; another browser opens it and is in."""
     page.get_by_role("button", name="Link for another browser").click()
-    link = page.get_by_label("Link that signs one more browser in").input_value()
+    link = page.get_by_label("Sign-in link for another browser").input_value()
     other = browser.new_page()
     other.goto(link)
     other.get_by_test_id("facts-table").wait_for()

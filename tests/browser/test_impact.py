@@ -112,7 +112,7 @@ def test_sides_that_differ_can_be_chosen(open_page: Callable[..., Any]) -> None:
     right = float(rows(page)["Housner"][0])
     page.get_by_role("radio", name="left foot").check()
     assert float(rows(page)["Housner"][0]) != pytest.approx(right, abs=1e-3)
-    assert page.get_by_text("landing on the left foot").is_visible()
+    assert page.get_by_text("impact on the left foot").is_visible()
 
 
 def test_a_squat_body_is_warned_of_in_words(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
@@ -200,7 +200,7 @@ def test_every_model_has_a_key_of_its_own_without_colour(impact: Any) -> None:
 def test_the_contact_bed(impact: Any) -> None:
     """The laboratory takes the body's slenderness and width, draws what comes out, and refuses in words."""
     bed = impact.get_by_test_id("bed")
-    bed.get_by_label("What changes").select_option("damping")
+    bed.get_by_label("Varied parameter").select_option("damping")
     with impact.expect_response("**/api/contact-bed") as told:
         bed.get_by_role("button", name="Compute").click()
     asked = json.loads(told.value.request.post_data)
@@ -209,7 +209,7 @@ def test_the_contact_bed(impact: Any) -> None:
     expect(chart.locator(".chart-stage")).to_have_attribute("aria-label", re.compile("damping.*contact bed.*Housner"))
     bed.get_by_label("Show", exact=True).select_option("peak_force")
     expect(chart.locator("figcaption")).to_contain_text("peak force")
-    bed.get_by_text("From where to where").click()
+    bed.get_by_text("Range and bed parameters").click()
     bed.get_by_label("from", exact=True).fill("-1")
     bed.get_by_role("button", name="Compute").click()
     expect(bed.get_by_role("alert")).to_contain_text("Damping must be at least 0; it is \u22121.")

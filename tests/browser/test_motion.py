@@ -66,7 +66,7 @@ def of_two(view: Any, tmp_path: Path) -> Any:
     view.get_by_test_id("record-file").set_input_files(path)
     needs = view.get_by_test_id("record-needs")
     needs.get_by_label("Horizontal component").select_option("horizontal")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     return view
 
 
@@ -93,7 +93,7 @@ def test_what_a_file_does_not_say_is_asked_for(view: Any, shot: Callable[..., Pa
     needs.get_by_label("Unit of the accelerations").wait_for()
     shot(view, "motion-needs")
     needs.get_by_label("Unit of the accelerations").select_option("g")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     view.get_by_test_id("motion-facts").filter(has_text="0.25").wait_for()
     assert "(0.25\u00a0g)" in fact(view, "Peak acceleration")
     assert inputs(view)["motion"]["units"] == "g"
@@ -152,11 +152,11 @@ def test_without_a_motion_each_way_can_be_chosen(open_page: Callable[..., Any]) 
     page = open_page(view="motion")
     page.get_by_test_id("pulse-parameters").get_by_label("Period, exactly").fill("0.55")
     page.get_by_role("tab", name="Response").click()
-    page.get_by_label("Let it go from a lean instead").check()
+    page.get_by_label("Start from an initial rotation").check()
     page.reload()
     page.get_by_role("tab", name="Motion").click()
-    expect(page.get_by_test_id("motion-refusal")).to_contain_text("No motion is chosen")
-    ways = page.get_by_role("group", name="Where the motion comes from").get_by_role("radio")
+    expect(page.get_by_test_id("motion-refusal")).to_contain_text("No motion is selected")
+    ways = page.get_by_role("group", name="Source of the motion").get_by_role("radio")
     expect(ways).to_have_count(3)
     expect(ways.and_(page.locator(":checked"))).to_have_count(0)
     way(page, "Pulse")
@@ -164,9 +164,9 @@ def test_without_a_motion_each_way_can_be_chosen(open_page: Callable[..., Any]) 
     expect(page.get_by_test_id("motion-facts")).to_be_visible()
     assert "period=0.55" in inputs(page)["motion"]["pulse"]
     page.get_by_role("tab", name="Response").click()
-    page.get_by_label("Let it go from a lean instead").check()
+    page.get_by_label("Start from an initial rotation").check()
     page.reload()
-    page.get_by_label("Let it go from a lean instead").uncheck()
+    page.get_by_label("Start from an initial rotation").uncheck()
     expect(page.get_by_test_id("verdict")).to_be_visible()
     assert "period=0.55" in inputs(page)["motion"]["pulse"]
 
@@ -178,7 +178,7 @@ def test_an_unreadable_file_takes_the_question_of_the_last_one_along(view: Any) 
     pending = view.get_by_test_id("motion-pending")
     expect(pending).to_contain_text("still")
     view.evaluate(DROP, ["site.csv", rows + "\n"])
-    expect(view.get_by_test_id("record-needs").get_by_role("button", name="Read it so")).to_be_visible()
+    expect(view.get_by_test_id("record-needs").get_by_role("button", name="Apply")).to_be_visible()
     expect(pending).to_contain_text("not read yet")
     view.evaluate(DROP, ["README.md", "# Notes\nnothing here\n"])
     expect(view.locator("[data-testid=record-answer] .note.error")).to_contain_text("README.md")
@@ -195,11 +195,11 @@ def test_a_refused_file_leaves_what_was_answered(view: Any) -> None:
     view.evaluate(DROP, ["site.csv", "\n".join(f"{STEP * k:.3f},{math.sin(0.7 * k):.6f}" for k in range(201))])
     unit = view.get_by_test_id("record-needs").get_by_label("Unit of the accelerations")
     unit.select_option("gal")
-    view.get_by_role("button", name="Read it so").click()
+    view.get_by_role("button", name="Apply").click()
     expect(view.locator("[data-testid=record-answer] .note.error")).to_contain_text("damaged")
     expect(unit).to_have_value("gal")
     unit.select_option("g")
-    view.get_by_role("button", name="Read it so").click()
+    view.get_by_role("button", name="Apply").click()
     expect(view.get_by_test_id("record-held")).to_contain_text("site.csv")
 
 
@@ -234,7 +234,7 @@ def test_scaling_scales(view: Any) -> None:
     view.get_by_test_id("motion-facts").filter(has_text="1.5").wait_for()
     assert fact(view, "Peak acceleration").startswith("1.5")
     factor.fill("0")
-    view.get_by_text("Not 0: nothing would move.", exact=True).wait_for()
+    view.get_by_text("Enter a value other than 0.", exact=True).wait_for()
     assert inputs(view)["motion"]["scale"] == 0.5
 
 
@@ -243,10 +243,10 @@ def test_another_synthetic_motion_and_its_level(view: Any, shot: Callable[..., P
     way(view, "Synthetic")
     view.get_by_test_id("motion-name").filter(has_text="pulse-like").wait_for()
     first = fact(view, "Peak acceleration")
-    view.get_by_role("button", name="Another one").click()
+    view.get_by_role("button", name="Next realization").click()
     view.get_by_test_id("motion-facts").filter(has_not_text=first).wait_for()
     assert inputs(view)["motion"]["member"] == 1
-    way(view, "To a PGA")
+    way(view, "Scaled to PGA")
     view.get_by_label("Peak ground acceleration").fill("2")
     view.get_by_test_id("motion-facts").filter(has_text=re.compile(r"acceleration2\s*m")).wait_for()
     assert inputs(view)["motion"]["pga"] == 2
@@ -347,8 +347,8 @@ def test_counts_and_their_stations_belong_together(view: Any, tmp_path: Path) ->
     step = records.get_by_role("listitem", name="Step 1, response")
     expect(step.get_by_label("stations")).to_have_value("abc.xml")
     step.get_by_label("high").fill("20")
-    records.get_by_role("button", name="Ask", exact=True).click()
-    use = records.get_by_role("button", name="Use it as the motion")
+    records.get_by_role("button", name="Compute", exact=True).click()
+    use = records.get_by_role("button", name="Use as motion")
     use.click()
     expect(view.locator("#status")).to_contain_text("is the motion of this project")
     view.locator("#tab-motion").click()
@@ -362,5 +362,5 @@ def test_several_records_are_no_motion(view: Any, tmp_path: Path) -> None:
         (tmp_path / name).write_text("0 0.1\n0.01 0.2\n")
     way(view, "Record file")
     view.get_by_test_id("record-file").set_input_files([tmp_path / "a.txt", tmp_path / "b.txt"])
-    expect(view.get_by_test_id("record-answer")).to_contain_text("drop several in the step Records")
+    expect(view.get_by_test_id("record-answer")).to_contain_text("Add several records in the step Records")
     assert inputs(view)["motion"] == before

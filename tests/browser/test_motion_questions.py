@@ -51,7 +51,7 @@ def test_a_wrong_step_leaves_the_question_as_it_was_answered(
     needs.get_by_label(UNIT).select_option("gal")
     step = needs.get_by_label(STEP)
     step.fill(wrong)
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     expect(asked.locator(f"#{step.get_attribute('aria-describedby')}")).to_have_text(
         re.compile(r"At least|At most|not a number|A number is needed")
     )
@@ -62,7 +62,7 @@ def test_a_wrong_step_leaves_the_question_as_it_was_answered(
     expect(step).to_be_focused()
     assert "ime_step" not in asked.locator("#view-motion").inner_text()
     step.fill("0.01")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     expect(asked.get_by_test_id("record-held")).to_contain_text("column.txt")
     assert inputs(asked)["motion"]["units"] == "gal"
     assert inputs(asked)["motion"]["time_step"] == 0.01
@@ -73,11 +73,11 @@ def test_read_it_so_says_what_is_missing(asked: Any) -> None:
     sent: list[str] = []
     asked.on("request", lambda request: sent.append(request.url))
     needs = asked.get_by_test_id("record-needs")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     unit = needs.get_by_label(UNIT)
     expect(unit).to_have_attribute("aria-invalid", "true")
     assert "Choose" in about(unit)
-    assert "A number is needed" in about(needs.get_by_label(STEP))
+    assert "Enter a number" in about(needs.get_by_label(STEP))
     expect(needs.locator("[aria-invalid=true]").first).to_be_focused()
     assert sent == []
     unit.select_option("g")
@@ -100,7 +100,7 @@ def test_what_the_server_refuses_stands_beside_its_field(asked: Any) -> None:
     needs.get_by_label(UNIT).select_option("gal")
     step = needs.get_by_label(STEP)
     step.fill("0.5")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     expect(step).to_have_attribute("aria-invalid", "true")
     assert about(step) == "The time between two samples must be more than 0; it is 0.5"
     expect(needs.get_by_label(UNIT)).to_have_value("gal")
@@ -122,7 +122,7 @@ def test_the_same_file_can_be_chosen_again_once_it_is_mended(open_page: Callable
     column(path, 200.0)
     needs.get_by_label(UNIT).select_option("gal")
     needs.get_by_label(STEP).fill("0.01")
-    needs.get_by_role("button", name="Read it so").click()
+    needs.get_by_role("button", name="Apply").click()
     expect(page.get_by_test_id("record-held")).to_contain_text("wave.txt")
     # what was chosen was a hundred gal, whatever the disk says since
     expect(page.get_by_test_id("motion-facts")).to_contain_text(re.compile(r"acceleration(1|0\.99\d*)\s*m"))

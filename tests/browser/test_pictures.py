@@ -213,10 +213,10 @@ def test_a_body_in_space_is_saved_as_it_is_seen(open_page: Callable[..., Any], t
     page.get_by_test_id("space-stage").focus()
     for _ in range(3):
         page.keyboard.press("ArrowLeft")
-    assert compared(page, section, ["leaning-block.stl", "4 edges"]) == ["picture The edges of its base"]
-    root = drawing(Path(saved(page, "SVG", "picture The edges of its base").path()))
+    assert compared(page, section, ["leaning-block.stl", "4 edges"]) == ["picture Edges of the base"]
+    root = drawing(Path(saved(page, "SVG", "picture Edges of the base").path()))
     assert len(list(root.iter(f"{SVG}image"))) == 1
-    assert {"an edge, with its number", "a corner", "centre of mass and plumb line"} <= set(words_of(root))
+    assert {"edge with its number", "corner", "centre of mass and plumb line"} <= set(words_of(root))
 
 
 def turn_of(transform: str) -> float:

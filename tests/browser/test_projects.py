@@ -120,8 +120,8 @@ def test_another_project_waits_until_this_one_is_saved(open_page: Callable[..., 
     expect(page.get_by_test_id("project-saved")).to_have_text("not saved")
     dialog = opened_dialog(page)
     dialog.get_by_label("Name of a new project").fill("Another")
-    dialog.get_by_role("button", name="Begin").click()
-    expect(page.locator("#status")).to_contain_text("could not be saved yet")
+    dialog.get_by_role("button", name="Create").click()
+    expect(page.locator("#status")).to_contain_text("are not saved yet")
     expect(page.get_by_label("Width")).to_have_value("0.93")
 
 
@@ -129,8 +129,8 @@ def test_what_is_asked_belongs_to_the_project(open_page: Callable[..., Any], ser
     """Typed in Decide, chosen in Inventory and Measure: so it is elsewhere, after undo, and from the file."""
     page = open_page(view="decide")
     decide = page.locator("#view-decide")
-    typed(page, "Signed by", "A. Person")
-    decide.get_by_label("Question").select_option("predict")
+    typed(page, "Author", "A. Person")
+    decide.get_by_label("Analysis").select_option("predict")
     decide.get_by_label("friction", exact=True).fill("0.4")
     page.locator("#tab-inventory").click()
     rows = {"name": "list.csv", "mimeType": "text/csv", "buffer": b"name,width_cm,height_cm\nvase,20,100\n"}
@@ -156,12 +156,12 @@ def test_what_is_asked_belongs_to_the_project(open_page: Callable[..., Any], ser
     assert "measure" in states[0]["words"].split(", ")
     dialog = opened_dialog(other)
     with other.expect_download() as told:
-        dialog.get_by_role("button", name=f"Take away: {project['name']}").click()
+        dialog.get_by_role("button", name=f"Export: {project['name']}").click()
     told.value.save_as(tmp_path / "project.zip")
     dialog.get_by_label("Name of a new project").fill("Hall 4")
-    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Create").click()
     expect(column).to_have_value("")
-    dialog.get_by_label("A project from its file").set_input_files(tmp_path / "project.zip")
+    dialog.get_by_label("Import a project file").set_input_files(tmp_path / "project.zip")
     expect(column).to_have_value("rotation")
 
 
@@ -213,7 +213,7 @@ def test_two_browsers_that_change_the_same(open_page: Callable[..., Any], served
     for _ in range(3):  # it stays until something is chosen
         other.keyboard.press("Escape")
     expect(clash).to_be_visible()
-    clash.get_by_role("button", name="Keep mine as a copy" if mine else "Show what is there").click()
+    clash.get_by_role("button", name="Save my version as a copy" if mine else "Open the other version").click()
     expect(clash).not_to_be_visible()
     expect(other.get_by_label("Width")).to_have_value("0.6" if mine else "0.75")
     names = {each["name"] for each in served.api("projects", method="GET")["projects"]}
@@ -227,7 +227,7 @@ def test_two_browsers_that_change_different_parts(open_page: Callable[..., Any],
     page, other = open_page(), open_page(view="motion")
     typed(page, "Width", "0.75")
     page.locator("#tab-decide").click()
-    typed(page, "Signed by", "A. Person")
+    typed(page, "Author", "A. Person")
     amplitude = other.get_by_label("Peak acceleration, exactly")
     typed(other, "Peak acceleration, exactly", "7.77")
     expect(other.get_by_test_id("clash")).not_to_be_visible()
@@ -323,27 +323,27 @@ def test_all_projects(open_page: Callable[..., Any], tmp_path: Path) -> None:
     dialog.get_by_role("button", name="Rename").click()
     expect(page.get_by_test_id("project")).to_have_text("Hall 3")
     with page.expect_download() as told:
-        dialog.get_by_role("button", name="Take away: Hall 3").click()
+        dialog.get_by_role("button", name="Export: Hall 3").click()
     told.value.save_as(tmp_path / "hall.zip")
     dialog.get_by_label("Name of a new project").fill("Hall 4")
-    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Create").click()
     expect(page.get_by_test_id("project")).to_have_text("Hall 4")
     expect(page.get_by_label("Width")).to_have_value("0.5")
     dialog.get_by_role("button", name="Copy: Hall 3").click()
     expect(page.get_by_test_id("project")).to_have_text("Hall 3 (copy)")
     expect(page.get_by_label("Width")).to_have_value("0.75")
     dialog.get_by_role("button", name="Delete: Hall 3", exact=True).click()
-    gone = dialog.get_by_role("list", name="Deleted").get_by_role("button", name="Bring back: Hall 3", exact=True)
+    gone = dialog.get_by_role("list", name="Deleted").get_by_role("button", name="Restore: Hall 3", exact=True)
     expect(gone).to_be_visible()
     gone.click()
     dialog.get_by_role("button", name="Open: Hall 3", exact=True).click()
     expect(dialog).not_to_be_visible()
     expect(page.get_by_label("Width")).to_have_value("0.75")
     dialog = opened_dialog(page)
-    dialog.get_by_label("A project from its file").set_input_files(tmp_path / "hall.zip")
+    dialog.get_by_label("Import a project file").set_input_files(tmp_path / "hall.zip")
     expect(dialog.get_by_role("button", name="Open: Hall 3", exact=True)).to_have_count(1)
     expect(page.get_by_label("Width")).to_have_value("0.75")
-    dialog.get_by_label("A project from its file").set_input_files(
+    dialog.get_by_label("Import a project file").set_input_files(
         {"name": "x.zip", "mimeType": "application/zip", "buffer": b"nothing"}
     )
     expect(page.locator("#status")).to_contain_text("one ZIP archive")
@@ -354,7 +354,7 @@ def test_what_is_said_is_seen_over_a_dialog(open_page: Callable[..., Any]) -> No
     page = open_page(viewport={"width": 390, "height": 700})
     saved(page)
     dialog = opened_dialog(page)
-    dialog.get_by_label("A project from its file").set_input_files(
+    dialog.get_by_label("Import a project file").set_input_files(
         {"name": "x.zip", "mimeType": "application/zip", "buffer": b"nothing"}
     )
     told = page.locator("#status")
@@ -374,7 +374,7 @@ def test_back_to_a_state_of_the_history(open_page: Callable[..., Any]) -> None:
     for value in ("0.6", "0.7", "0.8"):
         typed(page, "Width", value)
     dialog = opened_dialog(page)
-    dialog.get_by_role("button", name="Go back to state 2").click()
+    dialog.get_by_role("button", name="Restore state 2").click()
     expect(page.get_by_label("Width")).to_have_value("0.6")
     expect(dialog.get_by_role("list", name="History").get_by_role("listitem")).to_have_count(5)
     dialog.get_by_role("button", name="Close").click()
@@ -392,7 +392,7 @@ def test_studies_belong_to_a_project(open_page: Callable[..., Any]) -> None:
     expect(studies).to_have_count(others + 1)
     dialog = opened_dialog(page)
     dialog.get_by_label("Name of a new project").fill("Another")
-    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Create").click()
     dialog.get_by_role("button", name="Close").click()
     page.locator("#tab-body").click()
     page.locator("#tab-studies").click()
@@ -458,7 +458,7 @@ def test_what_was_turned_in_a_project_stays_there(open_page: Callable[..., Any],
     saved(page)
     dialog = opened_dialog(page)
     dialog.get_by_label("Name of a new project").fill("Another")
-    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Create").click()
     expect(page.get_by_test_id("project")).to_have_text("Another")
     dialog.get_by_role("button", name="Close").click()
     expect(page.locator(".record-form")).to_have_count(0)
@@ -482,11 +482,11 @@ def test_a_late_file_is_in_no_other_project(open_page: Callable[..., Any], until
     until(page, lambda: held)
     dialog = opened_dialog(page)
     dialog.get_by_label("Name of a new project").fill("Another")
-    dialog.get_by_role("button", name="Begin").click()
+    dialog.get_by_role("button", name="Create").click()
     expect(page.get_by_test_id("project")).to_have_text("Another")
     dialog.get_by_role("button", name="Close").click()
     held[0].continue_()
-    expect(page.locator("#status")).to_contain_text("it is in neither of them")
+    expect(page.locator("#status")).to_contain_text("Repeat the action")
     expect(page.locator("#view-records").get_by_role("list", name="Files")).to_have_count(0)
     page.unroute_all()
     page.get_by_label("Drop records or a folder here, or").set_input_files(told)

@@ -17,7 +17,7 @@ expect = pytest.importorskip("playwright.sync_api").expect
 def asked(page: Any, view: str) -> Any:
     """Press the button, and wait for the answer or the refusal."""
     section = page.locator(f"#view-{view}")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     outcome = section.get_by_test_id("outcome")
     expect(outcome).to_have_attribute("data-state", "done")
     return outcome
@@ -27,7 +27,7 @@ def test_does_it_stand(open_page: Callable[..., Any], shot: Callable[..., Any], 
     """What the page says is what the command line says of the same file, and a report can be taken away."""
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
-    page.get_by_label("Signed by").fill("A. Person")
+    page.get_by_label("Author").fill("A. Person")
     outcome = asked(page, "decide")
     verdict = outcome.get_by_test_id("verdict").inner_text()
     question = served.api("questions", method="GET")["questions"][0]
@@ -53,7 +53,7 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    section.get_by_label("Question").select_option("predict")
+    section.get_by_label("Analysis").select_option("predict")
     for label, text in (("friction", "0.4, 0.6"), ("centre", "1,02"), ("restitution", "ked"), ("count", "16")):
         section.get_by_label(label, exact=True).fill(text)
     outcome = asked(page, "decide")
@@ -65,10 +65,10 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     assert outcome.get_by_test_id("verdict").inner_text() == whole["answer"]["verdict"]
     assert outcome.get_by_role("table", name="Probabilities").locator("tbody tr").count() == 3
     decided = any(share["total"] for share in whole["answer"]["shares"].values())
-    assert outcome.get_by_role("table", name="Shares").count() == decided
+    assert outcome.get_by_role("table", name="Contributions to variance").count() == decided
     expect(outcome.locator("img.drawing")).to_be_visible()
     section.get_by_label("friction", exact=True).fill("-1")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(section.get_by_role("alert")).to_contain_text("riction")
 
 
@@ -77,16 +77,16 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    ask = section.get_by_role("button", name="Ask", exact=True)
-    margin = section.get_by_label("Must hold")
+    ask = section.get_by_role("button", name="Compute", exact=True)
+    margin = section.get_by_label("Required margin")
     for _ in range(2):
         margin.fill("-1")
         expect(margin).not_to_have_attribute("aria-invalid", "true")
         ask.click()
         expect(margin).to_have_attribute("aria-invalid", "true")
         expect(margin).to_be_focused()
-        expect(margin).to_have_accessible_description("What it must hold is a number above 0.")
-    section.get_by_label("Question").select_option("predict")
+        expect(margin).to_have_accessible_description("Enter a required margin above 0.")
+    section.get_by_label("Analysis").select_option("predict")
     friction = section.get_by_label("friction", exact=True)
     friction.fill("-2")
     ask.click()
@@ -97,7 +97,7 @@ def test_what_is_wrong_is_marked_at_its_field(open_page: Callable[..., Any]) -> 
     friction.fill("0.5")
     expect(friction).not_to_have_attribute("aria-invalid", "true")
     for question in ("assess", "predict"):  # its field is made anew, and what was refused is past
-        section.get_by_label("Question").select_option(question)
+        section.get_by_label("Analysis").select_option(question)
     expect(friction).to_have_value("0.5")
     expect(section.locator("[aria-invalid=true]")).to_have_count(0)
     section.get_by_role("button", name=re.compile("^Show ")).first.click()
@@ -131,9 +131,9 @@ def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """One button recomputes the paper; its report can be taken away, and the command that makes it is told."""
     page = open_page(link())
     page.locator("#tab-measure").click()
-    page.locator("#view-measure").get_by_label("Question").select_option("paper")
+    page.locator("#view-measure").get_by_label("Analysis").select_option("paper")
     outcome = asked(page, "measure")
-    expect(outcome.get_by_test_id("verdict")).to_contain_text("claims hold")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text("claims confirmed")
     assert outcome.get_by_role("table", name="Models").locator("tbody tr").count() > 10
     with page.expect_download() as told:
         outcome.get_by_role("button", name="Report (PDF)").click()
@@ -146,10 +146,10 @@ def test_records_are_sent_together(open_page: Callable[..., Any], tmp_path: Path
     """Two files make two motions; none, and a body that is wrong, are told before anything is asked."""
     page = open_page(link())
     page.locator("#tab-decide").click()
-    page.get_by_label("Shaken by").select_option("records")
+    page.get_by_label("Ground motions").select_option("records")
     section = page.locator("#view-decide")
-    section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_role("alert")).to_contain_text("No record was sent")
+    section.get_by_role("button", name="Compute", exact=True).click()
+    expect(section.get_by_role("alert")).to_contain_text("Add a record")
     for k in range(2):
         lines = "\n".join(f"{0.02 * n:.2f} {0.1 * (n % (7 + k) - 3):.3f}" for n in range(300))
         (tmp_path / f"site {k}.txt").write_text(lines)
@@ -166,19 +166,19 @@ def test_a_list_of_objects(open_page: Callable[..., Any], shot: Callable[..., An
     section = page.locator("#view-inventory")
     section.get_by_label("Drop a list here, or").set_input_files(str(examples.path("objects")))
     expect(section.get_by_role("list", name="Files")).to_contain_text("objects.csv")
-    section.get_by_label("How many motions").fill("40")
+    section.get_by_label("Number of motions").fill("40")
     outcome = asked(page, "inventory")
     expect(outcome.get_by_test_id("verdict")).to_contain_text("1 not assessed")
-    expect(outcome.get_by_role("table", name="Rows without a verdict")).to_contain_text("framed mirror")
-    lights = outcome.get_by_role("table", name="Objects, the worst first").locator("td.light").all_inner_texts()
+    expect(outcome.get_by_role("table", name="Rows without a rating")).to_contain_text("framed mirror")
+    lights = outcome.get_by_role("table", name="Objects, highest risk first").locator("td.light").all_inner_texts()
     assert lights == sorted(lights, key=["RED", "AMBER", "GREEN"].index)
     shot(page, "inventory")
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
-    section.get_by_role("button", name="Leave out objects.csv").click()
+    section.get_by_role("button", name="Remove objects.csv").click()
     wrong = {"name": "nothing.csv", "mimeType": "text/csv", "buffer": b"a,b\n1,2\n"}
     section.get_by_label("Drop a list here, or").set_input_files(wrong)
     expect(section.get_by_role("list", name="Files")).to_contain_text("nothing.csv")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(section.get_by_role("alert")).to_contain_text("nothing.csv")
 
@@ -194,15 +194,15 @@ def test_inventory_numbers_are_shown(open_page: Callable[..., Any], shot: Callab
     sent = {"name": "liste.csv", "mimeType": "text/csv", "buffer": content.encode("utf-8")}
     section.get_by_label("Drop a list here, or").set_input_files(sent)
     expect(section.get_by_role("list", name="Files")).to_contain_text("liste.csv")
-    section.get_by_label("How many motions").fill("10")
+    section.get_by_label("Number of motions").fill("10")
     outcome = asked(page, "inventory")
-    rows = outcome.get_by_role("table", name="Objects, the worst first").locator("tbody tr")
+    rows = outcome.get_by_role("table", name="Objects, highest risk first").locator("tbody tr")
     assert rows.locator("th").all_inner_texts() == ["A-17 Vase", "A-18 Vase"]
     expect(rows.first).to_contain_text("Fuß geklebt")
-    expect(outcome.get_by_role("table", name="Rows without a verdict")).to_contain_text("A-19 Vase")
+    expect(outcome.get_by_role("table", name="Rows without a rating")).to_contain_text("A-19 Vase")
     outcome.get_by_text("Lines that are not objects").click()
-    expect(outcome.get_by_role("table", name="Lines of the list that are not objects")).to_contain_text("Summe: 3")
-    header = section.get_by_label("The header of the list", exact=True)
+    expect(outcome.get_by_role("table", name="List lines that are not objects")).to_contain_text("Summe: 3")
+    header = section.get_by_label("Header of the list", exact=True)
     expect(header).to_have_text("Inv.-Nr.;Objekt;Maße (cm);;;Bemerkung\n;;Breite;Tiefe;Höhe;")
     shot(page, "inventory numbers")
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
@@ -242,8 +242,8 @@ def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., 
     content = "thing;across;deep;tall\nDöschen;20;20;100\nbüste;?;20;30\n".encode("cp1252")
     odd = {"name": "odd.csv", "mimeType": "text/csv", "buffer": content}
     section.get_by_label("Drop a list here, or").set_input_files(odd)
-    section.get_by_label("How many motions").fill("10")
-    section.get_by_text("How the list is read").click()
+    section.get_by_label("Number of motions").fill("10")
+    section.get_by_text("List format").click()
     titles = "thing=name, across=width_cm, deep=depth_cm, tall=height_cm"
     section.get_by_label("columns", exact=True).fill(titles)
     outcome = asked(page, "inventory")
@@ -252,9 +252,9 @@ def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., 
     expect(line).to_have_value("büste;?;20;30")
     shot(page, "inventory corrected")
     line.fill("büste;15;20;30")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(section.get_by_test_id("verdict")).not_to_contain_text("not assessed")
-    lights = section.get_by_role("table", name="Objects, the worst first")
+    lights = section.get_by_role("table", name="Objects, highest risk first")
     expect(lights.locator("tbody tr")).to_have_count(2)
     for name in ("Döschen", "büste"):
         expect(lights).to_contain_text(name)
@@ -303,12 +303,12 @@ def test_the_microphone(open_page: Callable[..., Any], served: Any) -> None:
     page.evaluate(MICROPHONE)
     section = page.locator("#view-measure")
     section.get_by_role("button", name="Record with the microphone").click()
-    end = section.get_by_role("button", name="End the recording")
+    end = section.get_by_role("button", name="Stop recording")
     expect(end).to_be_visible()
     page.wait_for_timeout(1500)
     end.click()
     expect(section.get_by_role("list", name="Files")).to_contain_text("recording.wav")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "refused")
     expect(section.get_by_role("alert")).to_contain_text("ecording.wav")
 
@@ -317,12 +317,12 @@ def test_a_question_is_stopped(open_page: Callable[..., Any]) -> None:
     """One that takes long can be stopped, and the next one is answered."""
     page = open_page(link())
     page.locator("#tab-decide").click()
-    page.get_by_label("Shaken by").select_option("soft-ground")
+    page.get_by_label("Ground motions").select_option("soft-ground")
     section = page.locator("#view-decide")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     section.get_by_role("button", name="Stop").click()
     expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "stopped")
-    page.get_by_label("Shaken by").select_option("")
+    page.get_by_label("Ground motions").select_option("")
     asked(page, "decide")
 
 
@@ -330,11 +330,11 @@ def test_a_question_is_stopped(open_page: Callable[..., Any]) -> None:
 def test_a_missing_file_is_asked_for_where_it_is_dropped(open_page: Callable[..., Any], view: str) -> None:
     """Asked without a file, the drop place is marked and has the keyboard; a file takes the mark away."""
     section = open_page(view=view).locator(f"#view-{view}")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     drop = section.locator(".drop").first
     expect(drop).to_have_class("drop wrong")
     expect(drop.get_by_role("button").first).to_be_focused()
-    expect(drop.get_by_role("button").first).to_have_accessible_description(re.compile("was sent yet"))
+    expect(drop.get_by_role("button").first).to_have_accessible_description(re.compile("^Add a "))
     drop.locator("input[type=file]:not([webkitdirectory])").set_input_files(
         {"name": "a.csv", "mimeType": "", "buffer": b"a,b\n1,2\n"}
     )
@@ -361,15 +361,15 @@ def test_a_refusal_names_fields_of_the_page(
     )
     expect(section.get_by_role("list", name="Files")).to_contain_text("drift.csv")
     section.get_by_label("The body").select_option("no")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     refusal = section.get_by_test_id("outcome").get_by_role("alert")
     expect(refusal).to_contain_text("drift.csv: No coefficient")
-    expect(refusal).to_contain_text("choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d.")
+    expect(refusal).to_contain_text("choose \u201cwith a trend\u201d under \u201cCoefficient of restitution\u201d.")
     assert not re.search(r"--|svg|=true", refusal.inner_text())
     expect(refusal).to_be_focused()
     before = len(served.api("questions", method="GET")["questions"])
-    section.get_by_label("What an impact takes").select_option("yes")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_label("Coefficient of restitution").select_option("yes")
+    section.get_by_role("button", name="Compute", exact=True).click()
     until(page, lambda: len(served.api("questions", method="GET")["questions"]) > before)
     question = served.api("questions", method="GET")["questions"][0]
     assert "trend = true" in served.api(f"questions/{question['id']}", method="GET")["toml"]

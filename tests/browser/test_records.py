@@ -28,7 +28,7 @@ def record(path: Path, frequency: float) -> Path:
 
 def asked(section: Any, state: str = "done") -> Any:
     """Press the button, and wait for the answer or the refusal."""
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     outcome = section.get_by_test_id("outcome")
     expect(outcome).to_have_attribute("data-state", state)
     return outcome
@@ -47,11 +47,11 @@ def test_a_spectrum_says_what_it_needs(open_page: Callable[..., Any], tmp_path: 
     page = open_page(view="records")
     section = page.locator("#view-records")
     section.get_by_label(DROP).set_input_files(record(tmp_path / "hall.txt", 1.0))
-    section.get_by_label("What is shown").select_option("target")
+    section.get_by_label("Result").select_option("target")
     ground = section.get_by_role("textbox", name=re.compile("^ag "))
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(ground).to_be_focused()
-    expect(ground).to_have_accessible_description("A number is needed here.")
+    expect(ground).to_have_accessible_description("Enter a number.")
     expect(section.get_by_test_id("outcome")).to_have_count(0)
 
 
@@ -72,10 +72,10 @@ def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any
 
     band.get_by_label("high").fill("20")
     section.get_by_role("button", name="Move bandpass earlier").click()
-    section.get_by_label("Written as").select_option("smc-usgs")
+    section.get_by_label("Output format").select_option("smc-usgs")
     outcome = asked(section)
     expected = processed(read_motion(tmp_path / "hall.txt"), "mean; bandpass:low=0.2,high=20; taper")
-    done = outcome.get_by_role("list", name="What was done")
+    done = outcome.get_by_role("list", name="Processing")
     assert done.locator("li").all_inner_texts()[1:] == list(expected.provenance)[1:]
     first = outcome.locator("img.drawing").get_attribute("src")
     assert outcome.locator("img.drawing").evaluate("image => image.decode().then(() => image.naturalWidth)") > 100
@@ -100,12 +100,12 @@ def test_before_and_after(open_page: Callable[..., Any], shot: Callable[..., Any
 
 def stays_and_is_used(page: Any, section: Any) -> None:
     """After a reload file, steps and answer are there, and the record becomes the motion."""
-    done = section.get_by_role("list", name="What was done")
+    done = section.get_by_role("list", name="Processing")
     expect(section.get_by_test_id("outcome")).to_have_attribute("data-state", "done")
     expect(done).to_contain_text("band-pass 2 to 20 Hz")
     expect(section.get_by_role("listitem", name="Step 2, bandpass").get_by_label("low")).to_have_value("2")
     expect(section.get_by_role("list", name="Files")).to_contain_text("hall.txt")
-    section.get_by_role("button", name="Use it as the motion").click()
+    section.get_by_role("button", name="Use as motion").click()
     expect(page.locator("#status")).to_contain_text("hall-corrected.csv is the motion")
     page.locator("#tab-motion").click()
     expect(page.get_by_test_id("record-held")).to_contain_text("hall-corrected.csv")
@@ -116,14 +116,14 @@ def test_what_is_no_record(open_page: Callable[..., Any], tmp_path: Path) -> Non
     """Nothing, and a text that is no record, are refused in words; the page goes on."""
     page = open_page(view="records")
     section = page.locator("#view-records")
-    section.get_by_role("button", name="Ask", exact=True).click()
-    expect(section.get_by_role("alert")).to_contain_text("No record was sent")
+    section.get_by_role("button", name="Compute", exact=True).click()
+    expect(section.get_by_role("alert")).to_contain_text("Add a record")
     letter = {"name": "letter.txt", "mimeType": "text/plain", "buffer": b"Dear all, no record is in here.\n"}
     section.get_by_label(DROP).set_input_files(letter)
     expect(section.get_by_role("list", name="Files")).to_contain_text("letter.txt")
     asked(section, "refused")
     expect(section.get_by_role("alert")).to_contain_text("etter.txt: not recognised as any of")
-    section.get_by_role("button", name="Leave out letter.txt").click()
+    section.get_by_role("button", name="Remove letter.txt").click()
     section.get_by_label(DROP).set_input_files(record(tmp_path / "hall.txt", 1.0))
     expect(section.get_by_role("list", name="Files")).to_contain_text("hall.txt")
     outcome = asked(section)
@@ -144,9 +144,9 @@ def test_a_folder_for_a_spectrum(open_page: Callable[..., Any], shot: Callable[.
     outcome = asked(section)
     table = outcome.get_by_role("table", name="Records").locator("tbody tr")
     expect(table).to_have_count(3)
-    expect(outcome.get_by_role("table", name="Files that were left out")).to_contain_text("notes.txt")
+    expect(outcome.get_by_role("table", name="Ignored files")).to_contain_text("notes.txt")
 
-    section.get_by_label("What is shown").select_option("target")
+    section.get_by_label("Result").select_option("target")
     section.get_by_label("ag").fill("0.2g")
     section.get_by_label("ground").fill("C")
     section.get_by_label("count").fill("2")
@@ -186,9 +186,9 @@ def mixed_set(open_page: Callable[..., Any], folder: Path) -> tuple[Any, Any, An
     section = page.locator("#view-records")
     section.get_by_label("A folder", exact=True).set_input_files(folder)
     expect(section.get_by_role("list", name="Files").get_by_role("listitem")).to_have_count(3)
-    section.get_by_text("What the file does not say").click()
+    section.get_by_text("Missing in the file").click()
     section.get_by_label(STEP).fill("0,01")
-    return page, section, section.get_by_role("group", name="Options of single files")
+    return page, section, section.get_by_role("group", name="Options per file")
 
 
 def peaks(rows: Any) -> list[list[str]]:
@@ -208,9 +208,9 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
     outcome = asked(section)
     rows = outcome.get_by_role("table", name="Records").locator("tbody tr")
     assert peaks(rows) == [["a", "0.3"]]
-    left_out = outcome.get_by_role("table", name="Files that were left out")
+    left_out = outcome.get_by_role("table", name="Ignored files")
     expect(left_out.locator("tbody tr")).to_have_count(2)
-    expect(left_out).to_contain_text("unit: state it in the form")
+    expect(left_out).to_contain_text("unit: enter it in the form")
     expect(options.get_by_role("listitem")).to_have_count(3)
 
     second.get_by_label("units").select_option("cm/s2")
@@ -222,7 +222,7 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
     expect(rows).to_have_count(3)
     assert peaks(rows) == [["a", "0.3"], ["b", "0.3"], ["c", "0.3"]]
     expect(left_out).to_have_count(0)
-    outcome.get_by_text("The same on the command line").click()
+    outcome.get_by_text("Command line").click()
     table = '[motions.files."c.txt"]\nunits = "m/s2"\ntime_step = 0.02\nskip = 2'
     expect(outcome.locator("pre").last).to_contain_text(table)
 
@@ -230,7 +230,7 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
 def test_a_wrong_unit_of_one_file(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """A wrong unit gives another peak, a wrong step is marked at its file; a reload keeps what was typed."""
     page, section, options = mixed_set(open_page, tmp_path / "mixed")
-    section.get_by_role("button", name="Leave out c.txt").click()
+    section.get_by_role("button", name="Remove c.txt").click()
     section.get_by_label("units").select_option("g")
     section.get_by_label("Add a file with other options").select_option("b.txt")
     second = options.get_by_role("listitem", name="b.txt")
@@ -244,10 +244,10 @@ def test_a_wrong_unit_of_one_file(open_page: Callable[..., Any], tmp_path: Path)
     rows = outcome.get_by_role("table", name="Records").locator("tbody tr")
     assert peaks(rows) == [["a", "0.3"], ["b", "0.03"]]
 
-    section.get_by_label("What is shown").select_option("b.txt")
+    section.get_by_label("Result").select_option("b.txt")
     outcome = asked(section)
     expect(outcome.get_by_test_id("verdict")).to_contain_text("PGA 0.03 g before")
-    done = outcome.get_by_role("list", name="What was done")
+    done = outcome.get_by_role("list", name="Processing")
     expect(done).to_contain_text("stated by the user: unit mm/s2, time step 0.02 s")
     page.reload()
     expect(second.get_by_label("units")).to_have_value("mm/s2")
@@ -263,17 +263,17 @@ def test_a_unit_for_each_file_that_shakes_the_body(open_page: Callable[..., Any]
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    section.get_by_label("Question").select_option("predict")
+    section.get_by_label("Analysis").select_option("predict")
     section.get_by_label("count").fill("4")
-    section.get_by_label("Shaken by").select_option("records")
+    section.get_by_label("Ground motions").select_option("records")
     section.get_by_label("Drop records here, or").set_input_files([tmp_path / "a.txt", tmp_path / "b.txt"])
     expect(section.get_by_role("list", name="Files").get_by_role("listitem")).to_have_count(2)
     section.get_by_label("Unit of the accelerations").fill("cm/s2")
-    options = section.get_by_role("group", name="Options of single files")
+    options = section.get_by_role("group", name="Options per file")
     section.get_by_label("Add a file with other options").select_option("a.txt")
     options.get_by_label("units").select_option("g")
     outcome = asked(section)
-    outcome.get_by_text("The same on the command line").click()
+    outcome.get_by_text("Command line").click()
     told = outcome.locator("pre").last
     expect(told).to_contain_text('units = "cm/s2"')
     expect(told).to_contain_text('[motions.files."a.txt"]\nunits = "g"')
@@ -287,7 +287,7 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    section.get_by_label("Question").select_option("minimum")
+    section.get_by_label("Analysis").select_option("minimum")
     section.get_by_label("points").fill("60")
     section.get_by_label("levels").fill("1")
     section.get_by_label("highest").fill("20")

@@ -95,7 +95,7 @@ def test_models_have_dashes_of_their_own(answered: Callable[..., Any]) -> None:
 def test_a_coefficient_of_ones_own(answered: Callable[..., Any]) -> None:
     """A typed coefficient joins the models under its own card and curve."""
     page = answered()
-    page.get_by_label("A coefficient of my own").check()
+    page.get_by_label("Own coefficient").check()
     slider = page.get_by_label("Coefficient of restitution r")
     slider.focus()
     slider.press("Home")
@@ -107,18 +107,18 @@ def test_a_coefficient_of_ones_own(answered: Callable[..., Any]) -> None:
 def test_free_rocking_and_back(answered: Callable[..., Any]) -> None:
     """Let go from half its angle the block rocks as `free_rocking` says; switched back it is shaken again."""
     page = answered()
-    page.get_by_label("Let it go from a lean instead").check()
+    page.get_by_label("Start from an initial rotation").check()
     found = free_rocking(Block(width=0.5, height=2.0), 0.5 * math.atan(0.25), "ked")
     card(page, "ked").filter(has_text=f"{found.impacts.size} impacts").wait_for()
     assert "peak 0.5" in card(page, "ked").inner_text()
-    page.get_by_label("Let it go from a lean instead").uncheck()
+    page.get_by_label("Start from an initial rotation").uncheck()
     card(page, "ked").filter(has_text=f"{response(GENTLE, 'ked').impacts.size} impacts").wait_for()
 
 
 def test_without_a_motion_it_says_what_to_do(open_page: Callable[..., Any]) -> None:
     """A link without a motion leads to two buttons, of which one lets the body go."""
     page = open_page(link(None))
-    page.get_by_role("button", name="Let it go from a lean").click()
+    page.get_by_role("button", name="Start from an initial rotation").click()
     page.locator(".response-results[data-drawn]").wait_for()
 
 
@@ -273,7 +273,7 @@ def test_looking_into_a_part_and_back(answered: Callable[..., Any]) -> None:
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 50, steps=3)
     page.mouse.up()
     expect(charts).to_have_attribute("data-window", re.compile(r"\d \d"))
-    page.get_by_role("button", name="Show all of the time").click()
+    page.get_by_role("button", name="Show the full duration").click()
     expect(charts).to_have_attribute("data-window", "")
 
 

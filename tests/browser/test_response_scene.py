@@ -200,7 +200,7 @@ def test_a_fall_is_shown_as_it_is_computed(open_page: Callable[..., Any], served
     shown = page.get_by_test_id("scene-rotation")
     expect(shown).to_contain_text(f"{abs(lies):.2f}\u00b0")
     shot(page, "response-lying")
-    expect(page.get_by_test_id("response-charts").locator("..")).to_contain_text("by the same equation")
+    expect(page.get_by_test_id("response-charts").locator("..")).to_contain_text("until a corner touches the ground")
 
 
 def test_tracks_are_straight_between_samples(page: Any) -> None:
@@ -231,7 +231,7 @@ def test_the_fallen_body_is_told_with_one_angle(answered: Callable[..., Any]) ->
 def test_the_curve_of_a_fall_ends(answered: Callable[..., Any]) -> None:
     """The rotation is drawn up to 1.5 alpha, as the words under it say: no flat line goes on after it."""
     page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
-    expect(page.get_by_text("Curves of a body that overturns end at 1.5 \u03b1")).to_be_visible()
+    expect(page.get_by_text("Curves of an overturning body end at 1.5 \u03b1")).to_be_visible()
     chart = page.get_by_test_id("chart-rotation")
     chart.get_by_text("Show as table").click()
     page.get_by_role("button", name=re.compile("Copy table: Rotation over slenderness")).click()

@@ -35,10 +35,10 @@ def test_a_scan_stands_and_settles(
     assert not [url for url in record.requests if LIBRARY in url]
     outcome = asked(page, "equilibria", scan(tmp_path))
     assert len({url for url in record.requests if LIBRARY in url}) == 2
-    mended = outcome.get_by_role("list", name="What was mended").inner_text()
+    mended = outcome.get_by_role("list", name="Repairs").inner_text()
     assert "Closed 1 hole" in mended
     assert "% of the volume" in mended
-    expect(outcome.get_by_role("list", name="What is marked")).to_contain_text("closed by the repair")
+    expect(outcome.get_by_role("list", name="Legend")).to_contain_text("closed by repair")
     question = served.api("questions", method="GET")["questions"][0]
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
     words = outcome.get_by_test_id("space-words")
@@ -46,16 +46,16 @@ def test_a_scan_stands_and_settles(
     expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{len(answer['stable'])} ways")
     before = seen(page)
     assert len(np.unique(before.reshape(-1, 3), axis=0)) > 200  # shaded and coloured, not an empty ground
-    outcome.get_by_label("Set down in").select_option("0")
+    outcome.get_by_label("Stable pose").select_option("0")
     expect(words).to_contain_text("Pose 0")
     page.wait_for_timeout(1500)  # it turns for 0.7 s
     assert (np.abs(seen(page) - before).max(axis=2) > 30).mean() > 0.02
     shot(page, "space-stands")
     # in that pose it is asked again: what stands then is as high as the pose was
-    outcome.get_by_role("button", name="Go on in pose 0").click()
+    outcome.get_by_role("button", name="Use pose 0").click()
     section = page.locator("#view-space")
     expect(section).to_contain_text("Stands in pose 0 of the last answer")
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     expect(words).to_contain_text("Pose 0")
     expect(outcome).to_have_attribute("data-state", "done")
     question = served.api("questions", method="GET")["questions"][0]
@@ -66,8 +66,8 @@ def test_a_scan_stands_and_settles(
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.reload()
     section.get_by_role("button", name="Show How it can stand").first.click()
-    expect(section).to_contain_text("draws nothing in three dimensions")
-    expect(words).to_contain_text("the centre must rise")
+    expect(section).to_contain_text("cannot draw in 3D")
+    expect(words).to_contain_text("The centre of mass must rise")
 
 
 def test_its_edges(open_page: Callable[..., Any], shot: Callable[..., Any], tmp_path: Path) -> None:
@@ -92,14 +92,14 @@ def test_it_moves_and_falls(
     page = open_page(link("sine:amplitude=6,period=0.8"))
     page.locator("#tab-space").click()
     section = page.locator("#view-space")
-    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Analysis").select_option("simulate")
     section.get_by_label("Impacts").select_option("")
     section.get_by_label("Coefficient of restitution").fill("0.6")
     section.get_by_label("Motion times").fill("1.5")
     outcome = asked(page, "simulate", scan(tmp_path))
     expect(outcome.get_by_test_id("verdict")).to_contain_text("verturned")
     words, time = outcome.get_by_test_id("space-words"), outcome.get_by_test_id("space-time")
-    expect(words).to_contain_text("At 0.00 s: tilted 0.00\u00b0, on 4 points")
+    expect(words).to_contain_text("At 0.00 s: tilt 0.00\u00b0, 4 contact points")
     outcome.get_by_test_id("space-play").click()
     until(page, lambda: page.evaluate("rockingFrames.count") > 10)
     page.get_by_test_id("space-stage").focus()
@@ -112,7 +112,7 @@ def test_it_moves_and_falls(
     assert float(time.input_value()) == pytest.approx(instant + 0.05, abs=1e-3)
     last = time.evaluate("node => node.max")
     time.evaluate("(node, to) => { node.value = to; node.dispatchEvent(new Event('input', { bubbles: true })); }", last)
-    expect(words).to_contain_text("it has overturned")
+    expect(words).to_contain_text("overturned")
     shot(page, "space-moves")
     page.emulate_media(reduced_motion="reduce")
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
@@ -132,7 +132,7 @@ def test_the_body_of_the_project_is_asked_in_space(
     expect(body.locator("option:checked")).to_have_text("leaning-block.stl")
     body.select_option(label="the body of this project")
     expect(section.get_by_label("Unit of the file")).to_have_count(0)
-    said = {"equilibria": "It can stand in", "cor": "What is left of its speed", "simulate": "impact"}
+    said = {"equilibria": "stable pose", "cor": "Coefficient of restitution of each base edge", "simulate": "impact"}
     for what, verdict in said.items():
         outcome = asked(page, what)
         expect(outcome.get_by_test_id("verdict")).to_contain_text(verdict)
@@ -150,22 +150,22 @@ def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_pat
     """No scan, no unit, no number, a surface that is not closed: each in a sentence, none as a picture."""
     page = open_page(view="space")
     section = page.locator("#view-space")
-    ask = section.get_by_role("button", name="Ask", exact=True)
+    ask = section.get_by_role("button", name="Compute", exact=True)
     ask.click()
-    expect(section.get_by_role("alert")).to_contain_text("No scan was sent yet")
+    expect(section.get_by_role("alert")).to_contain_text("Add a scan")
     section.get_by_label("Drop a scan here, or").set_input_files(scan(tmp_path))
     sent(section, "leaning-block.stl")
     ask.click()
-    expect(section.get_by_role("alert")).to_contain_text("do not say their unit")
+    expect(section.get_by_role("alert")).to_contain_text("contain no unit")
     section.get_by_label("Unit of the file").select_option("mm")
-    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Analysis").select_option("simulate")
     section.get_by_label("Impacts").select_option("")
     section.get_by_label("Coefficient of restitution").fill("half")
     ask.click()
-    expect(section.get_by_role("alert")).to_contain_text("The coefficient is a number from 0 to 1.")
-    section.get_by_label("Asked is").select_option("equilibria")
-    section.get_by_text("What may be mended").click()
-    section.get_by_label("Mend", exact=True).select_option("none")
+    expect(section.get_by_role("alert")).to_contain_text("Enter a coefficient from 0 to 1.")
+    section.get_by_label("Analysis").select_option("equilibria")
+    section.get_by_text("Mesh repairs").click()
+    section.get_by_label("Repairs", exact=True).select_option("none")
     ask.click()
     refused = section.get_by_test_id("outcome")
     expect(refused).to_have_attribute("data-state", "refused")
@@ -179,7 +179,7 @@ def test_a_frame_costs_little(open_page: Callable[..., Any], until: Callable[...
     page = open_page(link("sine:amplitude=4.5,period=0.8"))
     page.locator("#tab-space").click()
     section = page.locator("#view-space")
-    section.get_by_label("Asked is").select_option("simulate")
+    section.get_by_label("Analysis").select_option("simulate")
     section.get_by_label("Impacts").select_option("")
     path = scan(tmp_path, hole=False, faces=49_000)
     outcome = asked(page, "simulate", path)

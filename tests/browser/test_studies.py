@@ -122,7 +122,7 @@ def test_a_number_in_error_launches_nothing(studies: Any, served: Any) -> None:
 
 def test_axes_follow_the_motion_and_names_stay_apart(studies: Any) -> None:
     """A synthetic motion has no pulse frequency as an axis; the second study of one name gets a number."""
-    across = studies.get_by_label("Across", exact=True)
+    across = studies.get_by_label("Horizontal axis", exact=True)
     assert across.input_value() == "frequency_ratio"
     for _ in range(2):
         launched_map(studies, "one name", 4)
@@ -162,7 +162,7 @@ def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: An
     studies.get_by_role("radio", name="Uploaded records").check(force=True)
     rows = studies.locator(".record-row")
     expect(rows).to_have_count(4)
-    refused(studies, "No record is ticked")
+    refused(studies, "No record is selected")
     for row in rows.all():
         row.get_by_label("Unit of the accelerations").select_option("g")
         row.get_by_role("button", name="Read").click()
@@ -377,7 +377,7 @@ def test_a_spectrum_of_one_slenderness_wears_the_look_of_its_model(studies: Any)
     expect(housner).to_have_attribute("stroke-dasharray", "6 4")
 
 
-@pytest.mark.parametrize(("view", "words"), [("studies", "Studies"), ("takeaway", "Take away")])
+@pytest.mark.parametrize(("view", "words"), [("studies", "Studies"), ("takeaway", "Export")])
 def test_each_step_has_a_heading(open_page: Callable[..., Any], view: str, words: str) -> None:
     """A screen reader finds the step by its first heading."""
     expect(open_page(view=view).get_by_role("heading", level=1)).to_have_text(words)
@@ -420,7 +420,7 @@ def test_a_large_map_is_drawn_and_can_be_walked(studies: Any, count: int) -> Non
     """A map of 1000 x 1000 cells appears, names its most impacts, and a pointer that moves over it redraws at once."""
     found = studies.evaluate(LARGE_MAP, count)
     assert "41" in found["legend"]
-    assert "rocks and stays standing" in found["words"]
+    assert "rocks, does not overturn" in found["words"]
     assert (found["upper"], found["lower"]) == ([0x9C, 0xC9, 0xE8, 255], [0xF5, 0xDC, 0x57, 255])
     print(f"{count} x {count}: drawn in {found['shown']:.0f} ms, again in {found['moved']:.1f} ms")
     # the picture of the cells is kept: what a move draws again is the frame, however many cells there are
@@ -466,15 +466,15 @@ def test_the_drawn_body_outlasts_a_cell(open_page: Callable[..., Any], shot: Any
     page.keyboard.press("ArrowRight")
     changed = kept_inputs(page)
     page.reload()
-    page.get_by_role("button", name="Back to my inputs").click()
+    page.get_by_role("button", name="Restore my inputs").click()
     assert kept_inputs(page) == own
     page.get_by_role("tab", name="Body").click()
     expect(page.get_by_test_id("editor")).to_be_visible()
     expect(page.get_by_label("Name")).to_have_value("leaning stele")
-    page.get_by_role("button", name="Show it again").click()
+    page.get_by_role("button", name="Show the other inputs").click()
     assert kept_inputs(page) == changed
-    page.get_by_role("button", name="Back to my inputs").click()
-    page.get_by_role("button", name="Drop it").click()
+    page.get_by_role("button", name="Restore my inputs").click()
+    page.get_by_role("button", name="Discard the other inputs").click()
     expect(line).to_be_hidden()
     assert kept_inputs(page) == own
 
@@ -483,11 +483,11 @@ def test_a_link_or_a_file_replaces_nothing_for_good(open_page: Callable[..., Any
     """Inputs of a link pasted into the tab, and the body of a dropped file, stand in for one's own, which come back."""
     page = open_page(fragment(DRAWN, "body"))
     page.evaluate("(hash) => { location.hash = hash; }", fragment(PULSE, "body"))
-    expect(page.get_by_test_id("lent")).to_contain_text("what a link holds")
+    expect(page.get_by_test_id("lent")).to_contain_text("a link")
     drawing = tmp_path / "wedge.wkt"
     drawing.write_text("POLYGON ((0 0, 60 0, 10 200, 0 0))", encoding="utf-8")
     page.get_by_label("Unit of the file").select_option("cm")
     page.get_by_label("Body file").set_input_files(drawing)
-    expect(page.get_by_test_id("lent")).to_contain_text("the body of wedge.wkt")
-    page.get_by_role("button", name="Back to my inputs").click()
+    expect(page.get_by_test_id("lent")).to_contain_text("the file wedge.wkt")
+    page.get_by_role("button", name="Restore my inputs").click()
     assert kept_inputs(page) == DRAWN

@@ -124,7 +124,7 @@ def test_a_million_cells(
         )
         for key in ("outcome", "impacts")
     )
-    endings = {0: "does not lift", 1: "stays standing", 2: "overturns"}
+    endings = {0: "no uplift", 1: "does not overturn", 2: "overturns"}
     assert endings[outcome] in words
     assert outcome != 2 or ("without" in words) is (impacts == 0)
     page.evaluate("""limit => addEventListener("pointermove", () => {

@@ -66,7 +66,7 @@ def test_a_gif_says_that_it_is_drawn_and_can_be_stopped(takeaway: Any) -> None:
     takeaway.on("request", lambda request: asked.append(request.url) if "animation.gif" in request.url else None)
     button = takeaway.get_by_test_id("animation-gif")
     button.click()
-    expect(takeaway.locator("#view-takeaway").get_by_test_id("film-progress")).to_contain_text("are being drawn")
+    expect(takeaway.locator("#view-takeaway").get_by_test_id("film-progress")).to_contain_text("Drawing the frames")
     button.dispatch_event("click")
     takeaway.get_by_role("button", name="Cancel the GIF").click()
     expect(takeaway.locator("#view-takeaway").get_by_test_id("film-progress")).to_be_hidden()
@@ -78,7 +78,7 @@ def test_the_model_of_a_file_is_chosen_and_named(takeaway: Any, tmp_path: Path) 
     """The response as CSV is that of the model that was chosen; its name says which."""
     first = saved(takeaway, "table-response-csv", tmp_path)
     assert "ked" in first.name
-    takeaway.get_by_label("Model in files that hold one").select_option("housner")
+    takeaway.get_by_label("Model in files with one model").select_option("housner")
     second = saved(takeaway, "table-response-csv", tmp_path)
     assert "housner" in second.name
     assert second.read_bytes() != first.read_bytes()
@@ -121,9 +121,9 @@ def test_the_link_opens_the_same_inputs(takeaway: Any, open_page: Callable[..., 
     """The permanent link, opened elsewhere, has the same inputs."""
     link = takeaway.get_by_test_id("permanent-link").input_value()
     takeaway.get_by_test_id("copy-link").click()
-    takeaway.get_by_text("The link is on the clipboard.").wait_for()
+    takeaway.get_by_text("Link copied.").wait_for()
     other = open_page(link.partition("#")[2])
-    other.get_by_role("tab", name="Take away").click()
+    other.get_by_role("tab", name="Export").click()
     again = other.get_by_test_id("permanent-link").input_value()
     assert re.search("in=([^&]+)", again)[1] == re.search("in=([^&]+)", link)[1]  # type: ignore[index]
 

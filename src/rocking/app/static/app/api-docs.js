@@ -10,7 +10,7 @@ import { Button, Note, Segmented } from "/parts/fields.js";
 
 /** @typedef {import("/app/api-schema.js").Operation} Operation @typedef {import("/app/api-schema.js").Row} Row */
 
-const HEADS = ["Name", "Type", "Needed", "Meaning"];
+const HEADS = ["Name", "Type", "Required", "Meaning"];
 const TOLD = ["Name", "Type", "Always", "Meaning"];
 const LONG = 12;
 
@@ -42,9 +42,9 @@ const Introduction = ({ schema, count }) => html`
 
 /** @param {{ schema: any }} props */
 const Errors = ({ schema }) => html`
-  <section class="card" id="errors" data-testid="api-errors" aria-label="Errors"><h2>Errors, the same everywhere</h2>
+  <section class="card" id="errors" data-testid="api-errors" aria-label="Errors"><h2>Errors</h2>
     <dl class="api-errors">${errorsOf(schema).map(([status, words]) => html`<dt>${status}</dt><dd>${words}</dd>`)}</dl>
-    <${Fields} title="What comes back" rows=${errorForm(schema)} heads=${TOLD} /></section>`;
+    <${Fields} title="Response" rows=${errorForm(schema)} heads=${TOLD} /></section>`;
 
 /** @param {{ text: string, kind: string }} props */
 const Paragraphs = ({ text, kind }) => text.split(/\n\s*\n/).map((part) => html`
@@ -58,11 +58,11 @@ const Endpoint = ({ schema, operation }) => {
       <div class="api-head"><${Sign} method=${method} /><span class="api-path">${path}</span></div>
       ${summary && html`<p><strong>${summary}</strong></p>`}
       ${about && html`<${Paragraphs} text=${about} kind="api-about" />`}
-      <${Fields} title="In the address" rows=${operation.parameters.map(parameterOf)} />
-      <${Fields} title="What is sent" rows=${fieldsOf(schema, operation.body)} />
+      <${Fields} title="Path and query" rows=${operation.parameters.map(parameterOf)} />
+      <${Fields} title="Request body" rows=${fieldsOf(schema, operation.body)} />
       ${kind === "file" && html`<p>A file is sent as application/octet-stream.</p>`}
       ${formsOf(schema, operation.answer).map(({ words, rows }) => html`<${Fields} title=${comesBack(words)} rows=${rows} heads=${TOLD} />`)}
-      ${files.length > 0 && html`<p>${`What comes back: a file, ${files.join(" or ")}.`}</p>`}
+      ${files.length > 0 && html`<p>${`Response: a file, ${files.join(" or ")}.`}</p>`}
       <${Calls} operation=${operation} /></section>`;
 };
 
@@ -70,7 +70,7 @@ const Endpoint = ({ schema, operation }) => {
 const Sign = ({ method }) => html`<span class="api-method" data-method=${method}>${method.toUpperCase()}</span>`;
 
 /** @param {string} words */
-const comesBack = (words) => (words ? `What comes back: ${words[0].toLowerCase()}${words.slice(1)}` : "What comes back");
+const comesBack = (words) => (words ? `Response: ${words[0].toLowerCase()}${words.slice(1)}` : "Response");
 
 /** @param {Operation["parameters"][number]} parameter */
 const parameterOf = ({ name, schema, required = false, description }) => ({
@@ -97,8 +97,8 @@ const Calls = ({ operation }) => {
   const chosen = useSignal("curl");
   const { code } = snippets.find(({ value }) => value === chosen.value) ?? snippets[0];
   return html`
-    <details data-testid="calls"><summary>Call it</summary>
-      <${Segmented} label="Call it from" options=${snippets.map(({ value, text }) => [value, text])} value=${chosen} />
+    <details data-testid="calls"><summary>Example call</summary>
+      <${Segmented} label="Language of the example" options=${snippets.map(({ value, text }) => [value, text])} value=${chosen} />
       <div class="api-code"><pre tabindex="0"><code>${code}</code></pre>
         <${Button} kind="quiet" aria-label=${`Copy the call of ${operation.path}`} onClick=${() => copied(code)}>Copy<//></div></details>`;
 };
@@ -109,7 +109,7 @@ const copied = async (text) => {
     await navigator.clipboard.writeText(text);
     say("Copied.");
   } catch {
-    say("This browser does not let the page copy; mark the text and copy it.", "warning");
+    say("This browser blocks copying. Select the text and copy it.", "warning");
   }
 };
 

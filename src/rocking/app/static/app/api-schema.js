@@ -61,7 +61,7 @@ export const formsOf = (schema, shape) => {
   }
   const list = shape?.type === "array";
   const rows = fieldsOf(schema, list ? innerOf(schema, shape) : shape);
-  return [{ words: list ? "a list; each entry has" : "", rows }];
+  return [{ words: list ? "a list with the entries" : "", rows }];
 };
 
 /** Statuses of errors and what they mean: [[status, words]]. @param {any} schema */
@@ -164,6 +164,6 @@ const aboutOf = (plain, shape) => {
     numbers.filter((each) => each[key] !== undefined).map((each) => `${sign} ${each[key]}`));
   const usual = shape.default ?? null;
   const words = plainText(shape.description ?? plain?.description).replace(/\.$/, "");
-  const said = usual === null ? "" : `usually ${JSON.stringify(usual)}`;
+  const said = usual === null ? "" : `default ${JSON.stringify(usual)}`;
   return [words, ...limits, said].filter(Boolean).join("; ");
 };

@@ -2,7 +2,7 @@
 
 /** @typedef {import("/app/api-schema.js").Operation} Operation */
 
-const KEY_HELP = "the key stands in the file api-key of the data folder; it is new at every start";
+const KEY_HELP = "The file api-key in the data folder contains the key. Each start writes a new key.";
 
 /** The same call in every language: [{value, text, code}]. @param {Operation} operation @param {string} origin */
 export const snippetsOf = (operation, origin) => [

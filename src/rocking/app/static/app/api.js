@@ -7,7 +7,7 @@ import { learnMessages, t } from "/app/words.js";
 export class ApiError extends Error {
   /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [told] */
   constructor(
-    status, { kind = "internal", message = "the server gave no answer", needs = [], ...more } = {},
+    status, { kind = "internal", message = "the server sent no response", needs = [], ...more } = {},
   ) {
     super(message);
     this.name = "ApiError";
@@ -32,7 +32,7 @@ export const latest = (key, path, json) =>
     /** @type {Line} */
     const line = lines.get(key) ?? { busy: false, next: null };
     lines.set(key, line);
-    line.next?.reject(new DOMException("a newer call took its place", "AbortError"));
+    line.next?.reject(new DOMException("replaced by a newer call", "AbortError"));
     line.next = { path, json, resolve, reject };
     if (!line.busy) follow(line);
   });
@@ -93,7 +93,7 @@ const send = async (path, { method, json, body, query, signal, keepalive = false
     if (superseded(error)) throw error;
     document.dispatchEvent(new CustomEvent("rocking:offline"));
     throw new ApiError(
-      0, { kind: "offline", message: "the server does not answer; is `rocking serve` still running?" },
+      0, { kind: "offline", message: "The server does not respond. Check that `rocking serve` is running." },
     );
   });
   if (answer.ok) return answer;
@@ -114,7 +114,7 @@ const addressOf = (path, query) => {
 const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-  const error = { message: t("the server answered {status}", { status: answer.status }), ...told.error };
+  const error = { message: t("the server returned status {status}", { status: answer.status }), ...told.error };
   return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // its hint is for scripts
 };
 

@@ -9,9 +9,9 @@ export const copyTable = async (columns, rows) => {
   const text = asText(columns, rows);
   try {
     await navigator.clipboard.writeText(text);
-    say(t("Copied {count} rows; paste them into Excel or any table.", { count: rows.length }));
+    say(t("{count} rows copied. Paste them into a spreadsheet.", { count: rows.length }));
   } catch {
-    say("This browser does not let the page copy; use the CSV button.", "warning");
+    say("This browser blocks copying. Use the CSV button.", "warning");
   }
 };
 

@@ -17,7 +17,7 @@ export const showFailure = (message) => {
     <div class="card door" data-testid="failure">
       <h1>rocking could not start</h1>
       <div class="refusal" role="alert"><${Note} kind="error" words=${sentence(message)} /></div>
-      <p>You need not sign in again, and your inputs are kept in this browser.</p>
+      <p>You are still signed in. This browser keeps your inputs.</p>
       <${Button} kind="primary" onClick=${() => location.reload()}>Try again<//>
     </div>`);
   document.body.classList.add("at-the-door");

@@ -4,5 +4,5 @@ import { t } from "/app/words.js";
 
 /** The bytes of a file as it is now; they are kept, whatever becomes of it on the disk. @param {File} file */
 export const contentOf = (file) => file.arrayBuffer().catch(() => {
-  throw new Error(t("{name} cannot be read any more: choose it again.", { name: file.name }));
+  throw new Error(t("{name} is no longer readable. Choose the file again.", { name: file.name }));
 });

@@ -18,8 +18,8 @@ export const mountLent = (views, inputs) => {
 const Lent = ({ inputs, aside: { value: aside } }) => html`
   <div class="lent" role="status" data-testid="lent" hidden=${!aside}>${aside && html`
     <${Note} kind=${aside.mine ? "info" : "good"} words=${aside.mine
-      ? t("What you see is {shown}. Your own body, motion and restitution are kept.", { shown: aside.words })
-      : t("Your own inputs are back; {shown} is kept beside them.", { shown: aside.words })} />
+      ? t("These inputs come from {shown}. Your own inputs are kept.", { shown: aside.words })
+      : t("Your own inputs are restored. The inputs from {shown} are kept.", { shown: aside.words })} />
     <div class="toolbar">
-      <${Button} kind="primary" onClick=${inputs.swap}>${aside.mine ? "Back to my inputs" : "Show it again"}<//>
-      <${Button} kind="quiet" onClick=${inputs.forget}>${aside.mine ? "Drop mine, keep these" : "Drop it"}<//></div>`}</div>`;
+      <${Button} kind="primary" onClick=${inputs.swap}>${aside.mine ? "Restore my inputs" : "Show the other inputs"}<//>
+      <${Button} kind="quiet" onClick=${inputs.forget}>${aside.mine ? "Discard my inputs" : "Discard the other inputs"}<//></div>`}</div>`;

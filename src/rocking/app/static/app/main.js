@@ -37,8 +37,8 @@ const start = async () => {
   const app = createApp(kept() ?? fromLink, info);
   app.project = createProjects(app, FIRST);
   await app.project.start(fromLink);
-  if (fromLink && app.inputs.wereKept) app.inputs.lend(fromLink, "what a link holds");
-  if (shared && !fromLink) say(t("{reason}; the usual start is shown.", { reason: UNREADABLE }), "warning");
+  if (fromLink && app.inputs.wereKept) app.inputs.lend(fromLink, "a link");
+  if (shared && !fromLink) say(t("{reason}. The default inputs are shown.", { reason: UNREADABLE }), "warning");
   run(app, view);
 };
 
@@ -59,7 +59,7 @@ const createApp = (inputs, info) => {
   // A file of inputs that are not those on the screen would mislead whoever gets it.
   app.download = async (path, json, name) => {
     const wrong = json === undefined ? "" : faults.sentence({ inputs: true });
-    if (wrong) return say(t("Nothing was saved: put this right first. {faults}", { faults: wrong }), "error");
+    if (wrong) return say(t("Not saved. Correct these inputs first: {faults}", { faults: wrong }), "error");
     return save(path, json, name).catch((error) => {
       say(error.message, "error");
       return error;
@@ -103,7 +103,7 @@ const signingIn = (app, views, tabs) => {
     views.show(tabs.current());
   };
   document.addEventListener("rocking:signed-in", again("Signed in."));
-  whenBack(again("The server answers again."));
+  whenBack(again("The server responds again."));
   document.getElementById("another").addEventListener("click", app.linkForAnother);
 };
 

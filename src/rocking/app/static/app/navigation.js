@@ -23,13 +23,13 @@ export const followAddress = (app, tabs) => {
 };
 
 /** The words when a link's inputs cannot be read. */
-export const UNREADABLE = "The link carries no readable inputs";
+export const UNREADABLE = "The link contains no readable inputs";
 
 /** @param {App} app @param {string} shared */
 const take = (app, shared) => {
   const inputs = decode(shared);
-  if (inputs) app.inputs.lend(inputs, "what a link holds");
-  else app.say(t("{reason}; nothing was changed.", { reason: UNREADABLE }), "warning");
+  if (inputs) app.inputs.lend(inputs, "a link");
+  else app.say(t("{reason}. Nothing was changed.", { reason: UNREADABLE }), "warning");
 };
 
 /** @param {string} token */

@@ -24,9 +24,9 @@ export const inPlainWords = (error, body) => {
 /** What the page has in place of an option that a message tells its reader to state.
  * @type {{ [path: string]: string | undefined }} */
 const WAYS = {
-  "motion.units": "state it in the form", "motion.time_step": "state it in the form", "motion.format": "state it in the form",
-  "measurement.unit": "say it under \u201cUnit\u201d", "measurement.time_unit": "say it under \u201cUnit\u201d",
-  "identify.trend": "choose \u201cchanges steadily\u201d under \u201cWhat an impact takes\u201d",
+  "motion.units": "enter it in the form", "motion.time_step": "enter it in the form", "motion.format": "enter it in the form",
+  "measurement.unit": "enter it under \u201cUnit\u201d", "measurement.time_unit": "enter it under \u201cUnit\u201d",
+  "identify.trend": "choose \u201cwith a trend\u201d under \u201cCoefficient of restitution\u201d",
 };
 
 /** Why a file was left out, with what there is to do about it. @param {{ why: string, hint?: string, to_state?: string }} reason */
@@ -76,7 +76,7 @@ const sentenceOf = (error, units) => {
   else if (!places.length) fault = capital(fault);
   fault = within(places, fault);
   if (error.hint?.text) fault = t("{fault}; {hint}", { fault, hint: spelt(error.hint, units) });
-  return error.more ? t("{fault}; more is wrong beside it", { fault }) : fault;
+  return error.more ? t("{fault}; there are further errors", { fault }) : fault;
 };
 
 /** @param {string[]} places @param {string} fault */

@@ -79,10 +79,10 @@ const Door = ({ running = false }) => {
   return html`
     <form ref=${form} class="card door" onSubmit=${enter} data-testid="door">
       <h1>${running ? "Sign in again" : "Open the link from the terminal"}</h1>
-      ${running && html`<p>${"The server no longer knows this browser; it was probably started again. "}${"Your inputs are still here."}</p>`}
-      <p>${"`rocking serve` prints a link that works once, so that only you can use this server. "}
-        ${"Open that link, or paste it here. If it has been used, press \u201cLink for another browser\u201d "}
-        ${"at the foot of the page in a browser that is signed in, or start the server again."}</p>
+      ${running && html`<p>${"The session has ended. The server was probably restarted. "}${"Your inputs are kept."}</p>`}
+      <p>${"`rocking serve` prints a one-time link to this server. "}
+        ${"Open the link, or paste it here. If the link was used, select \u201cLink for another browser\u201d "}
+        ${"at the bottom of the page in a signed-in browser, or restart the server."}</p>
       <div class="refusal" role="alert">${said.value && html`<${Note} kind="warning" words=${said.value} />`}</div>
       <${Field} label="Link or token" value=${link} error=${wrong.value} help="The line that begins with http:// in the terminal." />
       <${Button} type="submit" kind="primary">Sign in<//>
@@ -100,11 +100,11 @@ const Another = ({ app, url, close }) => {
   const box = useRef(null);
   const mark = () => box.current.querySelector("input").select();
   useLayoutEffect(() => void setTimeout(mark), []);
-  const copy = () => navigator.clipboard.writeText(url).then(() => app.say("The link is on the clipboard."), mark);
+  const copy = () => navigator.clipboard.writeText(url).then(() => app.say("Link copied."), mark);
   return html`
     <div ref=${box} class="card door" data-testid="another"><h1>Link for another browser</h1>
-      <${Field} label="Link that signs one more browser in" value=${url} readonly
-        help="It works once, within 15 minutes. Whoever has it can use this server." />
+      <${Field} label="Sign-in link for another browser" value=${url} readonly
+        help="The link works once, within 15 minutes. Anyone with the link can use this server." />
       <div class="toolbar"><${Button} kind="primary" onClick=${copy}>Copy link<//><${Button} onClick=${close}>Close<//></div>
     </div>`;
 };

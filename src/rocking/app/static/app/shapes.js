@@ -10,7 +10,7 @@ export const SHAPES = {
     words: "Trapezoid",
     fields: [
       ["base", "Base"], ["top", "Top"], ["height", "Height"],
-      ["lean", "Lean", { min: null, help: "How far the top is shifted to the right." }],
+      ["lean", "Lean", { min: null, help: "Shift of the top to the right." }],
     ],
   },
   ellipse: {

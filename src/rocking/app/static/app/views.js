@@ -47,7 +47,7 @@ const load = async (name, app, forget) => {
   } catch (error) {
     forget();
     inPlaceOf(section, html`<${Note} kind="error" words=${failure(error)} />
-      <${Button} kind="primary" onClick=${() => location.reload()}>Load the page again<//>`);
+      <${Button} kind="primary" onClick=${() => location.reload()}>Reload the page<//>`);
     section.dataset.ready = "failed";
     return {};
   }
@@ -56,5 +56,5 @@ const load = async (name, app, forget) => {
 // A module that did not come is asked for again when the view is next shown; the inputs outlast a reload.
 /** @param {any} error */
 const failure = (error) => (error instanceof TypeError
-  ? "This part did not come from the server; is `rocking serve` still running?"
-  : t("This part could not be shown: {reason}", { reason: error.message }));
+  ? "The server did not send this view. Check that `rocking serve` is running."
+  : t("This view could not be loaded: {reason}", { reason: error.message }));

@@ -23,7 +23,7 @@ export const chartTable = ({ title, x, y, series }, dataOf) => {
   const refresh = () => {
     if (!element.open) return;
     const every = Math.max(1, Math.ceil(dataOf()[0].length / MOST));
-    const caption = every > 1 ? t("{chart}: every {number}th sample; copying takes them all", { chart: title, number: every }) : title;
+    const caption = every > 1 ? t("{chart}: every {number}th sample; copying includes all samples", { chart: title, number: every }) : title;
     render(html`<${Table} columns=${columns} rows=${rowsOf(every)} copied=${() => rowsOf(1)} caption=${caption} />`, place);
   };
   element.addEventListener("toggle", refresh);

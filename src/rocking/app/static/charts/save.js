@@ -35,7 +35,7 @@ export const savePngOf = async (drawing, title) => {
     sheet.getContext("2d")?.drawImage(image, 0, 0, sheet.width, sheet.height);
     /** @type {Blob | null} */
     const blob = await new Promise((resolve) => sheet.toBlob(resolve));
-    if (!blob) throw new Error("This browser makes no PNG of that size: save it as SVG.");
+    if (!blob) throw new Error("This browser cannot write a PNG of this size. Save the figure as SVG.");
     saveFile(blob, title, "png");
   } finally {
     URL.revokeObjectURL(address);

@@ -19,7 +19,7 @@ export const measuredPicture = ({ measured, curves, rows, slenderness }, { width
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
     "data-testid": "measured-picture",
-    "aria-label": t("{count} published measurements of the coefficient of restitution over slenderness, and this body at h/b {slenderness} under {models} models.",
+    "aria-label": t("{count} published coefficients of restitution over slenderness, and this body at h/b {slenderness} with {models} models.",
       { count: measured.length, slenderness: number(slenderness), models: rows.length }),
   },
     bottomAxis(x, { ...frame, label: "slenderness ratio h/b" }),

@@ -12,10 +12,10 @@ import { t } from "/app/words.js";
 
 /** @type {{ [stage: string]: [string, string] | undefined }} */
 export const STAGE_WORDS = {
-  before: ["Before", "turning about the old foot"],
-  "stage 1": ["Stage 1", "the vertical part is lost"],
-  "stage 2": ["Stage 2", "the part towards the new foot is lost"],
-  after: ["After", "the rest turns about the new foot"],
+  before: ["Before", "rotation about the old foot"],
+  "stage 1": ["Stage 1", "vertical velocity lost"],
+  "stage 2": ["Stage 2", "velocity towards the new foot lost"],
+  after: ["After", "rotation about the new foot"],
 };
 
 /** Draw panels for {points, stages: [{name, share, velocities}]}, all with one scale of arrows.
@@ -48,7 +48,7 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
-      "aria-label": t("{stage}: {description}; {share} of the kinetic energy is there.", { stage: title, description: words, share: percent(share) }),
+      "aria-label": t("{stage}: {description}. {share} of the kinetic energy remains.", { stage: title, description: words, share: percent(share) }),
     },
       groundLine(4, width - 4, floor),
       regionPaths(body.outline, view, { class: "region faint" }),

@@ -223,10 +223,10 @@ const saysText = (text, now) => text.trim() === now;
 
 /** @param {string} text @param {Limits & { unit: string }} limits @returns {{ given?: number | null, fault?: string }} */
 const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
-  if (!text.trim()) return optional ? { given: null } : { fault: "A number is needed here." };
+  if (!text.trim()) return optional ? { given: null } : { fault: "Enter a number." };
   const given = parseNumber(text);
   if (given === null) return { fault: "This is not a number." };
-  if (moves && given === 0) return { fault: "Not 0: nothing would move." };
+  if (moves && given === 0) return { fault: "Enter a value other than 0." };
   const wrong = /** @type {[boolean, string, number | undefined][]} */ ([
     [above !== undefined && given <= above, "More than {limit}.", above],
     [min !== undefined && min !== null && given < min, "At least {limit}.", min],
@@ -234,13 +234,13 @@ const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
   ]).find(([fails]) => fails);
   if (whole && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
   if (wrong) return { fault: t(wrong[1], { limit: quantity(wrong[2], unit) }) };
-  return whole && !Number.isInteger(given) ? { fault: "A whole number is needed." } : { given };
+  return whole && !Number.isInteger(given) ? { fault: "Enter a whole number." } : { given };
 };
 
 // "1,000" is one to us and a thousand to others: say how it was read.
 /** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
-  && t("Read as {number}: the comma is the decimal sign. For thousands leave it out.", { number: number(parseNumber(text), 6) });
+  && t("Read as {number}: the comma is the decimal sign. Enter thousands without a comma.", { number: number(parseNumber(text), 6) });
 
 /** @param {string} text @param {number} turns @param {{ min?: number, max?: number, step?: number }} limits */
 const stepped = (text, turns, { min, max, step }) => {

@@ -45,7 +45,7 @@ const Bar = ({ projects, app }) => {
       ${SAVED[saving.value]}
     </span>
     ${saving.value === "unsaved" && !clash.value
-      && html`<${Button} onClick=${projects.again}>Save again<//>`}
+      && html`<${Button} onClick=${projects.again}>Retry saving<//>`}
     <${Step} sign="\u21b6" label="Previous state of the project" on=${facts.can_undo || saving.value === "unsaved"} go=${projects.undo} />
     <${Step} sign="\u21b7" label="Next state of the project" on=${facts.can_redo} go=${projects.redo} />
     <${ProjectDialog} projects=${projects} app=${app} handle=${dialog} />
@@ -70,10 +70,10 @@ const Clash = ({ projects }) => {
       onCancel=${(event) => event.preventDefault()} onClose=${stay}>
       <div class="card door">
         <h1 id="clash-title">This project was changed elsewhere</h1>
-        <p>Another tab or browser has changed it since you did. Nothing is lost: choose what you go on with.</p>
+        <p>Another tab or browser has changed this project. Nothing is lost. Choose the version to continue with.</p>
         <div class="toolbar">
-          <${Button} kind="primary" onClick=${settle(false)}>Show what is there<//>
-          <${Button} onClick=${settle(true)}>Keep mine as a copy<//>
+          <${Button} kind="primary" onClick=${settle(false)}>Open the other version<//>
+          <${Button} onClick=${settle(true)}>Save my version as a copy<//>
         </div>
       </div>
     </dialog>`;

@@ -68,7 +68,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
   /** @param {Server.ProjectFacts} one */
   const remove = (one) => act(async () => {
     await app.call(`projects/${one.id}`, { method: "DELETE" });
-    app.say(t("{name} was deleted; it can be brought back below.", { name: userText(one.name) }));
+    app.say(t("{name} is deleted. You can restore it below.", { name: userText(one.name) }));
     if (one.id !== projects.here.value.id) return;
     const next = lists.value.projects.find((each) => each.id !== one.id);
     await (next ? projects.open(next.id) : projects.begin("New project"));
@@ -82,7 +82,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
           <h1 id="projects-title">Projects</h1>
           <${Button} onClick=${() => dialog.current.close()}>Close<//>
         </div>
-        <p>They are kept on this computer, with every state that they had.</p>
+        <p>Projects are kept on this computer, with their history.</p>
         <${NameForm} for="rename" label="Name of the open project" value=${here.name} text="Rename" onSubmit=${named} />
         <ul class="project-list" aria-label="Projects">
           ${lists.value.projects.map((one) => html`
@@ -93,26 +93,26 @@ export const ProjectDialog = ({ projects, app, handle }) => {
                   ? html`<span class="project-open">open</span>`
                   : html`<${Act} text="Open" one=${one} go=${act(() => projects.open(one.id), true)} />`}
                 <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, t("{name} (copy)", { name: userText(one.name) }), one.name))} />
-                <${Act} text="Take away" one=${one} go=${take(one)} />
+                <${Act} text="Export" one=${one} go=${take(one)} />
                 <${Act} text="Delete" one=${one} go=${remove(one)} />
               </div>
             </li>`)}
         </ul>
-        <${NameForm} for="begin" label="Name of a new project" value="" text="Begin" onSubmit=${named} />
+        <${NameForm} for="begin" label="Name of a new project" value="" text="Create" onSubmit=${named} />
         <div class="field">
-          <label for="project-file">A project from its file</label>
+          <label for="project-file">Import a project file</label>
           <input id="project-file" type="file" accept=".zip" onChange=${bring} aria-describedby="project-file-about" />
-          <p id="project-file-about" class="field-help">Its studies are computed again here.</p>
+          <p id="project-file-about" class="field-help">The studies of the project are computed again.</p>
         </div>
-        <h2>${t("What {name} was", { name: userText(here.name) })}</h2>
+        <h2>${t("History of {name}", { name: userText(here.name) })}</h2>
         <ul class="project-list states" aria-label="History">
           ${states.map((one) => html`
             <li key=${one.number}>
               <p><span>${changed(one.words)}</span><span class="quiet">${dateTime(one.time)}</span></p>
               ${one.here
                 ? html`<span class="project-open">now</span>`
-                : html`<${Button} aria-label=${t("Go back to state {number}: {change}", { number: one.number, change: changed(one.words) })}
-                    onClick=${act(() => projects.restore(one.number))}>Go back to it<//>`}
+                : html`<${Button} aria-label=${t("Restore state {number}: {change}", { number: one.number, change: changed(one.words) })}
+                    onClick=${act(() => projects.restore(one.number))}>Restore<//>`}
             </li>`)}
         </ul>
         ${lists.value.states.length > FEW && !all.value && html`
@@ -125,7 +125,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
             ${lists.value.deleted.map((one) => html`
               <li key=${one.id}>
                 <p><strong translate=${false}>${one.name}</strong><span class="quiet">${dateTime(one.deleted ?? "")}</span></p>
-                <${Act} text="Bring back" one=${one}
+                <${Act} text="Restore" one=${one}
                   go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
               </li>`)}
           </ul>`}

@@ -11,8 +11,8 @@ const PAUSE = 400; // after the last change, before it is saved [ms]
 
 /** What a project consists of, in words. @type {{ [key: string]: string | undefined }} */
 export const PARTS = {
-  body: "body", motion: "motion", restitution: "restitution", response: "start", settings: "gravity", decide: "Decide",
-  inventory: "Inventory", measure: "Measure", records: "Records", space: "In space", bed: "contact bed",
+  body: "body", motion: "motion", restitution: "restitution", response: "initial conditions", settings: "gravity", decide: "Assessment",
+  inventory: "Inventory", measure: "Identification", records: "Records", space: "3D", bed: "contact bed",
 };
 
 /** The keeper of the open project; `first` is what a new one holds. @param {App} app @param {Server.Inputs} first */
@@ -112,7 +112,7 @@ export const createProjects = (app, first) => {
     if (theirs.deleted) {
       const alone = theirs.version === here.value.version + 1; // nothing else happened to it
       theirs = { ...theirs, ...(await app.call(`projects/${theirs.id}/back`, { method: "POST" })) };
-      app.say("The project had been deleted elsewhere; it is back, with what you do here.");
+      app.say("The project was deleted elsewhere. It is restored with your changes.");
       if (alone) {
         known(theirs);
         save(); // after this one, which waits for what is returned here
@@ -171,7 +171,7 @@ export const createProjects = (app, first) => {
   /** @param {() => Promise<Server.WholeProject>} get */
   const change = async (get) => {
     await save();
-    if (changed.size || clash.value) throw new Error("What you typed could not be saved yet; it stays here.");
+    if (changed.size || clash.value) throw new Error("Your changes are not saved yet. They stay on this page.");
     return inLine(async () => {
       const facts = await get();
       if (changed.size) save();
@@ -221,7 +221,7 @@ export const createProjects = (app, first) => {
       const { id } = here.value;
       const found = await work;
       if (id === here.value.id) return found;
-      throw new Error("Another project was opened before this had arrived: it is in neither of them. Do it once more.");
+      throw new Error("Another project was opened before this action finished. Repeat the action.");
     },
     undo: step("undo"),
     redo: step("redo"),
@@ -231,7 +231,7 @@ export const createProjects = (app, first) => {
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
     /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
-    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("a copy of {name}", { name: userText(of) }) } })),
+    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("copy of {name}", { name: userText(of) }) } })),
     /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
     /** @param {string} name */
@@ -296,7 +296,7 @@ export const createProjects = (app, first) => {
         return;
       }
       show(known(whole));
-      if (fromLink) app.inputs.lend(fromLink, "what a link holds");
+      if (fromLink) app.inputs.lend(fromLink, "a link");
     },
   };
 };

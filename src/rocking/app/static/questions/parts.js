@@ -75,8 +75,8 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
         ${files.value.map((one) => html`<li key=${one.sha}><span translate=${false}>${one.name}</span>
-          <${Button} kind="quiet" aria-label=${t("Leave out {name}", { name: one.name })}
-            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>leave out<//></li>`)}
+          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name: one.name })}
+            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>remove<//></li>`)}
       </ul>`}<//>`;
 };
 
@@ -101,8 +101,8 @@ const Outcome = ({ questions, answer: Answer }) => {
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
       ${question.state === "refused" && html`
         <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" words=${reasonOf(question)} /></div>
-        <${Drawing} question=${question} alt="What was found all the same" />`}
-      ${question.state === "stopped" && html`<${Note} words="It was stopped." />`}
+        <${Drawing} question=${question} alt="Partial result" />`}
+      ${question.state === "stopped" && html`<${Note} words="The run was stopped." />`}
       ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
         questions=${questions} />`}
       ${done && html`<${Files} questions=${questions} question=${question} />`}
@@ -112,14 +112,14 @@ const Outcome = ({ questions, answer: Answer }) => {
 /** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
 const Waiting = ({ questions, question }) => html`
   <div class="waiting-line" role="status">
-    <progress aria-label="Being answered"></progress>
-    <span>${question.state === "waiting" ? "in line" : "being computed"}</span>
+    <progress aria-label="Computing"></progress>
+    <span>${question.state === "waiting" ? "Queued" : "Computing"}</span>
     <${Button} onClick=${questions.stop}>Stop<//>
   </div>`;
 
 /** @type {{ [name: string]: string | undefined }} */
 const WORDS = {
-  pdf: "Report (PDF)", html: "Report (web page)", xlsx: "Excel", csv: "CSV", json: "What was done (JSON)", glb: "3D (glTF)",
+  pdf: "Report (PDF)", html: "Report (web page)", xlsx: "Excel", csv: "CSV", json: "Provenance (JSON)", glb: "3D (glTF)",
   "results.json": "All numbers (JSON)",
 };
 /** @param {string} name */
@@ -130,14 +130,14 @@ const wordsOf = (name) => {
 
 /** @param {{ questions: Questions, question: Server.WholeQuestion }} props */
 const Files = ({ questions, question }) => html`
-  <div class="toolbar" role="group" aria-label="Take away">
+  <div class="toolbar" role="group" aria-label="Export">
     ${question.files.filter((name) => name !== DRAWING).map((name) => html`<${Button} key=${name} onClick=${() => questions.take(name)}>
       ${wordsOf(name)}<//>`)}
   </div>
-  <details><summary>The same on the command line</summary>
+  <details><summary>Command line</summary>
     ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} --out ${question.command}</pre>` : html`
     <p class="field-help">${question.command === "motions"
-      ? "Save it as question.toml, its files beside it and the records in a folder records:" : "Save it as question.toml, its files beside it:"}</p>
+      ? "Save this text as question.toml. Put its files in the same folder and the records in a folder named records:" : "Save this text as question.toml. Put its files in the same folder:"}</p>
     <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
@@ -151,8 +151,8 @@ const DRAWING = "picture.svg";
 /** @param {{ questions: Questions }} props */
 const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">
-    <h2 id="earlier-title">Asked before</h2>
-    <ul class="project-list" aria-label="Asked before">
+    <h2 id="earlier-title">Previous runs</h2>
+    <ul class="project-list" aria-label="Previous runs">
       ${questions.all.value.map((one) => html`<li key=${one.id}>
         <p><strong>${one.name}</strong><span class="quiet">${dateTime(one.asked)}, ${t(one.state)}</span></p>
         <div class="toolbar">
@@ -189,10 +189,10 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
     <header class="view-head"><h1>${title}</h1><p class="lead">${lead}</p></header>
     <div class="columns narrow-wide">
       <div class="asked">
-        <form ref=${form} class="card" onSubmit=${submit} aria-label="What is asked">
+        <form ref=${form} class="card" onSubmit=${submit} aria-label="Inputs">
           <${Refused.Provider} value=${refused}>${children}<//>
           ${wrong && html`<${Note} kind="error" role="alert" words=${refused.words} />`}
-          <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Ask<//>
+          <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Compute<//>
         </form>
         <${Earlier} questions=${questions} />
       </div>

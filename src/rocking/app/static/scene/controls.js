@@ -11,9 +11,9 @@ const SPEEDS = [
   ["0.01", "0.01\u00d7"],
 ];
 const GROUNDS = [
-  ["true", "as it moves"],
-  ["magnified", "larger, to be seen"],
-  ["ride", "ride with it"],
+  ["true", "true scale"],
+  ["magnified", "magnified"],
+  ["ride", "camera follows the ground"],
 ];
 const PLAY = "M3 1.5v13l11-6.5z";
 const PAUSE = "M3 1.5h3.6v13H3zM9.4 1.5H13v13H9.4z";
@@ -95,8 +95,8 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   };
   /** @param {string} mode @param {number} times @param {boolean} rides */
   const tellGround = (mode, times, rides) => {
-    const far = "the ground moves far: the picture rides with it";
-    const magnified = times === 1 ? "" : t("ground and body shift {factor} times as far as in truth", { factor: times });
+    const far = "large ground displacement: the camera follows the ground";
+    const magnified = times === 1 ? "" : t("ground displacement magnified {factor} times", { factor: times });
     const words = mode !== "ride" && rides ? far : magnified;
     if (factor.textContent !== words) factor.textContent = words;
   };

@@ -11,11 +11,11 @@ export class Track {
   /** @param {ArrayLike<number>} time @param {ArrayLike<number>} values */
   constructor(time, values) {
     if (!time.length || time.length !== values.length) {
-      throw new Error("a track needs as many values as instants, and one at least");
+      throw new Error("times and values must have the same length, at least 1");
     }
     this.time = Float64Array.from(time);
     this.values = Float64Array.from(values);
-    if (!increasing(this.time)) throw new Error("the instants of a track must not go back");
+    if (!increasing(this.time)) throw new Error("times must not decrease");
     this.place = 0;
   }
 

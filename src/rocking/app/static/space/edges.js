@@ -13,15 +13,15 @@ export const Edges = ({ question, answer, children }) => {
   const doubts = [...new Set(answer.edges.flatMap((/** @type {any} */ { coefficients }) => Object.entries(coefficients)
     .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${t(name)}: ${t(words)}`))))];
   return html`
-    <p class="verdict" data-testid="verdict">What is left of its speed when it falls back from an edge of its base, by model.</p>
-    <${Scene} question=${question} title="The edges of its base" label="The body with the edges of its base numbered" onSpace=${() => {}}
+    <p class="verdict" data-testid="verdict">Coefficient of restitution of each base edge, by model.</p>
+    <${Scene} question=${question} title="Edges of the base" label="Body with numbered base edges" onSpace=${() => {}}
       onStage=${(stage) => {
         stage.number(stage.model.edges);
         stage.draw();
       }}
-      words=${round ? "Its base is round: it is tipped in four directions."
-        : t("Its base has {count} edges it may rock about; edge 0 runs from corner 0 to corner 1.", { count: answer.edges.length + answer.edges_left_out })}
-      legend=${[["holds", "an edge, with its number"], ["base", "a corner"], ["plumb", "centre of mass and plumb line"]]} />
+      words=${round ? "The base is round. The table lists four directions."
+        : t("The base has {count} edges. Edge 0 runs from corner 0 to corner 1.", { count: answer.edges.length + answer.edges_left_out })}
+      legend=${[["holds", "edge with its number"], ["base", "corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}
     <${Rows} caption="Edges and corners" head=${[round ? "from" : "from edge", "onto", "slenderness [\u00b0]", ...models]}
       rows=${answer.edges.map((/** @type {any} */ each) => [each.edge, each.lands_on, number((each.slenderness_angle * 180) / Math.PI, 3),

@@ -16,7 +16,7 @@ const TOLD = 100; // between two looks at words and curve while it is played [ms
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
 /** @type {{ [key: string]: number }} */
 const STRIDES = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
-const LEGEND = [["holds", "touches the ground and holds"], ["slides", "slides"], ["plumb", "centre of mass and plumb line"]];
+const LEGEND = [["holds", "sticking contact"], ["slides", "sliding contact"], ["plumb", "centre of mass and plumb line"]];
 
 // Impacts that are marked: of thousands, only those that lose something worth seeing.
 /** @param {{ time: number, energy_before: number, energy_after: number }[]} impacts */
@@ -29,7 +29,7 @@ const marked = (impacts) => {
 /** The motion that a question found, with its controls.
  * @param {{ question: Server.WholeQuestion, answer: any }} props */
 export const MotionScene = ({ question, answer }) => {
-  const [now, running, words] = [useSignal(0), useSignal(false), useSignal("The motion is being loaded.")];
+  const [now, running, words] = [useSignal(0), useSignal(false), useSignal("Loading the motion.")];
   const speed = useSignal("1");
   /** @type {{ clock: Clock, played: Played, chart: Chart, told: number }} */
   const kept = useRef(/** @type {any} */ ({ clock: new Clock(), played: null, chart: null, told: 0 })).current;
@@ -81,7 +81,7 @@ export const MotionScene = ({ question, answer }) => {
     clock.end = kept.played.end;
     const { time, tilt } = kept.played.motion;
     kept.chart = lineChart(curve.current, {
-      title: "Tilt from the pose at the start", height: 150, x: { label: "time", unit: "s" }, y: { label: "tilt", unit: "\u00b0" },
+      title: "Tilt from the initial pose", height: 150, x: { label: "time", unit: "s" }, y: { label: "tilt", unit: "\u00b0" },
       series: [{ label: "tilt", colour: "--accent" }],
     });
     kept.chart.setData([Array.from(time), Array.from(tilt, (each) => (each * 180) / Math.PI)]);
@@ -97,8 +97,8 @@ export const MotionScene = ({ question, answer }) => {
     kept.chart?.destroy();
   }, []);
   return html`
-    <${Scene} question=${question} words=${words.value} legend=${LEGEND} title="The body as it moves" onStage=${standing} onSpace=${toggle}
-      label=${t("The body as it moves: {summary}", { summary: answer.summary })} />
+    <${Scene} question=${question} words=${words.value} legend=${LEGEND} title="Motion of the body" onStage=${standing} onSpace=${toggle}
+      label=${t("Motion of the body: {summary}", { summary: answer.summary })} />
     <div class="scene-row" role="group" aria-label="Play">
       <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>
         ${running.value ? "Pause" : "Play"}</button>

@@ -61,17 +61,17 @@ export class Played {
   words(instant) {
     const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
     const facts = { time: fixed(instant, 2), tilt: fixed(this.tilt * DEGREES, 2), contact: contactWords(vertices.length, sliding.length) };
-    return instant >= this.fell ? t("At {time} s: tilted {tilt}\u00b0, {contact}; it has overturned.", facts)
-      : t("At {time} s: tilted {tilt}\u00b0, {contact}.", facts);
+    return instant >= this.fell ? t("At {time} s: tilt {tilt}\u00b0, {contact}; overturned.", facts)
+      : t("At {time} s: tilt {tilt}\u00b0, {contact}.", facts);
   }
 }
 
 /** @param {number} count @param {number} sliding */
 const contactWords = (count, sliding) => {
   if (!count) return t("in the air");
-  if (!sliding) return t(["on {count} point", "on {count} points"], { count });
-  return sliding === count ? t(["on {count} point, all sliding", "on {count} points, all sliding"], { count })
-    : t("on {count} points, {sliding} sliding", { count, sliding });
+  if (!sliding) return t(["{count} contact point", "{count} contact points"], { count });
+  return sliding === count ? t(["{count} contact point, sliding", "{count} contact points, all sliding"], { count })
+    : t("{count} contact points, {sliding} sliding", { count, sliding });
 };
 
 /** @param {number} one @param {number} other @param {number} share */

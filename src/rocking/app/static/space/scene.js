@@ -17,7 +17,7 @@ const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
 /** @type {[string, Aim | null, number?][]} */
 const VIEWS = [
   ["From the front", { turned: -Math.PI / 2, raised: 0.15 }], ["From the side", { turned: 0, raised: 0.15 }],
-  ["From above", { turned: -Math.PI / 2, raised: 1.5 }], ["Nearer", null, CLOSER], ["Farther", null, 1 / CLOSER],
+  ["From above", { turned: -Math.PI / 2, raised: 1.5 }], ["Zoom in", null, CLOSER], ["Zoom out", null, 1 / CLOSER],
 ];
 
 /** @param {{ kind: string }} props */
@@ -46,7 +46,7 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
       onStage(made);
       canvas.current.dataset.drawn = "true";
     };
-    build().catch((error) => (trouble.value = t("No picture: {reason}. All that it shows stands in words below.", { reason: error.message })));
+    build().catch((error) => (trouble.value = t("No picture: {reason}. The text below describes the body.", { reason: error.message })));
     return () => {
       gone = true;
       watcher.disconnect();
@@ -91,11 +91,11 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
           event.preventDefault();
           nearer(event.deltaY < 0 ? CLOSER : 1 / CLOSER);
         }}></canvas>
-        <ul class="space-legend" aria-label="What is marked">
-          ${[...(stage.value?.model.mended ? [["mended", "closed by the repair"]] : []), ...legend].map(([kind, text]) => html`
+        <ul class="space-legend" aria-label="Legend">
+          ${[...(stage.value?.model.mended ? [["mended", "closed by repair"]] : []), ...legend].map(([kind, text]) => html`
             <li key=${kind}><${Key} kind=${kind} />${text}</li>`)}
         </ul><//>
-      <div class="toolbar" role="group" aria-label="Look">
+      <div class="toolbar" role="group" aria-label="View">
         ${VIEWS.map(([name, to, times]) => html`<${Button} kind="quiet" key=${name}
           onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times ?? 1))}>${name}<//>`)}
       </div>

@@ -17,7 +17,7 @@ export class Stage {
     this.canvas = canvas;
     this.model = model;
     const context = canvas.getContext("webgl2", { antialias: true, alpha: false });
-    if (!context) throw new Error("this browser draws nothing in three dimensions (WebGL 2 is off)");
+    if (!context) throw new Error("this browser cannot draw in 3D (WebGL 2 is off)");
     this.renderer = new three.WebGLRenderer({ canvas, context });
     this.scene = new three.Scene();
     this.camera = new three.PerspectiveCamera(VIEW, 1, 0.01, 100);

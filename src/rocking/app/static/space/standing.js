@@ -15,15 +15,15 @@ const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a question about a file that has
 const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
 const FEW = 12; // poses that are listed
 const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
-const COLOURS = [["rise", "how high the centre is where that point is lowest"], ["plain", "none"]];
+const COLOURS = [["rise", "height of the centre of mass"], ["plain", "none"]];
 // what only rounding left is nothing
 /** @param {number} value @param {number} most */
 const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
 /** @param {number | null | undefined} value */
 const millimetres = (value) => (value === null || value === undefined ? "\u2013" : number(1000 * value, 3));
 
-const ROLLS = "It rolls all the way round, its axis {tilt}\u00b0 from the vertical, its centre {height} mm high.";
-const BALANCES = "It can be balanced all the way round, its axis {tilt}\u00b0 from the vertical, its centre {height} mm high.";
+const ROLLS = "The body rolls freely with its axis {tilt}\u00b0 from the vertical. Height of the centre of mass: {height} mm.";
+const BALANCES = "A ring of unstable equilibria: axis {tilt}\u00b0 from the vertical. Height of the centre of mass: {height} mm.";
 
 /** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another.
  * @param {{ question: Server.WholeQuestion, answer: any, onPose: (pose: number, up: number[]) => unknown, children: any }} props */
@@ -53,24 +53,24 @@ export const Standing = ({ question, answer, onPose, children }) => {
   const here = answer.stable[shown];
   const most = answer.stable.at(-1).energy;
   const low = answer.stable[0].centre_height;
-  const stands = t("Pose {pose}: its centre {height} mm over the ground, {energy} J above the lowest pose; the plumb line {edge} mm inside the nearest edge of the support polygon.", {
+  const stands = t("Pose {pose}: centre of mass {height} mm above the ground, {energy} J above the lowest pose. The plumb line is {edge} mm inside the nearest edge of the support polygon.", {
     pose: shown, height: millimetres(here.centre_height), energy: joules(here.energy, most), edge: millimetres(here.nearest_edge),
   });
-  const leaves = here.barrier === null || !Number.isFinite(here.barrier) ? t("It knows no other pose.")
-    : t("To leave it the centre must rise {rise} mm.", { rise: millimetres(here.barrier) });
+  const leaves = here.barrier === null || !Number.isFinite(here.barrier) ? t("This is the only stable pose.")
+    : t("The centre of mass must rise {rise} mm to leave this pose.", { rise: millimetres(here.barrier) });
   return html`
     <p class="verdict" data-testid="verdict">${t(
-      ["It can stand in one way; as it is set down it stands in pose {pose}.", "It can stand in {count} ways; as it is set down it stands in pose {pose}."],
+      ["The body has one stable pose. From the given orientation it settles in pose {pose}.", "The body has {count} stable poses. From the given orientation it settles in pose {pose}."],
       { count: answer.stable.length, pose: answer.stands_in })}</p>
-    <${Scene} question=${question} words=${`${stands} ${leaves}`} onStage=${built} title="Its ways to stand" label="The body on its support polygon, with its equilibria"
+    <${Scene} question=${question} words=${`${stands} ${leaves}`} onStage=${built} title="Stable poses" label="Body on its support polygon, with its equilibria"
       onSpace=${() => {}} legend=${[
-        ["stable", t("{number} stable: it stands on that side", { number: answer.stable.length })], ["saddle", t("{number} saddles: balanced on an edge", { number: answer.saddles })],
+        ["stable", t("{number} stable equilibria", { number: answer.stable.length })], ["saddle", t("{number} saddles: balanced on an edge", { number: answer.saddles })],
         ["summit", t("{number} summits: balanced on a corner", { number: answer.summits })], ["plumb", "centre of mass and plumb line"],
-        ["rise", t("dark: the centre is low (from {height} mm) when that point is below; bright: high", { height: millimetres(low) })]]} />
+        ["rise", t("height of the centre of mass with this point at the bottom: dark is low (from {height} mm), bright is high", { height: millimetres(low) })]]} />
     <div class="space-choices">
-      <${Choice} label="Set down in" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
+      <${Choice} label="Stable pose" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
         options=${poses.filter((each, k) => k < FEW || each.pose === shown).map((each) => [String(each.pose),
-          t("pose {pose}: {rise} mm to leave it", { pose: each.pose, rise: millimetres(each.barrier) })])} />
+          t("pose {pose}: energy barrier {rise} mm", { pose: each.pose, rise: millimetres(each.barrier) })])} />
       <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
         colours.value = next;
         stage.current?.colourful(next === "rise");
@@ -81,19 +81,19 @@ export const Standing = ({ question, answer, onPose, children }) => {
     ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
-    }}>${t("Go on in pose {pose}", { pose: shown })}<//></div>`}
+    }}>${t("Use pose {pose}", { pose: shown })}<//></div>`}
     ${children}
-    <${Drawing} question=${question} alt=${t("Rise of the centre by tilt and azimuth from pose {pose}, and its support polygon", { pose: answer.stands_in })} />
-    <h3>What it takes to topple it, by direction</h3>
-    <${Rows} caption="Directions" head=${["towards [\u00b0]", "centre must rise [mm]", "by the lowest way [mm]", "lifts at [m/s\u00b2]", "into pose"]}
+    <${Drawing} question=${question} alt=${t("Rise of the centre of mass over tilt and azimuth from pose {pose}, and the support polygon", { pose: answer.stands_in })} />
+    <h3>Toppling by direction</h3>
+    <${Rows} caption="Directions" head=${["direction [\u00b0]", "direct rise of the centre [mm]", "lowest rise of the centre [mm]", "uplift at [m/s\u00b2]", "next pose"]}
       rows=${answer.directions.map((/** @type {any} */ each) => [
         number((each.azimuth * 180) / Math.PI, 3), millimetres(each.straight_rise), millimetres(each.lowest_rise),
         number(each.uplift_acceleration, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
-    <h3>Its poses, the hardest to leave first</h3>
-    <${Rows} caption="Poses" head=${["pose", "rise to leave [mm]", "centre [mm]", "energy [J]", "nearest edge [mm]"]}
+    <h3>Poses, highest energy barrier first</h3>
+    <${Rows} caption="Poses" head=${["pose", "energy barrier [mm]", "centre [mm]", "energy [J]", "distance to edge [mm]"]}
       rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier), millimetres(each.centre_height),
         joules(each.energy, most), millimetres(each.nearest_edge)])} />
-    ${poses.length > FEW && html`<p class="field-help">${t("And {count} more, which a rise of {rise} mm or less leaves.",
+    ${poses.length > FEW && html`<p class="field-help">${t("{count} more poses have an energy barrier of {rise} mm or less.",
       { count: poses.length - FEW, rise: millimetres(poses[FEW].barrier) })}</p>`}
     ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };

@@ -2,7 +2,7 @@
 
 import { batch, signal } from "/parts/preact.js";
 
-export const OLDER = "What is shown below belongs to the last valid inputs.";
+export const OLDER = "The results below belong to the last valid inputs.";
 
 /** What is wrong in the steps that a view asks about, in words. @param {App} app @param {...string} views */
 export const faultsOf = (app, ...views) => {

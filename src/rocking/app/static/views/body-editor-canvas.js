@@ -391,7 +391,7 @@ const shifted = (dx, dy) => (editor, place, times) => {
 /** @param {Editor} editor @param {Place} place */
 const drop = (editor, place) => {
   const next = model.removed(editor.regions(), place);
-  if (next === editor.regions()) return editor.say("A polygon keeps at least three vertices.", "warning");
+  if (next === editor.regions()) return editor.say("A polygon needs at least three vertices.", "warning");
   return editor.change(next, { ...place, vertex: Math.max(0, place.vertex - 1) });
 };
 

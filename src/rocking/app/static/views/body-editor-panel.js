@@ -18,8 +18,8 @@ export const Tools = ({ editor, children }) => {
     ${travel("undo", "Undo", history.canUndo())}${travel("redo", "Redo", history.canRedo())}
     <${Button} onClick=${() => newRegion(editor)}>Add region<//>
     <${Button} onClick=${() => newHole(editor)}>Add hole<//>
-    <${Button} kind="danger" disabled=${state.place.ring < 0 && editor.regions().length < 2} onClick=${() => removePart(editor)}>Remove part<//>
-    <${Button} onClick=${() => editor.change(model.onTheGround(editor.regions(), tidy))}>Stand on the ground<//>
+    <${Button} kind="danger" disabled=${state.place.ring < 0 && editor.regions().length < 2} onClick=${() => removePart(editor)}>Remove region or hole<//>
+    <${Button} onClick=${() => editor.change(model.onTheGround(editor.regions(), tidy))}>Move to the ground<//>
     ${children}
   </div>`;
 };
@@ -45,7 +45,7 @@ export const Details = ({ editor }) => {
         ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${t("Vertex {axis}", { axis })}
           value=${point[index]} on=${put(index)} />`)}
         <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional aside placeholder=${editable(editor.step())}
-          help="Of the grid and of the arrow keys; with Shift ten times. Empty: as the zoom asks." />
+          help="Step of the grid and of the arrow keys (with Shift: ten steps). Empty: depends on the zoom." />
         <${Switch} label="Snap to grid" value=${snap} on=${set("snap")} />
       </div>
       <div class="fields" data-testid="densities">${regions.map(({ density }, index) => html`

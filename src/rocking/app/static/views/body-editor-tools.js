@@ -12,8 +12,8 @@ import { t } from "/app/words.js";
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 const HOW = {
-  pen: "Click, or move the cursor with the arrow keys and press Space: one point after another. Enter, or a click on the first, closes the outline; Escape leaves.",
-  scale: "Set two points on the picture whose distance is known; arrow keys and Space do it too.",
+  pen: "Click to set a point, or move the cursor with the arrow keys and press Space. Enter or a click on the first point closes the outline. Escape cancels.",
+  scale: "Set two points with a known distance on the picture. Click, or use the arrow keys and Space.",
 };
 
 /** What a point and a key do while a tool is held: the arrow keys move a cursor, Space sets a point where it stands.
@@ -25,7 +25,7 @@ export const createTool = (editor) => {
   const tell = () => {
     const { points, cursor } = held();
     const count = points.length;
-    say(cursor ? t("{count} points set; the cursor stands at x {x}, y {y} {unit}.", { count, x: number(cursor[0], 7), y: number(cursor[1], 7), unit: editor.units() })
+    say(cursor ? t("{count} points set; cursor at x {x}, y {y} {unit}.", { count, x: number(cursor[0], 7), y: number(cursor[1], 7), unit: editor.units() })
       : t("{count} points set.", { count }));
     editor.tell();
   };
@@ -45,14 +45,14 @@ export const createTool = (editor) => {
   /** @param {(editor: Editor, points: Ring) => string | void} [use] */
   const close = (use = asOutline) => {
     const { points } = held();
-    if (points.length < 3) return say("An outline needs three points.");
+    if (points.length < 3) return say("An outline needs at least three points.");
     leave();
     say(use(editor, points) ?? t("{count} points added.", { count: points.length }));
     return editor.board.focus();
   };
   const measured = () => {
-    if (held().points.length < 2) return say("Two points are needed.");
-    say("Now type how far apart they are, and apply it.");
+    if (held().points.length < 2) return say("Set two points first.");
+    say("Enter the distance of the points, then apply the length.");
     return /** @type {HTMLElement | null} */ (document.querySelector("[name=known-length]"))?.focus();
   };
   /** @type {{ [kind: string]: () => unknown }} */
@@ -94,7 +94,7 @@ export const createTool = (editor) => {
 export const Pen = ({ editor }) => {
   const mirror = () => {
     editor.replace(model.mirrored(editor.section(), editor.regions(), tidy));
-    editor.tool.say("Left is right now.");
+    editor.tool.say("Body mirrored.");
   };
   return html`
     <${Button} aria-pressed=${String(editor.state.tool?.kind === "pen")} onClick=${() => editor.tool.take("pen")}>Pen<//>
@@ -107,7 +107,7 @@ export const PenEnds = ({ editor: { state, tool } }) => html`
     <${Button} kind="primary" onClick=${() => tool.close()}>Close as body<//>
     <${Button} onClick=${() => tool.close(asRegion)}>Close as region<//>
     <${Button} onClick=${() => tool.close(asHole)}>Close as hole<//>
-    <${Button} onClick=${tool.leave}>Leave<//></div>`;
+    <${Button} onClick=${tool.leave}>Cancel<//></div>`;
 
 /** The edge after the chosen vertex: its dimensions, as an arc, as a mirror. @param {{ editor: Editor }} props */
 export const EdgePart = ({ editor }) => {
@@ -121,17 +121,17 @@ export const EdgePart = ({ editor }) => {
     editor.change(model.withEdge(editor.regions(), place, { ...now, [key]: value }, tidy));
   };
   const fixed = () => {
-    if (length === 0) editor.tool.say("Both ends of this edge are at one place.");
+    if (length === 0) editor.tool.say("This edge has length 0.");
     return length > 0;
   };
   const arc = () => {
     if (!fixed()) return undefined;
-    if (!rise.value) wrong.value = "How far does the arc rise? A number other than 0.";
+    if (!rise.value) wrong.value = "Enter a rise other than 0.";
     if (!rise.value || wrongIn(box.current)) return toWrong(box.current);
     const made = model.withArc(editor.regions(), place, rise.value, off.value ?? Math.abs(rise.value) / 100, tidy);
-    if (!made) return editor.tool.say("That needs more than 1000 chords: let it be further off the arc.");
+    if (!made) return editor.tool.say("This arc needs more than 1000 chords. Allow a larger deviation.");
     editor.change(made.regions);
-    return editor.tool.say(t("An arc of {count} chords, at most {length} {unit} off.", { count: made.chords, length: number(made.error), unit: editor.units() }));
+    return editor.tool.say(t("Arc of {count} chords, largest deviation {length} {unit}.", { count: made.chords, length: number(made.error), unit: editor.units() }));
   };
   /** @param {number | null} value */
   const rises = (value) => {
@@ -140,18 +140,18 @@ export const EdgePart = ({ editor }) => {
   };
   const of = Object.values(place).join();
   return html`
-    <details class="paste" data-testid="edge"><summary>The edge after the chosen vertex</summary><div class="stack">
+    <details class="paste" data-testid="edge"><summary>Edge after the selected vertex</summary><div class="stack">
       <div class="fields">
         <${NumberField} key=${`length ${of}`} label="Edge length" value=${tidy(length, 9)} on=${change("length")} above=${0}
-          help="From the chosen vertex to the next, which moves." />
+          help="From the selected vertex to the next vertex, which moves." />
         <${NumberField} key=${`angle ${of}`} label="Edge angle" unit="°" value=${tidy(angle, 9)} on=${change("angle")}
           help="From the horizontal, counter-clockwise." /></div>
       <div ref=${box} class="fields">
         <${NumberField} label="Rise of the arc" value=${rise.value} on=${rises} error=${wrong.value} optional aside
-          help="Out of the body; less than 0: into it." />
-        <${NumberField} label="At most off the arc" value=${off} above=${0} optional aside help="Empty: a hundredth of the rise." /></div>
-      <div class="toolbar"><${Button} onClick=${arc}>Make it an arc<//>
-        <${Button} onClick=${() => fixed() && editor.change(model.doubled(editor.regions(), place, tidy))}>Double over this edge<//></div>
+          help="Positive: out of the body. Negative: into the body." />
+        <${NumberField} label="Largest deviation from the arc" value=${off} above=${0} optional aside help="Empty: 1/100 of the rise." /></div>
+      <div class="toolbar"><${Button} onClick=${arc}>Replace by an arc<//>
+        <${Button} onClick=${() => fixed() && editor.change(model.doubled(editor.regions(), place, tidy))}>Complete by symmetry<//></div>
     </div></details>`;
 };
 
@@ -175,12 +175,12 @@ export const PhotoPart = ({ editor }) => {
       await image.decode();
     } catch {
       URL.revokeObjectURL(url);
-      say("This file is no picture that the browser can show.");
+      say("The browser cannot show this file as a picture.");
       return;
     }
     const around = boxOf(editor.regions().flatMap((/** @type {Region} */ each) => each.outline));
     const [width, height] = [image.naturalWidth, image.naturalHeight];
-    say("The picture is as high as the body. Give it a scale.");
+    say("The picture has the height of the body. Set its scale.");
     show({ url, width, height, x: around.left, y: around.bottom, scale: (around.top - around.bottom) / height, opacity: opacity.value });
   };
   /** @param {string} key */
@@ -201,15 +201,15 @@ export const PhotoPart = ({ editor }) => {
   // The first point stays where it is.
   const apply = () => {
     const [from, to] = tool?.points ?? [];
-    if (!to) return say("Two points are needed.");
-    if (!known.value) wrong.value = "How far apart are they? A number above 0.";
+    if (!to) return say("Set two points first.");
+    if (!known.value) wrong.value = "Enter a distance above 0.";
     if (!known.value || wrongIn(box.current)) return toWrong(box.current);
     const factor = known.value / Math.hypot(to[0] - from[0], to[1] - from[1]);
     Object.assign(photo, {
       scale: photo.scale * factor, x: from[0] + (photo.x - from[0]) * factor, y: from[1] + (photo.y - from[1]) * factor,
     });
     editor.tool.leave();
-    return say(t("The picture is {width} by {height} {unit} now.", { width: number(photo.scale * photo.width), height: number(photo.scale * photo.height), unit: editor.units() }));
+    return say(t("The picture is now {width} by {height} {unit}.", { width: number(photo.scale * photo.width), height: number(photo.scale * photo.height), unit: editor.units() }));
   };
   const away = () => {
     box.current.querySelector("[type=file]").value = "";
@@ -218,7 +218,7 @@ export const PhotoPart = ({ editor }) => {
   };
   return html`
     <details ref=${box} class="paste" data-testid="photo"><summary>Trace a photograph</summary><div class="stack">
-      <${Frame} id="photograph" label="Picture" help="It stays in this browser: nothing of it is sent or kept.">
+      <${Frame} id="photograph" label="Picture" help="The picture stays in this browser. It is neither sent nor stored.">
         <input id="photograph" type="file" accept="image/*" aria-describedby="photograph-about" onChange=${load} /><//>
       ${photo && html`<div class="stack">
         <div class="fields">
@@ -230,6 +230,6 @@ export const PhotoPart = ({ editor }) => {
         <div class="toolbar">
           <${Button} aria-pressed=${String(tool?.kind === "scale")} onClick=${() => editor.tool.take("scale")}>Set two points<//>
           <${Button} kind="primary" onClick=${apply}>Apply the length<//>
-          <${Button} onClick=${away}>Take the picture away<//></div></div>`}
+          <${Button} onClick=${away}>Remove the picture<//></div></div>`}
     </div></details>`;
 };

@@ -36,7 +36,7 @@ export const Facts = ({ app, facts: body }) => {
     whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia),
   ];
   return html`<${Table} columns=${columns} rows=${rows} testid="facts-table"
-    caption=${differ ? "By the foot that it rocks about" : "The same for both feet"}
+    caption=${differ ? "By foot of rotation" : "Both feet"}
     csv=${() => app.download("table/body.csv", app.inputs.get(), "body.csv")} />`;
 };
 
@@ -48,7 +48,7 @@ const settled = (length, { sides }) =>
 /** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
   ${warnings.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}
-  ${!warnings.length && html`<${Note} kind="good" words=${t("It uplifts at {acceleration} of ground acceleration.", { acceleration: upliftWords(body) })} />`}
+  ${!warnings.length && html`<${Note} kind="good" words=${t("Uplift at a ground acceleration of {acceleration}.", { acceleration: upliftWords(body) })} />`}
   ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
 
 /** @param {Pick<Server.DescribedBody, "sides" | "gravity">} body */

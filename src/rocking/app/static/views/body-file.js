@@ -7,7 +7,7 @@ import { Choice, Note, toWrong } from "/parts/fields.js";
 import { METRES } from "/views/body-units.js";
 import { t } from "/app/words.js";
 
-const UNITS = [["", "as the file says"], ...Object.keys(METRES).map((unit) => [unit, unit])];
+const UNITS = [["", "as in the file"], ...Object.keys(METRES).map((unit) => [unit, unit])];
 
 /** The place to drop a file, and its unit where the file does not say it. @param {{ app: App }} props */
 export const BodyFile = ({ app }) => {
@@ -23,9 +23,9 @@ export const BodyFile = ({ app }) => {
       const query = { name: mine.file.name, units: units.value || undefined };
       const answer = await app.project.within(app.call("body/file", { body: mine.content, query }));
       if (mine !== held.current) return;
-      app.inputs.lend({ ...app.inputs.get(), body: answer.body }, t("the body of {name}", { name: mine.file.name }));
+      app.inputs.lend({ ...app.inputs.get(), body: answer.body }, t("the file {name}", { name: mine.file.name }));
       mine.placed = JSON.stringify(app.inputs.get().body);
-      app.say(t("Read {name}.", { name: mine.file.name }));
+      app.say(t("{name} is read.", { name: mine.file.name }));
     } catch (error) {
       if (mine !== held.current) return;
       wrong.value = error.message;
@@ -51,9 +51,9 @@ export const BodyFile = ({ app }) => {
     <div ref=${box} class="stack">
       <${Drop} label="Drop a DXF, WKT, GeoJSON or TOML file here" name="Body file" accept=".dxf,.wkt,.txt,.geojson,.json,.toml"
         on=${take} data-testid="body-drop" />
-      <p class="field-help" data-testid="held-file">${name.value && t("File: {name}. Choosing another unit reads it again.", { name: name.value })}</p>
+      <p class="field-help" data-testid="held-file">${name.value && t("File: {name}. Another unit reads the file again.", { name: name.value })}</p>
       <div class="refusal" role="alert" data-testid="file-refusal">${wrong.value && !ofUnit && html`<${Note} kind="error" words=${wrong.value} />`}</div>
       <${Choice} label="Unit of the file" value=${units.value} on=${inUnit} options=${UNITS} error=${ofUnit && wrong.value}
-        help="WKT and GeoJSON never say it, some drawings do, a TOML file always." />
+        help="WKT and GeoJSON contain no unit, TOML always, DXF sometimes." />
     </div>`;
 };

@@ -34,7 +34,7 @@ export const Form = ({ app, body, refusal }) => {
     <${Choice} label="Shape" value=${shape} on=${become}
       options=${[...Object.entries(SHAPES).map(([key, { words }]) => [key, words]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
     <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(app.inputs.get().body, next))} />
-    ${shape === "mass_points" ? html`<${Note} words="This body is a set of masses from a file." />`
+    ${shape === "mass_points" ? html`<${Note} words="This body consists of mass points from a file." />`
       : html`<${Sizes} key=${own} shape=${shape} units=${units} table=${tableOfShape(body)} put=${put} error=${error} />`}
     <${Field} label="Name" value=${body.name} placeholder=${t("optional")} maxlength="80" translate=${false}
       on=${(text) => app.inputs.set("body.name", text.trim() || undefined)} />
@@ -67,14 +67,14 @@ const Sizes = ({ shape, units, table, put, error }) => {
   return html`
     <div class="fields" data-testid="sizes">
       ${SHAPES[shape].fields.map(([key, label, more]) => field(key, label, { unit: units, ...(more?.min === undefined && limits), ...more }))}
-      ${field("depth", "Depth", { unit: units, optional: true, ...limits, help: "Out of the picture; only the mass needs it. Empty: 1\u00a0m." })}
+      ${field("depth", "Depth", { unit: units, optional: true, ...limits, help: "Normal to the plane; affects the mass only. Empty: 1\u00a0m." })}
       ${shape !== "section" && known("density", "Density", "kg/m3", "Empty: 2400\u00a0kg/m\u00b3.")}
-      ${known("mass", "Mass", "kg", "In place of the density.")}
-      ${pair("centre", ["Centre of mass x", "Centre of mass y"], "Both empty: as if homogeneous.", "Give both x and y: one alone is not used.")}
+      ${known("mass", "Mass", "kg", "Replaces the density.")}
+      ${pair("centre", ["Centre of mass x", "Centre of mass y"], "Both empty: homogeneous body.", "Enter both x and y.")}
       ${known("moment_of_inertia", "Moment of inertia", "kg m2", "About the centre of mass. Empty: assumed.")}
     </div>
     <div class="fields" data-testid="feet">
-      ${pair("feet", ["Left foot", "Right foot"], "Both empty: the edges of the base.", "Give both feet, or neither: one alone is not used.")}
+      ${pair("feet", ["Left foot", "Right foot"], "Both empty: the edges of the base.", "Enter both feet or neither.")}
     </div>`;
 };
 

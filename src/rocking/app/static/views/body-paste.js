@@ -33,7 +33,7 @@ export const PastePart = ({ editor }) => {
   };
   return html`
     <details ref=${box} class="paste"><summary>Paste points from Excel or a file</summary><div class="stack">
-      <${Field} tag="textarea" label="Points, x and y on each line" value=${text.value} on=${read} error=${fault.value}
+      <${Field} tag="textarea" label="Points: x and y per line" value=${text.value} on=${read} error=${fault.value}
         rows="5" spellcheck=${false} placeholder=${"0\t0\n0.6\t0\n0.4\t1.8"} />
       <p class="field-help" role="status">${told.value}</p>
       <div class="toolbar">${USES.map(([words, kind, make]) => html`
@@ -45,7 +45,7 @@ export const PastePart = ({ editor }) => {
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
   editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
-  const words = t("The {count} points are the whole body now.", { count: points.length });
+  const words = t("The body now consists of these {count} points.", { count: points.length });
   return lost ? `${words} ${lost}` : words;
 };
 
@@ -80,8 +80,8 @@ const lostWords = (section, regions) => {
     holes ? t(["{count} hole", "{count} holes"], { count: holes }) : "",
     others ? t(["{count} other region", "{count} other regions"], { count: others }) : "",
     section.feet ? t("the feet") : "",
-    section.ground ? t("the height of the ground") : "",
+    section.ground ? t("the ground height") : "",
   ].filter(Boolean);
   if (!gone.length) return "";
-  return t("Gone with the former body: {parts}. Undo brings them back.", { parts: listed(gone) });
+  return t("Removed with the previous body: {parts}. Undo restores them.", { parts: listed(gone) });
 };

@@ -16,12 +16,12 @@ export const parsePoints = (text) => {
     const pair = pairOf(line);
     if (pair) points.push(pair);
     else if (points.length || /\d/.test(line)) return {
-      points: [], fault: t("Line {number}, \u201c{line}\u201d, is not two numbers.", { number: at, line: line.slice(0, 40) }),
+      points: [], fault: t("Line {number}, \u201c{line}\u201d: two numbers are needed.", { number: at, line: line.slice(0, 40) }),
     };
   }
   const ring = open(points);
   return ring.length < 3 ? {
-    points: [], fault: t("A polygon needs three points, found {count}.", { count: ring.length }),
+    points: [], fault: t("A polygon needs at least three points, got {count}.", { count: ring.length }),
   } : { points: ring, fault: "" };
 };
 

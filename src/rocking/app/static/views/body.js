@@ -12,7 +12,7 @@ import { BodyFile } from "/views/body-file.js";
 import { Form } from "/views/body-form.js";
 import { t } from "/app/words.js";
 
-const OLDER = "The picture and the numbers are those of the last valid sizes.";
+const OLDER = "The picture and the numbers belong to the last valid sizes.";
 
 /** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -41,8 +41,8 @@ export const mount = (section, app) => {
 const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
   useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields came and went
   return html`
-    <header class="view-head"><h1>What rocks?</h1>
-      <p class="lead">Type its sizes, draw it, paste its points or drop a drawing. Everything beside follows at once.</p></header>
+    <header class="view-head"><h1>Body</h1>
+      <p class="lead">Enter sizes, draw the body, paste points or drop a drawing. The results update at once.</p></header>
     <div class="body-columns">
       <div class="area-form"><${Card} title="Outline and size">
         <${Form} key=${others.value} app=${app} body=${body.value} refusal=${refusal.value} /><//></div>

@@ -21,27 +21,27 @@ export const About = ({ app, label, onClose }) => {
   useEffect(() => heading.current?.focus(), [label]);
   const close = html`<${Button} onClick=${onClose}>Close<//>`;
   if (!model) return html`<section class="card"><h2 ref=${heading} tabindex="-1">${wordsOf(label)}</h2>
-    <p>A number that was typed: it has no source here.</p><div class="toolbar">${close}</div></section>`;
+    <p>An entered coefficient has no source.</p><div class="toolbar">${close}</div></section>`;
   return html`
     <section class="card about-model" aria-labelledby="about-model-title" data-testid="about-model">
       <h2 id="about-model-title" ref=${heading} tabindex="-1">${model.title}</h2>
       <h3>Source</h3><p>${model.citation}</p>
       <h3>Assumptions</h3><${List} of=${model.assumptions} />
-      ${model.domain && html`<h3>Where it holds</h3><p>${model.domain}</p>`}
+      ${model.domain && html`<h3>Range of validity</h3><p>${model.domain}</p>`}
       <h3>Known defects</h3><${List} of=${model.known_defects} />
       <h3>Evidence</h3><${Evidence} found=${impact.value} name=${model.name} />
-      <div class="toolbar"><${Button} onClick=${() => app.go("impact")}>Against the measurements<//>${close}</div>
+      <div class="toolbar"><${Button} onClick=${() => app.go("impact")}>Compare with measurements<//>${close}</div>
     </section>`;
 };
 
 /** @param {{ of: string[] }} props */
 const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((words) => html`<li key=${words}>${words}</li>`)}</ul>`
-  : html`<p>None is known.</p>`);
+  : html`<p>None known.</p>`);
 
 /** @type {{ [foot: string]: string }} */
 const LANDS = {
-  left: "Of this body, landing on the left foot: r = {coefficient}; of a measured body 95 % lie from {low} to {high}.",
-  right: "Of this body, landing on the right foot: r = {coefficient}; of a measured body 95 % lie from {low} to {high}.",
+  left: "This body, impact on the left foot: r = {coefficient}. 95 % interval for a measured body: {low} to {high}.",
+  right: "This body, impact on the right foot: r = {coefficient}. 95 % interval for a measured body: {low} to {high}.",
 };
 
 /** @param {{ found: Server.ImpactAnswered | null, name: string }} props */
@@ -49,10 +49,10 @@ const Evidence = ({ found, name }) => {
   if (!found) return html`<p class="waiting">Computing</p>`;
   const rows = Object.entries(found.coefficients)
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
-  if (!rows.length) return html`<p>No published measurement bears on it.</p>`;
+  if (!rows.length) return html`<p>No published measurement applies to this model.</p>`;
   return html`${rows.map(({ foot, row }) => html`<p key=${foot}>${t(LANDS[foot], {
         coefficient: number(row.coefficient, 4), low: number(row.coefficient_low, 4), high: number(row.coefficient_high, 4) })}${" "}
-      ${row.admissible ? "" : "No single impulse on the base does this without creating energy."}</p>
+      ${row.admissible ? "" : "No single impulse on the base gives this coefficient without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
     <p class="field-help">${t("{count} published measurements.", { count: found.measured.measurements.length })} ${found.measured.source}</p>`;
 };

@@ -6,8 +6,8 @@ import { Button, Choice, Note } from "/parts/fields.js";
 import { t, userText } from "/app/words.js";
 
 const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimum-acceleration"]);
-const TABLES = [["flips", "What the choice changes"], ["differences", "Every difference"]];
-const NOTHING = "There is nothing to compare in it: it was asked with one model, or with more than six.";
+const TABLES = [["flips", "Effect of the choice"], ["differences", "All differences"]];
+const NOTHING = "Nothing to compare: the study has one model or more than six.";
 
 /** The picture of a study that compares its models, as the command line draws it, and its files.
  * @param {{ app: App, asked: { look: () => unknown } }} props */
@@ -23,15 +23,15 @@ export const Studies = ({ app, asked }) => {
   /** @param {string} kind */
   const path = (kind) => `studies/${study.id}/export.${kind}`;
   return html`
-    <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">In studies of this project</h2>
-      ${!study ? html`<p class="field-help">Maps, spectra and fragility that were asked with several models stand here side by side, once they are computed.
+    <section class="card" aria-labelledby="compare-studies-title"><h2 id="compare-studies-title">Studies of this project</h2>
+      ${!study ? html`<p class="field-help">Finished maps, spectra and fragility studies with several models appear here.
           <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
         <${Choice} label="Study" own value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
         ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" words=${NOTHING} />` : html`
-          ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Being drawn</p>`}
-          <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: userText(study.name) })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: its models side by side, and what the choice changes", { name: userText(study.name) })}
+          ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Drawing the comparison</p>`}
+          <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: userText(study.name) })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: comparison of models and effect of the choice", { name: userText(study.name) })}
             onError=${() => (refused.value = chosen.value)} />
-          ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Take away the comparison">
+          ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Export the comparison">
             ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${t("{table} as CSV", { table: words })}
               onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${t("{table}, CSV", { table: words })}<//>`)}</div>`}`}`}
     </section>`;

@@ -95,11 +95,11 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
   };
   const old = faulty.value ? "stale" : "";
   return html`
-    <header class="view-head"><h1>Does it stand, and does the model matter?</h1>
-      <p class="lead">The same body and motion with every model of what an impact costs.</p></header>
+    <header class="view-head"><h1>Comparison of models</h1>
+      <p class="lead">The same body and motion with every restitution model.</p></header>
     ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
     ${found.value && faulty.value && html`<${Note} kind="error" role="alert" words=${`${faulty.value} ${t(OLDER)}`} />`}
-    ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">Nothing moves the body yet, or the answer is on its way.
+    ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">No motion is selected, or the result is being computed.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
       <div class=${`verdict-part ${old}`}>
@@ -117,8 +117,8 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
               <${Figures} kinds=${["rotation", "velocity", "lost", "ground"]} answers=${shown} lead=${lead} ticked=${shown}
                 part=${part.value} friction=${0.5} time=${time} /></div>
             <p class="field-help">${marksWords(shown, "each model in its colour")}</p>
-            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show all of the time<//>`}`
-          : html`<p class="field-help">No model is shown: tick one.</p>`}
+            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show the full duration<//>`}`
+          : html`<p class="field-help">No model is shown. Select a model.</p>`}
         </section>
       </div>`}
     <${Studies} app=${app} asked=${studies} />`;
@@ -126,12 +126,12 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
 
 const VERDICTS = {
   falls: {
-    all: "{count} of {total} models: it overturns; the choice of the model does not change that.",
-    but: "{count} of {total} models: it overturns; it stands with {models}. The model matters.",
+    all: "{count} of {total} models: the body overturns. The choice of the model does not change the outcome.",
+    but: "{count} of {total} models: the body overturns. It does not overturn with {models}. The result depends on the restitution model.",
   },
   stands: {
-    all: "{count} of {total} models: it stands; the choice of the model does not change that.",
-    but: "{count} of {total} models: it stands; it overturns with {models}. The model matters.",
+    all: "{count} of {total} models: the body does not overturn. The choice of the model does not change the outcome.",
+    but: "{count} of {total} models: the body does not overturn. It overturns with {models}. The result depends on the restitution model.",
   },
 };
 
@@ -147,19 +147,19 @@ const sentencesOf = (found, there) => {
   const peaks = standing.map((one) => one.peak_ratio);
   const [low, high] = [lowest(peaks), highest(peaks)].map((peak) => number(peak, 3));
   const ends = low === high ? low : t("{low} to {high}", { low, high });
-  const lean = highest(peaks, 0) > 0 ? [t("Where it stands it leans to {angle} of the angle at which it would fall by itself.", { angle: ends })] : [];
+  const lean = highest(peaks, 0) > 0 ? [t("Peak rotation: {angle} of the slenderness angle.", { angle: ends })] : [];
   return [t(text, counted), ...lean, ...found.verdict.doubts.map((each) => inWords(each, there))];
 };
 
 /** @type {Words} */
-const SHORT = { no_uplift: "is not lifted", rocked: "stands", overturned: "overturns" };
+const SHORT = { no_uplift: "no uplift", rocked: "does not overturn", overturned: "overturns" };
 
 /** @param {{ answers: Server.ResponseAnswered["answers"], hidden: Set<string>, opened: Signal<string | null>, toggle: (label: string) => unknown, margins: Margins }} props */
 const Models = ({ answers, hidden, opened, toggle, margins }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label="Table of the models">
     <table data-testid="compare-models">
       <thead><tr><th scope="col"><span class="visually-hidden">Shown</span></th>
-        ${["Model", "It", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+        ${["Model", "Outcome", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
       <tbody>${answers.map((answer) => html`<${Model} key=${answer.label} answer=${answer} shown=${!hidden.has(answer.label)}
         opened=${opened} toggle=${toggle} margin=${marginOf(margins, answer.label)} />`)}</tbody>
     </table>
@@ -208,9 +208,9 @@ const Margins = ({ app, margins }) => {
   const asked = margins.question.value;
   const wrong = asked?.state === "refused" ? asked.message : "";
   return html`<div class="toolbar">
-      ${asked && questions.busy.value ? html`<progress aria-label="The margins are being computed"></progress>`
-        : html`<${Button} disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Find the margins<//>`}
+      ${asked && questions.busy.value ? html`<progress aria-label="Computing the margins"></progress>`
+        : html`<${Button} disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Compute the margins<//>`}
     </div>
     ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
-    <p class="field-help">Margin: the least factor on this motion that overturns the body, of either way round; Decide tells more.</p>`;
+    <p class="field-help">Margin: smallest scale factor of this motion that overturns the body, both polarities. Details: Assessment.</p>`;
 };

@@ -42,47 +42,47 @@ const Decide = ({ app, questions }) => {
     const factor = Number(margin.value.replace(",", "."));
     const predicts = what.value === "predict";
     const faulty = app.faults.sentence({ inputs: true }) || asked.missing
-      || (predicts || factor > 0 ? "" : { key: "margin", words: "What it must hold is a number above 0." });
+      || (predicts || factor > 0 ? "" : { key: "margin", words: "Enter a required margin above 0." });
     wrong.value = faulty || "";
     if (faulty) return;
     const name = inputs.body.name || app.project.here.value.name;
     const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
     if (predicts) {
       const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
-      questions.ask(tables, asked.files ?? {}, t("How likely does {name} overturn?", { name: userText(name) }), { command: "predict" });
+      questions.ask(tables, asked.files ?? {}, t("Overturning probability of {name}", { name: userText(name) }), { command: "predict" });
       return;
     }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
     const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Does {name} stand?", { name: userText(name) }));
+    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Assessment of {name}", { name: userText(name) }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
-      title="Does it stand?"
-      lead="All models of the impact, both ways round, the margin to overturning, how likely it is, and what to do about it.">
-      <${Choice} label="Question" value=${what} options=${[["assess", "does it stand, and what to do about it"],
-        ["predict", "how likely is it, and what decides that"],
-        ["minimum", "from which acceleration on does it overturn, and where that changes"]]} />
+      title="Assessment"
+      lead="Margin to overturning for all restitution models and both polarities, overturning probability and retrofit measures.">
+      <${Choice} label="Analysis" value=${what} options=${[["assess", "margin and retrofit measures"],
+        ["predict", "overturning probability and main uncertainties"],
+        ["minimum", "PGA intervals with overturning"]]} />
       ${what.value === "minimum" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
-        <p class="field-help">Under the motion of this project, scaled; with the first model of the impact.</p>` : html`
-      <${Choice} label="Shaken by" value=${shaken} options=${FAMILIES} />
+        <p class="field-help">Uses the scaled motion of this project and the first restitution model.</p>` : html`
+      <${Choice} label="Ground motions" value=${shaken} options=${FAMILIES} />
       ${shaken.value === "records" && html`
         <${FileDrop} label="Drop records here, or" many accept=${recordEndings(app)} files=${files} questions=${questions} app=${app}
-          help="Several records at once; each is computed as it is." />
-        <${Field} label="Unit of the accelerations" value=${units} help="Only where the files state none: g, m/s2, cm/s2." />
+          help="Several records are allowed. Each record is used as recorded." />
+        <${Field} label="Unit of the accelerations" value=${units} help="Only for files without a unit: g, m/s2, cm/s2." />
         ${files.value.length > 1 && html`<${FileOptions} app=${app} form=${form} names=${files.value.map((/** @type {SentFile} */ { name }) => name)}
           reasons=${reasonsOf(questions.shown.value, files.value)} />`}`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)
         && html`<${Field} label="Peak acceleration" name="pga" unit="g" value=${pga} inputmode="decimal" />`}
       ${what.value === "predict" ? html`
-        <p class="field-help">What is not known of the body: one number, two as the ends of a range, or nothing for what is usual.</p>
+        <p class="field-help">Uncertain inputs: one number, two numbers as a range, or empty for the default.</p>
         <div class="fields">${Object.entries(app.info.keys.predict).map(([name, facts]) => html`
           <${KeyField} key=${name} name=${name} facts=${facts} value=${unknown.at(name)} />`)}</div>` : html`
-      <${Field} label="Must hold" name="margin" unit="times the motion" value=${margin} inputmode="decimal"
-        help="What is proposed holds this much." />
-      <${Field} label="Signed by" value=${author} help="For the report." />
-      <${Field} label="Date" value=${date} help="Today if empty." />`}`}
+      <${Field} label="Required margin" name="margin" unit="times the motion" value=${margin} inputmode="decimal"
+        help="Proposed measures reach this margin." />
+      <${Field} label="Author" value=${author} help="Printed in the report." />
+      <${Field} label="Date" value=${date} help="Empty: today." />`}`}
     <//>`;
 };
 
@@ -92,15 +92,15 @@ const motions = (inputs, shaken, files, { units, pga, own }) => {
   if (shaken === "records") {
     const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}), ...own };
     const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
-    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", words: "No record was sent yet." } };
+    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", words: "Add a record." } };
   }
   if (shaken) {
     const level = Number(pga.replace(",", "."));
-    const missing = level > 0 ? "" : { key: "pga", words: "How strong is the shaking? The peak acceleration is a number above 0." };
+    const missing = level > 0 ? "" : { key: "pga", words: "Enter a peak acceleration above 0." };
     const motion = { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 };
     return { tables: { motions: [motion] }, files: {}, missing };
   }
-  return motionOf(inputs) ?? { files: {}, missing: "Nothing moves the ground yet: choose a motion first." };
+  return motionOf(inputs) ?? { files: {}, missing: "No motion is selected. Choose a motion first." };
 };
 
 /** Ask for all accelerations at which the verdict changes; what is missing.
@@ -108,9 +108,9 @@ const motions = (inputs, shaken, files, { units, pga, own }) => {
 const crossings = (app, questions, range) => {
   const { body, motion, restitution, settings } = app.inputs.get();
   const known = motionOf({ body, motion });
-  if (!known) return "Nothing moves the ground yet: choose a motion first.";
+  if (!known) return "No motion is selected. Choose a motion first.";
   const { record, pulse, scale, ...keys } = /** @type {Server.MotionInput} */ (known.tables.motion);
-  if (!record && !pulse) return "This is asked of one record or pulse: choose one as the motion.";
+  if (!record && !pulse) return "This analysis needs one record or pulse. Choose it as the motion.";
   const named = record ? { records: [record], ...keys } : { pulse: [pulse], ...keys };
   const { models, values, ...one } = restitution ?? {};
   const first = models ? { model: models[0] } : values ? { value: values[0] } : one;
@@ -118,7 +118,7 @@ const crossings = (app, questions, range) => {
     campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
     minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
   };
-  questions.ask(tables, known.files, t("When does {name} overturn?", { name: userText(body.name || app.project.here.value.name) }), { command: "minimum" });
+  questions.ask(tables, known.files, t("Overturning accelerations of {name}", { name: userText(body.name || app.project.here.value.name) }), { command: "minimum" });
   return "";
 };
 
@@ -131,22 +131,22 @@ const FOUND = { minimum: (given) => Crossings(given), predict: (given) => Foreca
 const G = 9.80665;
 const MOST = 20; // crossings in the table
 /** @type {{ [mode: number]: string | undefined }} */
-const STANDS = { "-2": "not lifted", "-1": "stays standing" };
+const STANDS = { "-2": "no uplift", "-1": "does not overturn" };
 /** @param {number} mode */
-const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "falls" : mode === 0 ? "falls, no impact" : t(["falls, {count} impact", "falls, {count} impacts"], { count: mode }));
+const modeOf = (mode) => STANDS[mode] ?? (mode >= 1e6 ? "overturns" : mode === 0 ? "overturns, no impact" : t(["overturns, {count} impact", "overturns, {count} impacts"], { count: mode }));
 
 /** @param {Given} given */
 const Crossings = ({ answer, question }) => html`
   <p class=${`verdict ${answer.minimum_acceleration === null ? "good" : "bad"}`} data-testid="verdict">
-    ${answer.minimum_acceleration === null ? "It overturns nowhere." : t("It first overturns at a PGA of {acceleration} g, {factor} times this motion.", {
+    ${answer.minimum_acceleration === null ? "No overturning in this range." : t("Lowest PGA with overturning: {acceleration} g, {factor} times this motion.", {
       acceleration: number(answer.minimum_acceleration / G, 4), factor: number(answer.minimum_acceleration / answer.motion.peak_ground_acceleration, 4) })}</p>
   <p>${sentence(answer.sentence)}</p>
-  <${Drawing} question=${question} alt="Where the body overturns, by the acceleration of the ground" />
-  <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times what lifts it", "below", "above"]}
+  <${Drawing} question=${question} alt="Overturning over ground acceleration" />
+  <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times uplift", "below", "above"]}
     rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.peak_ground_acceleration / G, 6), number(each.scale, 6), number(each.uplift_ratio, 4),
       modeOf(each.mode_below), modeOf(each.mode_above)])} />
   <p class="field-help">${t("Restitution: {model}.", { model: modelWords(answer.restitution) })}
-    ${answer.crossings.length > MOST && ` ${t("The first {shown} of {count} crossings; the CSV has all of them.", { shown: MOST, count: answer.crossings.length })}`}</p>`;
+    ${answer.crossings.length > MOST && ` ${t("First {shown} of {count} crossings. The CSV file contains all crossings.", { shown: MOST, count: answer.crossings.length })}`}</p>`;
 
 const MARKS = { overturning: "bad", uplift: "fair" };
 
@@ -163,13 +163,13 @@ const Verdict = ({ answer, question }) => {
   return html`
     <p class=${`verdict ${some ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
     ${answer.sentences.slice(1).map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
-    <${Drawing} question=${question} alt="Least factor on each motion that overturns the body, by model" />
-    <h3>With each model of the impact</h3>
-    <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns under", "least factor"]} rows=${rows} />
-    <h3>How likely is it?</h3>
+    <${Drawing} question=${question} alt="Smallest overturning scale factor of each motion, by model" />
+    <h3>By restitution model</h3>
+    <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns in", "smallest factor"]} rows=${rows} />
+    <h3>Probabilities</h3>
     <${Chances} of=${answer.prediction} />
     <${Sources} of=${answer.prediction} />
-    ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">${t("Models that say nothing of this body: {reasons}", {
+    ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">${t("Models not applicable to this body: {reasons}", {
       reasons: Object.entries(answer.refused).map(([name, why]) => `${modelWords(name)}: ${t(why)}`).join("; ") })}</p>`}`;
 };
 
@@ -181,9 +181,9 @@ const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", {
 /** Probabilities, under these motions and if others like them came; beside them those with another restitution.
  * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
-  <${Rows} caption="Probabilities" head=${["it", "probability", "95 % interval", "with other motions like these"]}
+  <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}
     rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
-      ...Object.entries(beside).map(([model, each]) => [t("overturns, all else alike, by {model}", { model: modelWords(model) }), each])].map(([words, each]) => [
+      ...Object.entries(beside).map(([model, each]) => [t("overturns, with {model} and otherwise equal inputs", { model: modelWords(model) }), each])].map(([words, each]) => [
       words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
 
 /** Source and processing of the motions, and the scale of the words for probabilities.
@@ -206,18 +206,18 @@ const Forecast = ({ answer, question }) => {
   return html`
     <p class=${`verdict ${high <= 0.05 ? "good" : high <= 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
     <p>${answer.growth.sentence}</p>
-    <${Drawing} question=${question} alt="How likely it rocks, slides and overturns, and what decides that" />
-    <h3>How likely is it?</h3>
+    <${Drawing} question=${question} alt="Probabilities of rocking, sliding and overturning, and main uncertainties" />
+    <h3>Probabilities</h3>
     <${Chances} of=${answer} />
     ${answer.decides && html`<p>${answer.decides}</p>`}
-    ${shares.some(([, each]) => each.total) && html`<h3>What decides it?</h3>
-      <${Rows} caption="Shares" head=${["what is not known", "alone", "with the others"]}
+    ${shares.some(([, each]) => each.total) && html`<h3>Main uncertainties</h3>
+      <${Rows} caption="Contributions to variance" head=${["uncertain input", "alone", "with interactions"]}
         rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
-      <p class="field-help">Shares of the variance of whether it overturns (Sobol indices), with 95 % intervals.</p>
-      <${Rows} caption="Ends of the ranges" head=${["input", "overturns at its low end", "overturns at its high end"]}
+      <p class="field-help">Contributions to the variance of overturning (Sobol indices), with 95 % intervals.</p>
+      <${Rows} caption="Range limits" head=${["input", "overturns at the lower limit", "overturns at the upper limit"]}
         rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.input_low, 3)})`,
           `${percent(e.probability_high)} (${number(e.input_high, 3)})`])} />`}
-    <details><summary>What was assumed</summary>
+    <details><summary>Assumptions</summary>
       <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
     <${Sources} of=${answer} />`;
 };

@@ -10,8 +10,8 @@ import { t } from "/app/words.js";
 
 const VARIED = {
   slenderness: "slenderness", damping: "damping", modulus_over_thickness: "stiffness of a layer", friction: "friction",
-  release: "rotation from which it falls", density: "density, on one layer", width: "width, on one layer",
-  points: "number of contact points", amplitude: "unevenness of the base", seed: "chance of an uneven base",
+  release: "initial rotation", density: "density, one layer", width: "width, one layer",
+  points: "number of contact points", amplitude: "unevenness of the base", seed: "random seed of the unevenness",
 };
 const RANGE = ["from", "to", "count", "spacing"];
 const NOTHING = {};
@@ -44,8 +44,8 @@ export const Laboratory = ({ app, body }) => {
   const others = Object.keys(keys).filter((name) => name !== "varied" && !RANGE.includes(name));
   return html`<div class="question" data-testid="bed">
     <form class="stack" onSubmit=${compute} aria-label="Contact bed">
-      <${Choice} label="What changes" value=${varied} options=${Object.entries(VARIED)} />
-      <details><summary>From where to where, and what the bed is</summary>
+      <${Choice} label="Varied parameter" value=${varied} options=${Object.entries(VARIED)} />
+      <details><summary>Range and bed parameters</summary>
         <div class="fields"><${Refused.Provider} value=${refused.value}>${[...RANGE, ...others].map(field)}<//></div></details>
       ${refused.value.words && html`<${Note} kind="error" role="alert" words=${refused.value.words} />`}
       <div class="toolbar"><${Button} type="submit" disabled=${busy.value}>Compute<//></div>
@@ -62,7 +62,7 @@ const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
   const log = values[0] > 0 && values[values.length - 1] / values[0] > 8;
   const words = shown.value.replaceAll("_", " ");
   const shape = {
-    title: t("The contact bed: {refusal}", { refusal: words }), x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
+    title: t("Contact bed: {quantity}", { quantity: words }), x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
     series: [BED, ...beside.map(([name]) => ({ ...modelStyle(name), label: modelWords(name) }))], height: 300,
   };
   const data = useMemo(() => [values, curve, ...beside.map(([, each]) => each)], [values, shown.value]);

@@ -14,7 +14,7 @@ import { Swatch, wordsOf } from "/views/response-labels.js";
 /** Pictures and legend. @param {{ answer: Server.ImpactAnswered, foot: Foot, about: string }} props */
 export const Evidence = ({ answer, foot, about }) => html`
   <div class="columns two">
-    <div><${Pictured} title="Against the published measurements" about=${about}><${Drawn} draw=${cloudPicture} of=${[answer, foot]} />
+    <div><${Pictured} title="Comparison with published measurements" about=${about}><${Drawn} draw=${cloudPicture} of=${[answer, foot]} />
       <ul class="legend">
         ${[...new Set(pointsOf(answer).map(({ group }) => group))].map((group) => html`
           <li key=${group}><${Made} node=${groupKey(group)} />${GROUPS[group]?.words ?? group}</li>`)}

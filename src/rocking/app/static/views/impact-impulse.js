@@ -24,6 +24,6 @@ const base = (axis, { top, rowsEnd }) => svg("g", {},
   svg("path", { class: "base-bar", d: `M${axis.at(0)} ${rowsEnd + 12}H${axis.at(1)}` }),
   footMark(axis.at(1), rowsEnd + 15),
   svg(
-    "text", { x: axis.at(1) - 10, y: rowsEnd + 30, "text-anchor": "end", class: "soft" }, "foot it lands on",
+    "text", { x: axis.at(1) - 10, y: rowsEnd + 30, "text-anchor": "end", class: "soft" }, "impact foot",
   ),
   svg("text", { x: axis.at(0) + 2, y: rowsEnd + 30, class: "soft" }, "middle"));

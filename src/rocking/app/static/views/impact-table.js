@@ -9,7 +9,7 @@ import { t } from "/app/words.js";
 
 const COLUMNS = [
   { label: "Model" }, { label: "Coefficient r", digits: 5 }, { label: "95 % interval", numeric: true },
-  { label: "Impulse at k", digits: 4 }, { label: "Energy lost", numeric: true }, { label: "Friction needed", digits: 4 },
+  { label: "Impulse position k", digits: 4 }, { label: "Energy lost", numeric: true }, { label: "Friction demand", digits: 4 },
   { label: "Admissible", numeric: false },
 ];
 
@@ -27,7 +27,7 @@ export const Coefficients = ({ app, answer, foot }) => {
     row.friction_demand, row.admissible ? "yes" : "no",
   ]);
   return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"
-    caption=${t("Velocity after over velocity before, landing on the {foot} foot", { foot })}
+    caption=${t("Velocity after / velocity before, impact on the {foot} foot", { foot })}
     csv=${() => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 

@@ -42,9 +42,8 @@ const Impact = ({ app, asked, faulty }) => {
   const { answer: { value: answer }, refused } = asked;
   const wrong = refused.value?.message ?? faulty.value;
   return html`
-    <header class="view-head"><h1>What does an impact cost?</h1>
-      <p class="lead">Each time the body comes back to the ground it loses speed. Every model says how much; the published
-        measurements say how far to trust it.</p></header>
+    <header class="view-head"><h1>Impact</h1>
+      <p class="lead">The body loses energy at each impact. Each model gives a coefficient of restitution. Published measurements give its accuracy.</p></header>
     <div class="refusal" role="alert" data-testid="impact-refusal">
       ${wrong && html`<${Note} kind="error" words=${`${sentence(wrong)}${answer ? ` ${t(OLDER)}` : ""}`} />`}</div>
     ${!answer && !wrong && html`<p class="waiting">Computing</p>`}
@@ -63,22 +62,21 @@ const Results = ({ app, answer }) => {
   const pictured = (title, draw, lead = "") => html`<${Pictured} title=${title} about=${about}>
     ${lead && html`<p class="lead">${lead}</p>`}<${Drawn} draw=${draw} of=${of} /><//>`;
   return html`
-    ${feet.length > 1 && html`<${Segmented} label="The body lands on its" options=${FEET} value=${foot}
+    ${feet.length > 1 && html`<${Segmented} label="Impact on the" options=${FEET} value=${foot}
       on=${(next) => (wanted.value = next)} />`}
     <${Card} title="Coefficient of restitution">
       <${Coefficients} app=${app} answer=${answer} foot=${foot} /><${Warnings} answer=${answer} foot=${foot} /><//>
-    <${Card} title="Against the published measurements">
+    <${Card} title="Comparison with published measurements">
       <${Evidence} answer=${answer} foot=${foot} about=${about} /><//>
     <div class="columns two">
-      <${Card} title="Where the impulse acts">
-        ${pictured("Where the impulse acts", impulseRows, "Along the base: 0 is below the centre of mass of a block, 1 is the foot.")}<//>
-      <${Card} title="Where the energy goes, by KED">
-        ${pictured("Where the energy goes, by KED", ledgerOf, "Kinetic energy kept and lost (hatched), from 100\u202f%.")}<//>
+      <${Card} title="Impulse position">
+        ${pictured("Impulse position", impulseRows, "Position along the base: 0 below the centre of mass of a block, 1 at the foot.")}<//>
+      <${Card} title="Energy loss by KED">
+        ${pictured("Energy loss by KED", ledgerOf, "Kinetic energy kept and lost (hatched), from 100\u202f%.")}<//>
     </div>
     <${Card} title="The three stages of KED">${pictured("The three stages of KED", stagesOf)}<//>
     <${Card} title="The contact bed">
-      <p class="lead">An impact that takes its time, on springs and dashpots under a block as slender and wide as this body:
-        what comes out of it, beside models of one instant.</p>
+      <p class="lead">Impact of finite duration: a block with the slenderness and width of this body on springs and dashpots. The chart compares it with instantaneous models.</p>
       <${Laboratory} app=${app} body=${blockLike(answer, foot)} /><//>`;
 };
 

@@ -40,9 +40,9 @@ const Inventory = ({ app, questions }) => {
     event.preventDefault();
     const strength = Number(level.value.replace(",", "."));
     const many = Number(count.value);
-    wrong.value = !files.value.length ? { key: "files", words: "No list was sent yet." }
-      : !(strength > 0) ? { key: "level", words: "How strong is the shaking? A number above 0 is needed." }
-        : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "The number of motions is a whole number above 0." } : "";
+    wrong.value = !files.value.length ? { key: "files", words: "Add a list." }
+      : !(strength > 0) ? { key: "level", words: "Enter an intensity level above 0." }
+        : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "Enter a whole number of motions above 0." } : "";
     if (wrong.value) return;
     const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
     if (!list) return;
@@ -54,7 +54,7 @@ const Inventory = ({ app, questions }) => {
       inventory: { ...filled(listed(form.value), app.info.keys.inventory), objects: list.name, language: app.language, ...shaking },
       motions: [{ synthetic: family.value, count: many, seed: 1 }],
     };
-    await questions.ask(tables, { [list.name]: list.sha }, t("Which objects stay standing? {name}", { name: list.name }));
+    await questions.ask(tables, { [list.name]: list.sha }, t("Inventory: {name}", { name: list.name }));
     text.value = { of: list, lines: null, id: questions.shown.value?.id };
   };
   const answer = questions.shown.value?.id === text.value?.id ? questions.shown.value?.answer : null;
@@ -63,18 +63,18 @@ const Inventory = ({ app, questions }) => {
   }, [text.value?.id, Boolean(answer)]);
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Ranking}
-      title="Which objects stay standing?"
-      lead="A list of objects with their sizes, as it is kept; every row is assessed, or the reason is said.">
+      title="Inventory"
+      lead="Rating of a list of objects with sizes. Rows without a rating are listed with the reason.">
       <${FileDrop} label="Drop a list here, or" accept=".csv,.xlsx,.ods,.txt,.tsv" files=${files} questions=${questions} app=${app}
-        help="Columns such as name, width_cm, depth_cm, height_cm; count, base, weight and notes if there are." />
-      <${Choice} label="How strong it is said by" value=${kind}
+        help="Columns such as name, width_cm, depth_cm, height_cm. Optional: count, base, weight, notes." />
+      <${Choice} label="Intensity measure" value=${kind}
         options=${[["pga", "peak acceleration [g]"], ["pgv", "peak velocity [cm/s]"]]} />
-      <${Field} label="Strength" name="level" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
+      <${Field} label="Intensity level" name="level" unit=${kind.value === "pga" ? "g" : "cm/s"} value=${level} inputmode="decimal" />
       <${Choice} label="Motions" value=${family} options=${[
         ["firm-ground", "firm ground"], ["soft-ground", "soft ground"], ["point-source", "point source"],
-        ["pulse-like", "near a fault, pulse-like"]]} />
-      <${Field} label="How many motions" name="count" value=${count} inputmode="numeric" help="More are surer: 200 tell 5 % from 10 %." />
-      <details><summary>How the list is read</summary>${READ.map((name) => html`
+        ["pulse-like", "near-fault, pulse-like"]]} />
+      <${Field} label="Number of motions" name="count" value=${count} inputmode="numeric" help="More motions give narrower intervals: 200 motions distinguish 5 % from 10 %." />
+      <details><summary>List format</summary>${READ.map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.inventory[name]} value=${form.at(name)} />`)}</details>
       <${Corrections} answer=${answer} text=${text.value?.of.sha === files.value[0]?.sha ? text.value : null} fixed=${fixed} />
     <//>`;
@@ -111,8 +111,8 @@ const Corrections = ({ answer, text, fixed }) => {
     set value(line) { fixed.value = { ...fixed.value, [row]: line }; },
   });
   return rows.length > 0 && html`
-    <fieldset><legend>Correct rows, and ask again</legend>
-      <pre tabindex="0" aria-label=${t("The header of the list")}>${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
+    <fieldset><legend>Correct rows, then compute again</legend>
+      <pre tabindex="0" aria-label=${t("Header of the list")}>${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
       ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${t("Line {number}", { number: each.row })} help=${each.reason}
         value=${at(each)} />`)}</fieldset>`;
 };
@@ -136,14 +136,14 @@ const Ranking = ({ answer }) => {
     <p class="verdict" data-testid="verdict">${missing
       ? t("{red} red, {amber} amber, {green} green, {missing} not assessed, at {level}.", { ...answer.counts, missing, level: answer.hazard.level })
       : t("{red} red, {amber} amber, {green} green, at {level}.", { ...answer.counts, level: answer.hazard.level })}</p>
-    ${rows.length > 0 && html`<${Rows} caption="Objects, the worst first"
-      head=${["object", "light", "overturns [%]", "what it does", "what to do", ...(noted ? ["note"] : [])]} rows=${rows} />`}
-    ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a verdict" head=${["object", "line", "why"]}
+    ${rows.length > 0 && html`<${Rows} caption="Objects, highest risk first"
+      head=${["object", "rating", "overturns [%]", "result", "recommendation", ...(noted ? ["note"] : [])]} rows=${rows} />`}
+    ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a rating" head=${["object", "line", "reason"]}
       rows=${answer.not_assessed.map((/** @type {any} */ each) => [label(each) ? [label(each), "own"] : "no name", String(each.row), each.reason])} />`}
     ${answer.not_objects.length > 0 && html`<details><summary>Lines that are not objects</summary>
-      <${Rows} caption="Lines of the list that are not objects" head=${["what it says", "line", "why"]}
+      <${Rows} caption="List lines that are not objects" head=${["text", "line", "reason"]}
         rows=${answer.not_objects.map((/** @type {any} */ each) => [[each.text, "own"], String(each.row), each.reason])} /></details>`}
     ${answer.stated.map((/** @type {string} */ each) => html`<p key=${each} class="field-help">${each}</p>`)}
-    ${answer.columns_not_read.length > 0 && html`<p class="field-help">${t("Columns that were not read: {names}", { names: answer.columns_not_read.join(", ") })}</p>
-      <p class="field-help">What they are can be said under \u201cHow the list is read\u201d.</p>`}`;
+    ${answer.columns_not_read.length > 0 && html`<p class="field-help">${t("Ignored columns: {names}", { names: answer.columns_not_read.join(", ") })}</p>
+      <p class="field-help">Assign columns under \u201cList format\u201d.</p>`}`;
 };

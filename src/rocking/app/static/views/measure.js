@@ -11,7 +11,7 @@ import { record } from "/questions/microphone.js";
 import { t } from "/app/words.js";
 
 const KINDS = [
-  ["", "what the file says"], ["times", "times of the impacts"], ["rotation", "rotation"], ["displacement", "displacement"],
+  ["", "as in the file"], ["times", "times of the impacts"], ["rotation", "rotation"], ["displacement", "displacement"],
   ["angular velocity", "angular velocity"], ["acceleration", "acceleration"],
 ];
 
@@ -41,7 +41,7 @@ const Measure = ({ app, questions }) => {
     try {
       recording.value = await record();
     } catch {
-      app.say("The browser does not let this page listen: allow the microphone, or drop a file.", "error");
+      app.say("The browser blocks the microphone. Allow the microphone, or drop a file.", "error");
     }
   };
   /** @param {Event} event */
@@ -49,35 +49,34 @@ const Measure = ({ app, questions }) => {
     event.preventDefault();
     if (what.value === "paper") {
       wrong.value = "";
-      questions.ask({}, {}, "What the published measurements say", { command: "paper" });
+      questions.ask({}, {}, "Published measurements", { command: "paper" });
       return;
     }
     const inputs = app.inputs.get();
-    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : { key: "files", words: "Nothing was sent yet." });
+    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : { key: "files", words: "Add a recording." });
     if (wrong.value) return;
     const [file] = files.value;
     const table = { file: file.name, kind: kind.value, column: column.value.trim(), unit: unit.value.trim() };
     const measurement = Object.fromEntries(Object.entries(table).filter(([, words]) => words));
     const tables = { measurement, ...(trend.value ? { identify: { trend: true } } : {}), ...(known.value === "yes" ? { body: inputs.body } : {}) };
-    questions.ask(tables, { [file.name]: file.sha }, t("What {name} says", { name: file.name }));
+    questions.ask(tables, { [file.name]: file.sha }, t("Identification from {name}", { name: file.name }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
-      title="What does an impact cost?"
-      lead="Let the body go from a tilt and record it: each knock tells how much of the speed was left.">
-      <${Choice} label="Question" value=${what} options=${[["identify", "what my recording says"],
-        ["paper", "what the published measurements say"]]} />
-      ${what.value === "paper" ? html`<p class="field-help">Every table, figure and claim of Mao et al. (2024), recomputed, and all
-        models against its 39 measurements; as a report. It takes about half a minute.</p>` : html`
+      title="Identification"
+      lead="Release the tilted body and record its impacts. The impacts give the coefficient of restitution.">
+      <${Choice} label="Analysis" value=${what} options=${[["identify", "my recording"],
+        ["paper", "published measurements"]]} />
+      ${what.value === "paper" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
       <${Button} aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
-        ${recording.value ? "End the recording" : "Record with the microphone"}<//>
-      <${Choice} label="It holds" value=${kind} options=${KINDS} help="Of a table only." />
-      <${Field} label="Column" value=${column} help="Of a table with several." />
-      <${Field} label="Unit" value=${unit} help="Where the table states none." />
-      <${Choice} label="The body" value=${known} options=${[["yes", "is that of this project"], ["no", "is not known"]]} />
-      <${Choice} label="What an impact takes" value=${trend} options=${[["", "is the same share each time"], ["yes", "changes steadily"]]} />`}
+        ${recording.value ? "Stop recording" : "Record with the microphone"}<//>
+      <${Choice} label="Recorded quantity" value=${kind} options=${KINDS} help="For tables only." />
+      <${Field} label="Column" value=${column} help="For tables with several columns." />
+      <${Field} label="Unit" value=${unit} help="For tables without a unit." />
+      <${Choice} label="The body" value=${known} options=${[["yes", "body of this project"], ["no", "unknown"]]} />
+      <${Choice} label="Coefficient of restitution" value=${trend} options=${[["", "constant"], ["yes", "with a trend"]]} />`}
     <//>`;
 };
 
@@ -90,9 +89,9 @@ const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
 /** @param {Given} given */
 const Published = ({ answer }) => html`
   <p class="verdict" data-testid="verdict">
-    ${t("{number} of {count} claims hold", { number: answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length, count: answer.claims.length })}</p>
+    ${t("{number} of {count} claims confirmed", { number: answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length, count: answer.claims.length })}</p>
   ${answer.verdict.map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
-  <h3>All models against all measurements</h3>
+  <h3>Models compared with measurements</h3>
   <${Rows} caption="Models" head=${["model", "RMSE of r", "95 % interval", "bias"]}
     rows=${answer.league.map((/** @type {any} */ one) => [one.name, number(one.rmse, 3), t("{low} to {high}", { low: number(one.rmse_low, 3), high: number(one.rmse_high, 3) }),
       number(one.bias, 2)])} />
@@ -101,7 +100,7 @@ const Published = ({ answer }) => html`
     rows=${answer.claims.map((/** @type {any} */ one) => [`${t(one.section)}: ${t(one.claim)}`, [one.verdict, MARK[one.verdict]]])} />`;
 
 /** @type {Words} */
-const HEADS = { within: "within the interval", bias: "above what was measured" };
+const HEADS = { within: "within the interval", bias: "model minus measured" };
 /** @param {unknown} value */
 const shown = (value) => (typeof value === "number" ? number(value) : value === true ? "yes" : value === false ? "no" : String(value ?? ""));
 
@@ -111,7 +110,7 @@ const Recording = ({ answer, question }) => {
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
     ${answer.doubts.map((/** @type {string} */ doubt) => spelt(answer.messages?.[doubt] ?? { text: doubt, facts: {} })).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
-    <${Drawing} question=${question} alt="What was measured, what fits it, and what is left over" />
-    ${models.length > 0 && html`<h3>Beside the models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
+    <${Drawing} question=${question} alt="Measurements, fit and residuals" />
+    ${models.length > 0 && html`<h3>Comparison with models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
       rows=${models.map((/** @type {object} */ each) => Object.values(each).map(shown))} />`}`;
 };

@@ -12,14 +12,14 @@ const LABELS = {
 };
 /** @type {Words} */
 const HELP = {
-  units: "The file does not name it; a wrong one makes the motion up to 981 times too strong or too weak.",
-  time_step: "The file does not name it.",
+  units: "The file states no unit. A wrong unit scales the motion by a factor of up to 981.",
+  time_step: "The file states no time step.",
 };
 
 /** @type {Words} */
 const MISSING = {
   units: "Choose the unit.",
-  time_step: "A number is needed here.",
+  time_step: "Enter a number.",
   component: "Choose the horizontal component.",
   format: "Choose the format.",
 };
@@ -57,7 +57,7 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
   }, [pressed.value]);
   const press = () => {
     const open = fields.filter(([name, choices]) => (name === "time_step" || choices.length) && !answers.value[name]);
-    wrong.value = Object.fromEntries(open.map(([name]) => [name, MISSING[name] ?? "Choose one."]));
+    wrong.value = Object.fromEntries(open.map(([name]) => [name, MISSING[name] ?? "Choose an option."]));
     pressed.value += 1;
   };
   /** @param {any} event */
@@ -80,5 +80,5 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
       : html`<${Choice} key=${name} ...${about} options=${[["", "Choose"], ...choices.map((/** @type {string} */ value) => [value, value])]} />`;
   };
   return html`<div ref=${place} onKeyDown=${entered} ...${more}>${fields.map(field)}
-    <${Button} onClick=${press} ...${button}>Read it so<//></div>`;
+    <${Button} onClick=${press} ...${button}>Apply<//></div>`;
 };

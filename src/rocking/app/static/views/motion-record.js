@@ -61,7 +61,7 @@ export const createRecord = (app, onChange) => {
   const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);
   /** @param {string} words @param {any[]} [places] */
   const why = (words, places = []) => {
-    const stays = app.inputs.get().motion ? ` ${t("The motion stays as it was.")}` : "";
+    const stays = app.inputs.get().motion ? ` ${t("The motion is unchanged.")}` : "";
     const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: words }) : words;
     return { words: `${sentence(named)}${stays}`, kind: "error" };
   };
@@ -89,7 +89,7 @@ export const createRecord = (app, onChange) => {
         ...steps.filter((/** @type {RecordStep} */ { name }) => name !== "response")];
       form.at("shown").value = records[0].name;
       app.go("records");
-      app.say(t("{name} is read with its StationXML here: press Ask, then use it as the motion.", { name: records[0].name }));
+      app.say(t("{name} and its StationXML file are added. Select Compute, then use the result as the motion.", { name: records[0].name }));
     } catch (error) {
       app.say(error.message, "error");
     }
@@ -103,11 +103,11 @@ export const createRecord = (app, onChange) => {
       return together(files);
     }
     held = { file, content: null, given: {} };
-    if (files.length > 1) return end({ words: "One record is a motion: drop several in the step Records.", kind: "error" }, "unread");
+    if (files.length > 1) return end({ words: "A motion is one record. Add several records in the step Records.", kind: "error" }, "unread");
     [asked.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
     if (!most || file.size <= most) return send();
-    return end(why(t("{name} is larger than the {size} MiB that the server takes.", { name: file.name, size: Math.round(most / 2 ** 20) })), "unread");
+    return end(why(t("{name} exceeds the limit of {size} MiB.", { name: file.name, size: Math.round(most / 2 ** 20) })), "unread");
   };
   const forget = () => batch(() => {
     held = null;
@@ -144,10 +144,10 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
   return html`
     <div ref=${place} class="record-editor">
       <${Drop} label="Drop a record here, or" name="Record file" many folders=${false} on=${record.take} testid="record-file" data-testid="record-drop">
-        <p class="field-help">${t("Formats: {formats}. Of counts (miniSEED) drop their StationXML with them.", { formats })}</p><//>
+        <p class="field-help">${t("Formats: {formats}. For counts (miniSEED), add the StationXML file.", { formats })}</p><//>
       <div aria-live="polite" data-testid="record-answer">
         ${said.value?.words && html`<${Note} ...${said.value} />`}
-        ${lost && html`<${Note} kind="warning" words="The server no longer has this file: drop it once more." />`}</div>
+        ${lost && html`<${Note} kind="warning" words="The server no longer has this file. Add the file again." />`}</div>
       <div data-testid="record-needs">
         ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>

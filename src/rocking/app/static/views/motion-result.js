@@ -17,7 +17,7 @@ const TRACES = [
   { key: "vertical_acceleration", label: "vertical acceleration", unit: "m/s2", colour: "#AC8191" },
 ];
 const G = 9.80665;
-const LOOK = "Drag across a trace to look into it with every sample; a double click shows all of it again.";
+const LOOK = "Drag across a trace to zoom in. Double-click to show the whole trace.";
 const MEASURE = ["Measure", { label: "Value", digits: 4 }, { label: "Unit", numeric: false }];
 
 /** @param {string} text */
@@ -36,14 +36,14 @@ export const Result = ({ app, answer, part, time, stale }) => {
   const saver = (text, path, label) => html`<${Button} aria-label=${label} onClick=${() => save(path)}>${text}<//>`;
   return html`
     <div class=${`motion-result ${stale ? "stale" : ""}`} data-testid="motion-result" ...${aboutOf({}, answer)}>
-      <${Card} title="In short"><p class="motion-name" data-testid="motion-name">${plainWords(answer.name)}</p>
+      <${Card} title="Summary"><p class="motion-name" data-testid="motion-name">${plainWords(answer.name)}</p>
         <dl class="facts" data-testid="motion-facts">
           ${factsOf(answer).map(([word, text]) => html`<dt key=${word}>${word}</dt><dd>${text}</dd>`)}</dl><//>
       <${Card} title="Acceleration, velocity, displacement">
         <div class="motion-traces" data-testid="motion-traces">
           ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((one) => html`
             <${Trace} key=${one.key} trace=${one} series=${series} part=${part?.window ?? null} time=${time} />`)}</div>
-        <p class="field-help">${of > shown && t("{shown} of {count} samples are drawn: the extremes of every dot. {hint}", { shown, count: of, hint: LOOK })}</p>
+        <p class="field-help">${of > shown && t("{shown} of {count} samples are drawn: the extremes of each pixel. {hint}", { shown, count: of, hint: LOOK })}</p>
         <div class="toolbar">${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
       <${Card} title="Response spectrum"><${Spectrum} spectrum=${answer.spectrum} />
         <div class="toolbar">${saver("CSV", "table/spectrum.csv", "Response spectrum as CSV")}</div><//>

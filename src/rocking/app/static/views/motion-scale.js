@@ -11,5 +11,5 @@ export const Scale = ({ value, on }) => html`
     <${Slider} label="Scale of the motion" min=${LEAST} max=${MOST} log
       value=${Math.min(Math.max(Math.abs(value), LEAST), MOST)} on=${on} />
     <${NumberField} label="Factor" value=${value} min=${-1000} max=${1000} step=${0.05} moves on=${on}
-      help="A negative factor turns the motion round." />
+      help="A negative factor reverses the polarity." />
   </div>`;

@@ -3,7 +3,7 @@ import { html } from "/parts/preact.js";
 import { Button, Choice, NumberField, Segmented } from "/parts/fields.js";
 import { t } from "/app/words.js";
 
-const LEVELS = [["", "As drawn"], ["pga", "To a PGA"], ["pgv", "To a PGV"]];
+const LEVELS = [["", "As generated"], ["pga", "Scaled to PGA"], ["pgv", "Scaled to PGV"]];
 /** @type {{ [key in "pga" | "pgv"]: { label: string, unit: string, usual: number } }} */
 const LEVEL = {
   pga: { label: "Peak ground acceleration", unit: "m/s2", usual: 3 },
@@ -32,9 +32,9 @@ export const Synthetic = ({ app, motion, onChange }) => {
       <${Choice} label="Family" options=${families.map(({ name }) => [name, name.replaceAll("-", " ")])} value=${motion.synthetic}
         on=${(synthetic) => change({ synthetic })} />
       <p class="field-help">${family && t("{sentence}; {more}", { sentence: family.title, more: family.origin })}</p>
-      <div class="fields">${whole("Seed", "seed", "The same seed draws the same motions, everywhere.")}
-        ${whole("Member", "member", "Which motion of the family: 0, 1, 2, ...")}</div>
-      <${Button} onClick=${() => change({ member: (motion.member ?? 0) + 1 })}>Another one<//>
+      <div class="fields">${whole("Seed", "seed", "The same seed gives the same motions on every computer.")}
+        ${whole("Realization", "member", "Index of the motion: 0, 1, 2, ...")}</div>
+      <${Button} onClick=${() => change({ member: (motion.member ?? 0) + 1 })}>Next realization<//>
       <${Segmented} label="Level" options=${LEVELS} value=${kind}
         on=${(/** @type {"" | "pga" | "pgv"} */ next) => onChange(next ? { ...drawn, [next]: LEVEL[next].usual } : drawn)} />
       ${kind && html`<${NumberField} key=${kind} label=${LEVEL[kind].label} unit=${LEVEL[kind].unit} min=${1e-6} step=${0.1}

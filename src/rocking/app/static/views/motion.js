@@ -18,7 +18,7 @@ const EDITORS = { record: Record, pulse: Pulse, synthetic: Synthetic };
 // Of itself no record is chosen: a file has to be given.
 const USUAL = { record: () => null, pulse: usualPulse, synthetic: usualSynthetic };
 
-const LEAN = "No motion is chosen: the body is let go from a lean. Choose one here to shake it.";
+const LEAN = "No motion is selected. The body starts from an initial rotation. Choose a motion to shake the body.";
 
 /** Way of a motion; none while nothing shakes the ground. @param {Server.MotionInput | null | undefined} motion @returns {"" | keyof typeof EDITORS} */
 const wayOf = (motion) => /** @type {(keyof typeof EDITORS)[]} */ (Object.keys(EDITORS)).find((way) => motion?.[way] !== undefined) || "";
@@ -80,18 +80,18 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
   // what is measured is not what the form shows: another way, a file that waits, an error
   const stale = motion && ((faulty.value && !refused) || waits || wayOf(motion) !== way.value);
   return html`
-    <header class="view-head"><h1>Motion of the ground</h1>
-      <p class="lead">Drop a record, choose a pulse or draw a synthetic motion; it is measured at once.</p></header>
+    <header class="view-head"><h1>Ground motion</h1>
+      <p class="lead">Drop a record, choose a pulse or generate a synthetic motion. The results update at once.</p></header>
     <div class="columns narrow-wide">
       <div class="motion-left"><${Card} title="The motion">
-        <${Segmented} label="Where the motion comes from" options=${WAYS} value=${way.value} on=${choose} />
+        <${Segmented} label="Source of the motion" options=${WAYS} value=${way.value} on=${choose} />
         <div class="motion-editor">${Editor && html`<${Editor} app=${app} motion=${wayOf(motion) === way.value ? motion : null}
           record=${record} lost=${refused?.status === 404} blamed=${refused && blamedOf(refused)} onChange=${set} />`}</div>
         ${motion && html`<${Scale} value=${motion.scale ?? 1} on=${(scale) => app.inputs.set("motion", { ...motion, scale })} />`}<//></div>
       <div class="motion-right">
         <div aria-live="polite" data-testid="motion-refusal">
           ${!motion && html`<${Note} words=${LEAN} /><div class="toolbar">
-            <${Button} onClick=${() => set(motionBefore(app))}>Back to the motion before<//></div>`}
+            <${Button} onClick=${() => set(motionBefore(app))}>Restore the previous motion<//></div>`}
           ${refused && html`<${Note} kind="error" words=${refused.message} />`}
           ${(answer?.warnings ?? []).map((/** @type {string} */ words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}</div>
         <div aria-live="polite" data-testid="motion-pending">
@@ -105,12 +105,12 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
 /** @param {any} refused */
 const blamedOf = (refused) => {
   const key = refused.parameter ? keyOf(refused) : undefined;
-  return key === "energy" ? { key: "amplitude", words: "Not 0: nothing would move." } : { key, words: sentence(refused.message) };
+  return key === "energy" ? { key: "amplitude", words: "Enter a value other than 0." } : { key, words: sentence(refused.message) };
 };
 
 /** @param {Server.MotionInput} motion @param {boolean} faulty @param {boolean} waits */
 const pendingWords = (motion, faulty, waits) => {
-  const file = waits ? "The new file is not read yet" : "No file is chosen yet";
-  const why = faulty && !waits ? "A number is marked as wrong" : file;
-  return t("{reason}: what is measured below, and what shakes the body, is still {motion}.", { reason: why, motion: motion.file_name ?? "the motion from before" });
+  const file = waits ? "The new file is not read yet" : "No file is selected";
+  const why = faulty && !waits ? "An input is invalid" : file;
+  return t("{reason}. The results below and the response still use {motion}.", { reason: why, motion: motion.file_name ?? "the previous motion" });
 };

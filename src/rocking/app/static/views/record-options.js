@@ -50,7 +50,7 @@ export const FileOptions = ({ app, form, names, reasons }) => {
   /** @param {string} file */
   const without = (file) => Object.fromEntries(Object.entries(byFile).filter(([name]) => name !== file));
   return html`
-    <div class="chain" role="group" aria-label="Options of single files">
+    <div class="chain" role="group" aria-label="Options per file">
       ${shown.length > 0 && html`<ul>${shown.map((name) => html`<li key=${name} aria-label=${name}>
         <div class="toolbar"><strong translate=${false}>${name}</strong>
           ${name in byFile && html`<${Button} kind="quiet" aria-label=${t("Remove the options of {name}", { name })}
@@ -58,7 +58,7 @@ export const FileOptions = ({ app, form, names, reasons }) => {
         ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name])} />`}
         <div class="fields">${KEYS.map((key) => field(name, key))}</div></li>`)}</ul>`}
       ${others.length > 0 && html`<${Choice} label="Add a file with other options" value=${added}
-        help="Its unit, time step, format and lines to skip replace those of all files."
+        help="The unit, time step, format and skipped lines of a file replace the common options."
         options=${[["", "\u2013"], ...others.map((name) => [name, name])]} />`}
     </div>`;
 };

@@ -43,10 +43,10 @@ const Records = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    wrong.value = !records.length ? { key: "files", words: "No record was sent yet." }
+    wrong.value = !records.length ? { key: "files", words: "Add a record." }
       : shown === "target" && form.value.code === "file" && !curve.length
-        ? { key: "curve", words: "The file of the spectrum was not sent yet." }
-        : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), words: "A number is needed here." } : "";
+        ? { key: "curve", words: "Add a spectrum file." }
+        : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), words: "Enter a number." } : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
     const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
@@ -55,17 +55,17 @@ const Records = ({ app, questions }) => {
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Answer}
       title="Records"
-      lead="A recording as it comes: what its file says, corrected step by step, before and after; or a folder of them, measured and chosen for a spectrum.">
+      lead="Correct one record step by step, or measure a folder of records and select records for a target spectrum.">
       <${FileDrop} label="Drop records or a folder here, or" many accept=${recordEndings(app)} files=${form.at("files")} questions=${questions}
-        app=${app} help="With their StationXML file (.xml) where they are counts." />
-      ${records.length > 0 && html`<${Choice} label="What is shown" value=${form.at("shown")} chosen=${shown}
+        app=${app} help="For counts, add the StationXML file (.xml)." />
+      ${records.length > 0 && html`<${Choice} label="Result" value=${form.at("shown")} chosen=${shown}
         options=${[...records.slice(0, 50).map(({ name }) => [name, t("{name}, before and after", { name })]),
-          ["all", "all of them, in a table of measures"], ["target", "those that come close to a spectrum, scaled"]]} />`}
+          ["all", "all records, table of intensity measures"], ["target", "records selected and scaled to a spectrum"]]} />`}
       ${!single && lists.length > 0 && records.length > 1 && html`<${Choice} label="List of records" value=${form.at("list")}
-        help="A CSV with the columns motion, or x, y and z, and if needed units and time_step of each row; the files that it names are sent with it."
-        options=${[["", "none: every file is a record"], ...lists.map(({ name }) => [name, name])]} />`}
+        help="CSV with the column motion, or x, y and z. Optional columns: units, time_step. Add the listed files too."
+        options=${[["", "none: each file is a record"], ...lists.map(({ name }) => [name, name])]} />`}
       <details open=${Object.values(form.value.motion).some(Boolean) || Object.keys({ ...form.value.by_file, ...reasons }).length > 0}>
-        <summary>What the file does not say</summary>
+        <summary>Missing in the file</summary>
         <div class="fields">${["units", "time_step", "format", "skip", ...(single ? ["component"] : [])].map(key)}</div>
         ${records.length > 1 && html`<${FileOptions} app=${app} form=${form} reasons=${reasons}
           names=${records.map(({ name }) => name).filter((name) => name !== form.value.list)} />`}
@@ -73,7 +73,7 @@ const Records = ({ app, questions }) => {
       <${Chain} app=${app} form=${form} stations=${files.filter(isStations)} faulty=${faultyOf(questions, form.value)} />
       ${shown === "target" && html`<${Target} app=${app} form=${form} questions=${questions} />`}
       ${!single && html`<${KeyField} name="mirrored" facts=${app.info.keys.motions.mirrored} value=${form.at("set", "mirrored")} />`}
-      ${single && html`<${Choice} label="Written as" value=${form.at("format")} help="Beside columns of time and acceleration."
+      ${single && html`<${Choice} label="Output format" value=${form.at("format")} help="In addition to columns of time and acceleration."
         options=${[["", "columns only (CSV)"], ...app.info.formats.filter(({ name }) => name !== "columns")
           .map(({ name, title }) => [name, `${name}: ${t(title)}`])]} />`}
     <//>`;
@@ -139,16 +139,16 @@ const Chain = ({ app, form, stations, faulty }) => {
   };
   return html`
     <div class="chain" role="group" aria-labelledby=${heading}>
-      <h2 id=${heading}>Steps, in their order</h2>
+      <h2 id=${heading}>Processing steps</h2>
       <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${t("Step {number}, {name}", { number: place + 1, name })}>
         <div class="toolbar"><strong>${name}</strong>
           <${Button} kind="quiet" aria-label=${t("Move {name} earlier", { name })} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
           <${Button} kind="quiet" aria-label=${t("Move {name} later", { name })} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
-          <${Button} kind="quiet" aria-label=${t("Leave out {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== place))}>leave out<//>
+          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== place))}>remove<//>
         </div>
         <p class="field-help">${sentence(known[name].words)}</p>
         <div class="fields">
-          ${known[name].one && html`<${Choice} label="by" value=${by(place)} options=${Object.keys(known[name].keys).map((key) => [key, key])} />`}
+          ${known[name].one && html`<${Choice} label="parameter" value=${by(place)} options=${Object.keys(known[name].keys).map((key) => [key, key])} />`}
           ${keysOf(steps[place], known[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
             facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}
         </div>
@@ -173,7 +173,7 @@ const Target = ({ app, form, questions }) => {
   return html`
     <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
     ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" name="curve" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
-      help="Its first line names the columns with units: T [s], Sa [g]." />`
+      help="First line: column names with units, T [s], Sa [g]." />`
       : html`<div class="fields">${Object.entries(app.info.targets[code].keys).map(([key, facts]) => html`<${KeyField} key=${`${code}.${key}`} name=${key}
         facts=${facts} value=${form.at("of", code, key)} />`)}</div>`}
     <div class="fields">${["count", "periods"].map((name) => html`<${KeyField} key=${name} name=${name}
@@ -215,7 +215,7 @@ const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
 const Answer = (given) => (given.question.command === "convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
 
 const HEAD = [["samples", "samples"], ["time_step", "step [s]"], ["peak_ground_acceleration", "PGA [m/s\u00b2]"], ["peak_ground_velocity", "PGV [m/s]"],
-  ["peak_ground_displacement", "PGD [m]"], ["end_velocity", "velocity at the end [m/s]"]];
+  ["peak_ground_displacement", "PGD [m]"], ["end_velocity", "final velocity [m/s]"]];
 
 /** @param {Given} given */
 const Corrected = ({ answer, question, questions }) => {
@@ -226,12 +226,12 @@ const Corrected = ({ answer, question, questions }) => {
       name: answer.name, before: number(answer.before.peak_ground_acceleration / G, 4), after: number(answer.after.peak_ground_acceleration / G, 4) })}</p>
     ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
-    <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use it as the motion<//></div>
+    <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use as motion<//></div>
     <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
       [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
-    <h3>What was done</h3>
-    <ul aria-label="What was done">${answer.provenance.map((/** @type {string} */ words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
-    <details><summary>What the file says</summary>
+    <h3>Processing</h3>
+    <ul aria-label="Processing">${answer.provenance.map((/** @type {string} */ words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
+    <details><summary>File header</summary>
       <dl class="facts">${said.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
       ${answer.metadata.header && html`<pre tabindex="0">${answer.metadata.header}</pre>`}
     </details>`;
@@ -267,13 +267,13 @@ const Chosen = ({ answer, question }) => {
   });
   return html`
     <p class="verdict" data-testid="verdict">${selection ? sentence(selection.sentence) : left.length
-      ? t("{count} records, {left} files left out.", { count: records.length, left: left.length }) : t(["{count} record.", "{count} records."], { count: records.length })}</p>
+      ? t("{count} records, {left} files ignored.", { count: records.length, left: left.length }) : t(["{count} record.", "{count} records."], { count: records.length })}</p>
     <${Drawing} question=${question} alt=${selection ? "Spectra of the scaled records, their mean and the target" : "Spectra of the records"} />
     <${Rows} caption="Records" rows=${rows}
       head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />
-    <p class="field-help">The component with the largest peak is shown; the files have all of them, and their spectra.</p>
-    ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Doubts</h3><${Rows} caption="Doubts" head=${["record", "check the input"]}
+    <p class="field-help">The table shows the component with the largest peak. The files contain all components and their spectra.</p>
+    ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Warnings</h3><${Rows} caption="Warnings" head=${["record", "warning"]}
       rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
-    ${left.length > 0 && html`<h3>Left out</h3><${Rows} caption="Files that were left out" head=${["file", "why"]}
+    ${left.length > 0 && html`<h3>Ignored files</h3><${Rows} caption="Ignored files" head=${["file", "reason"]}
       rows=${left.map((/** @type {any} */ each) => [each.file, whyLeftOut(each)])} />`}`;
 };

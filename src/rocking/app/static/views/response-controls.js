@@ -8,7 +8,7 @@ import { readRestitution, writeRestitution } from "/views/response-restitution.j
 import { canBeScaled, scaledBody } from "/views/response-size.js";
 
 const [LEAN, USUAL] = [0.5, 0.9];
-const CALIBRATED = "The calibrated model is fitted to the published measurements; Impact shows its interval.";
+const CALIBRATED = "The calibrated model is fitted to published measurements. Impact shows its interval.";
 
 /** Lets the body go from a lean, on ground that stands still. @param {App} app */
 export const lean = (app) => {
@@ -32,19 +32,19 @@ export const Controls = ({ app, inputs }) => {
   const free = response?.free ?? null;
   return html`
     <div class="response-controls">
-      <${Card} title="Turn and see">
+      <${Card} title="Parameters">
         <${Slider} label="Scale of the motion" min=${0.1} max=${10} log hidden=${free !== null || !motion}
           value=${clipped(motion?.scale ?? 1)} on=${(scale) => app.inputs.set("motion.scale", scale)} />
         <${Size} app=${app} body=${body} />
-        <${Switch} label="Let it go from a lean instead" help="Free rocking: the ground stands still."
+        <${Switch} label="Start from an initial rotation" help="Free rocking without ground motion."
           value=${free !== null} on=${(yes) => (yes ? lean(app) : shake(app))} />
-        <${Slider} label="First rotation over slenderness angle" min=${-0.99} max=${0.99} step=${0.01}
+        <${Slider} label="Initial rotation / slenderness angle" min=${-0.99} max=${0.99} step=${0.01}
           hidden=${free === null} value=${free ?? LEAN} on=${(value) => app.inputs.set("response.free", value || 0.01)} />
         <${NumberField} label="Friction between body and ground" min=${0.01} max=${10} step=${0.05}
-          help="Rocking that takes more would slide." value=${response?.assumed_friction ?? 0.5}
+          help="A body with a larger friction demand would slide." value=${response?.assumed_friction ?? 0.5}
           on=${(value) => app.inputs.set("response.assumed_friction", value)} />
       <//>
-      <${Card} title="Models of the impact">
+      <${Card} title="Restitution models">
         <${Models} app=${app} table=${restitution} /><//>
     </div>`;
 };
@@ -61,7 +61,7 @@ const Size = ({ app, body }) => {
     app.inputs.set("body", scaledBody(drawn.current, next));
   };
   return html`<${Slider} label="Size of the body, all lengths" min=${0.2} max=${5} log hidden=${!canBeScaled(body)}
-    help="Against the body as it was drawn; larger ones are more stable." value=${factor.current} on=${resize} />`;
+    help="Relative to the drawn body. Larger bodies are more stable." value=${factor.current} on=${resize} />`;
 };
 
 /** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */
@@ -78,7 +78,7 @@ const Models = ({ app, table }) => {
     const next = writeRestitution({ ...state, ...changes });
     if (next) return app.inputs.set("restitution", next);
     refused.value += 1;
-    return app.say("At least one model or coefficient is needed.", "warning");
+    return app.say("Select at least one model or coefficient.", "warning");
   };
   /** @param {string} label */
   const others = (label) => models.filter((one) => one !== label);
@@ -102,13 +102,13 @@ const Models = ({ app, table }) => {
       </fieldset>
       ${models.length > 1 && !feet && html`<${Choice} label="Main model" value=${models[0]} on=${lead}
         options=${models.map((label) => [label, wordsOf(label)])}
-        help="Its answer comes first: in the files, the report and on the command line." />`}
-      <${Switch} label="A coefficient of my own" hidden=${feet !== null} value=${value !== null}
+        help="The first result in files, report and command line." />`}
+      <${Switch} label="Own coefficient" hidden=${feet !== null} value=${value !== null}
         on=${(yes) => change({ value: yes ? USUAL : null })} />
       ${value !== null && !feet && html`<${Slider} label="Coefficient of restitution r" min=${0} max=${1} step=${0.005}
         value=${Math.min(value, 1)} on=${(given) => change({ value: given })} />`}
       <p class="field-help">${CALIBRATED}</p>
-      <${Switch} label="One coefficient for each foot" help="Stands alone, without models." value=${feet !== null}
+      <${Switch} label="One coefficient for each foot" help="Replaces all models." value=${feet !== null}
         on=${(yes) => change({ feet: yes ? [USUAL, USUAL] : null })} />
       ${feet && html`<div class="fields">${foot("Onto the left foot", 0)}${foot("Onto the right foot", 1)}</div>`}
     </div>`;

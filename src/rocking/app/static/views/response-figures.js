@@ -79,9 +79,9 @@ const KINDS = {
     ],
   },
   lost: ofEach("Energy lost at impacts", { label: "", unit: "J" }, ({ series }) => series.energy_lost),
-  force: ofEach("Vertical force of the ground", { label: "", unit: "N" }, ({ series }) => series.vertical_force),
+  force: ofEach("Vertical contact force", { label: "", unit: "N" }, ({ series }) => series.vertical_force),
   friction: ofEach(
-    "Friction that rocking without slip takes", { label: "", unit: "-" }, ({ series }) => capped(series.friction_demand),
+    "Friction demand without sliding", { label: "", unit: "-" }, ({ series }) => capped(series.friction_demand),
   ),
 };
 
@@ -89,8 +89,8 @@ const KINDS = {
  * @param {Server.ResponseFacts[]} answers @param {string} whose */
 export const marksWords = (answers, whose) => [
   t("Ticks on the axis: impacts of {model}; dashed: the slenderness angles.", { model: whose }),
-  ...(answers.some(({ outcome }) => outcome === "overturned") ? [t("Curves of a body that overturns end at {rotation} \u03b1.", { rotation: FALL_SHOWN })] : []),
-  t("Drag across a chart to look into it with every sample; a double click shows all of it again."),
+  ...(answers.some(({ outcome }) => outcome === "overturned") ? [t("Curves of an overturning body end at {rotation} \u03b1.", { rotation: FALL_SHOWN })] : []),
+  t("Drag across a chart to zoom in. Double-click to show the full duration."),
 ].join(" ");
 
 /** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into.
@@ -109,7 +109,7 @@ export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) 
 };
 
 /** @type {Words} */
-const DASHED = { rotation: "Dashed: the slenderness angles.", friction: "Dashed: the friction that is given." };
+const DASHED = { rotation: "Dashed: the slenderness angles.", friction: "Dashed: the assumed friction." };
 
 /** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], ticked: string, part: Point | null, friction: number, time: Time, height: number }} props */
 const OneFigure = ({ kind, answers, lead, rows, ticked, part, friction, time, height }) => {

@@ -13,7 +13,7 @@ import { t } from "/app/words.js";
  * @param {{ answers: any[], lead: string | null }} props */
 export const Cards = ({ answers, lead }) => html`
   <fieldset class="outcomes" data-testid="outcomes">
-    <legend class="visually-hidden">Model that is drawn solid in the animation</legend>
+    <legend class="visually-hidden">Model drawn solid in the animation</legend>
     ${answers.map((one) => (one.error ? html`
       <div key=${one.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${one.label} />
         <span class="outcome-facts">${one.error}</span></div>`
@@ -43,7 +43,7 @@ const factsOf = (answer) => {
   const [onto, other] = [number(right, 4), number(left, 4)];
   const r = same ? onto : t("{first} left, {second} right", { first: other, second: onto });
   const peak = answer.outcome === "overturned"
-    ? t("no return at {time}", { time: quantity(answer.overturning_time, "s", 4) })
+    ? t("overturns at {time}", { time: quantity(answer.overturning_time, "s", 4) })
     : t("peak {rotation}", { rotation: quantity(answer.peak_ratio, "\u03b1", 3) });
   const count = answer.impacts.length;
   return `r = ${r} \u00b7 ${peak} \u00b7 ${t(["{count} impact", "{count} impacts"], { count })}`;
@@ -69,7 +69,7 @@ export const Impacts = ({ app, answers, answer }) => {
   return html`<${Card} title="Impacts"><div class="impacts">
     <${Choice} label="Model" value=${answer.label} on=${look} options=${answers.map(({ label }) => [label, wordsOf(label)])} />
     <div data-testid="impacts"><${Table} columns=${COLUMNS} rows=${rows.slice(0, MOST)} copied=${() => rows} testid="impacts-table"
-      caption=${rows.length > MOST ? t("{count} impacts ({model}); the first {shown} are shown, copying takes them all", counted)
+      caption=${rows.length > MOST ? t("{count} impacts ({model}); first {shown} shown, copying includes all", counted)
         : t(["{count} impact ({model})", "{count} impacts ({model})"], counted)}
       csv=${() => app.download("table/impacts.csv", app.inputs.get(), "impacts.csv")} /></div></div><//>`;
 };
@@ -82,9 +82,9 @@ export const TakeAway = ({ app, restitution }) => {
   /** @param {string} path */
   const save = (path) => app.download(pathOfChosen(path, restitution), app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);
-  return html`<${Card} title="Take away">
+  return html`<${Card} title="Export">
     <div class="toolbar">${FILES.map(([words, path]) => html`<${Button} key=${path} onClick=${() => save(path)}>${words}<//>`)}
       <${Film} app=${app}>Animation, GIF<//></div>
     <p class="field-help" data-testid="files-model">${labels.length > 1
-      && t("Curves and animation are those of {model}.", { model: wordsOf(chosenOf(labels)) })}</p><//>`;
+      && t("Curves and animation: {model}.", { model: wordsOf(chosenOf(labels)) })}</p><//>`;
 };

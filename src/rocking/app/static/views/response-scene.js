@@ -43,6 +43,6 @@ export const Scene = ({ player, body, answers, lead, stale }) => {
   }, [actors, lead]);
   return html`<div class=${`scene-holder ${stale ? "stale" : ""}`} hidden=${!answers.length}>
     <${Made} node=${player.element} />
-    <div class="chart-foot"><p class="field-help">Space plays and pauses; with the picture in focus the arrow keys step.</p>
+    <div class="chart-foot"><p class="field-help">Space bar: play or pause. Arrow keys: step, while the picture has the focus.</p>
       <${Made} node=${node} class="pushed" /></div></div>`;
 };

@@ -6,7 +6,7 @@ import { t } from "/app/words.js";
 /** @type {{ [outcome: string]: { kind: string, sign: string, word: string } }} */
 const OUTCOMES = {
   no_uplift: { kind: "calm", sign: "\u25a0", word: "stays at rest" },
-  rocked: { kind: "rocks", sign: "\u2713", word: "rocks and stays standing" },
+  rocked: { kind: "rocks", sign: "\u2713", word: "rocks, does not overturn" },
   overturned: { kind: "falls", sign: "\u25b2", word: "overturns" },
   failed: { kind: "unknown", sign: "?", word: "could not be computed" },
 };
@@ -45,5 +45,5 @@ const wordOf = (label) => new RegExp(`(?<![\\w-])${label.replace(/[.*+?^${}()|[\
 /** Returns the sentence for the screen reader that stands for the animation. @param {Server.ResponseFacts[]} answers */
 export const sceneWords = (answers) => {
   const each = answers.map((answer) => `${t(wordsOf(answer.label))}: ${t(answer.summary || outcomeOf(answer).word)}`);
-  return t("The body rocking on the moving ground. {outcomes}.", { outcomes: each.join("; ") });
+  return t("Rocking body on the moving ground. {outcomes}.", { outcomes: each.join("; ") });
 };

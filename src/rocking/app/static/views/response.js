@@ -64,7 +64,7 @@ const onKey = (event, player) => {
 const NONE = [];
 /** @param {{ outcome?: string }} answer */
 const falls = ({ outcome }) => outcome === "overturned";
-const FALL = "The animation follows the fall, by the same equation, until a corner meets the ground; there it stays, since a landing on a side is not computed.";
+const FALL = "The animation shows the fall until a corner touches the ground. Motion after this contact is not computed.";
 
 /** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean>, faulty: Signal<string> }} props */
 const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }) => {
@@ -84,7 +84,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
   }, [found.value]);
   return html`
     <header class="view-head"><h1>Response</h1>
-      <p class="lead">The same body and motion with several models of the impact: does the choice matter?</p></header>
+      <p class="lead">Response of one body to one motion, with several restitution models.</p></header>
     <div aria-live="polite" data-testid="response-refusal">
       ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
       ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${t(OLDER)}`} />`}
@@ -101,7 +101,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
             <div class="figures" data-testid="response-charts">
               <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} part=${part.value} friction=${friction} time=${time} /></div>
             <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && t(FALL)}</p>
-            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show all of the time<//>`}
+            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show the full duration<//>`}
           </div></section>`}
       </div>
       <${Controls} app=${app} inputs=${inputs.value} />
@@ -112,6 +112,6 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
 
 /** @param {{ app: App }} props */
 const NothingMoves = ({ app }) => html`
-  <${Note} words="Nothing moves the body yet: choose a motion, or let it go from a lean." />
+  <${Note} words="No motion is selected. Choose a motion, or start from an initial rotation." />
   <div class="toolbar"><${Button} kind="primary" onClick=${() => app.go("motion")}>Choose a motion<//>
-    <${Button} onClick=${() => lean(app)}>Let it go from a lean<//></div>`;
+    <${Button} onClick=${() => lean(app)}>Start from an initial rotation<//></div>`;

@@ -11,16 +11,16 @@ import { Standing } from "/space/standing.js";
 import { t, userText } from "/app/words.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
-const ASKED = [["equilibria", "in which ways can it stand?"], ["cor", "what do impacts cost, by edge?"], ["simulate", "how does it move?"]];
+const ASKED = [["equilibria", "stable poses"], ["cor", "coefficient of restitution by edge"], ["simulate", "response to a motion"]];
 /** @type {{ [command: string]: string }} */
-const TITLES = { equilibria: "How it can stand: {name}", cor: "Its edges: {name}", simulate: "How it moves: {name}" };
-const UNITS = [["", "what the file says"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
-const UP = [["", "what is usual (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
+const TITLES = { equilibria: "Stable poses: {name}", cor: "Edges: {name}", simulate: "Response: {name}" };
+const UNITS = [["", "as in the file"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
+const UP = [["", "default (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
 /** @type {{ [axis: string]: number[] | undefined }} */
 const AXES = { x: [1, 0, 0], "-z": [0, 0, -1] };
-const REPAIRS = [["", "what is safe"], ["none", "nothing (\"none\"): refuse what is not closed"], ["all", "whatever it takes (\"all\")"]];
-const SURFACES = [["", "its faces"], ["wrap", "a skin over its points (\"wrap\")"], ["hull", "the hull of its points (\"hull\")"]];
-const INNER = [["", "refused, and named (\"refuse\")"], ["solid", "solid (\"solid\")"], ["cavity", "cavities (\"cavity\")"]];
+const REPAIRS = [["", "safe repairs"], ["none", "none (\"none\"): open meshes are refused"], ["all", "all repairs (\"all\")"]];
+const SURFACES = [["", "faces of the mesh"], ["wrap", "skin over the points (\"wrap\")"], ["hull", "convex hull of the points (\"hull\")"]];
+const INNER = [["", "refused (\"refuse\")"], ["solid", "solid (\"solid\")"], ["cavity", "cavities (\"cavity\")"]];
 const SHAKEN = [["x", "the motion of this project, along x"], ["y", "the motion of this project, along y"], ["records", "records along x, y and z"]];
 const LAWS = [
   ["ked-3d", "kinetic energy distribution (ked-3d)"], ["calibrated-3d", "calibrated model (calibrated-3d)"],
@@ -81,8 +81,8 @@ const Space = ({ app, questions }) => {
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
     const held = parseNumber(friction.value) ?? NaN;
     const kept = parseNumber(coefficient.value) ?? NaN;
-    wrong.value = body.missing || (moves && !(held > 0) && { key: "friction", words: "The friction is a number above 0." })
-      || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "The coefficient is a number from 0 to 1." }) || motion.missing || "";
+    wrong.value = body.missing || (moves && !(held > 0) && { key: "friction", words: "Enter a friction above 0." })
+      || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "Enter a coefficient from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
     const name = scan?.name ?? (inputs.body.name || app.project.here.value.name);
     const tables = {
@@ -97,39 +97,39 @@ const Space = ({ app, questions }) => {
   /** @param {number} number_ @param {number[]} direction */
   const goOn = (number_, direction) => {
     pose.value = { number: number_, up: direction };
-    app.say(t("What is asked next is of the body in pose {pose}.", { pose: number_ }));
+    app.say(t("The next run uses the body in pose {pose}.", { pose: number_ }));
   };
   // One component as long as the view lives: another one would draw the scene anew at every letter that is typed.
   const Found = useRef((/** @type {any} */ { answer, question }) => html`
     <${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`).current;
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
-      title="What does a scan do?"
-      lead="A statue, a stone or a machine as it was scanned: what had to be mended, in which ways it can stand, and how it rocks, slides and falls in space.">
+      title="3D"
+      lead="Analysis of a scanned body in 3D: mesh repairs, stable poses, and response with rocking, sliding and overturning.">
       <${FileDrop} label="Drop a scan here, or" adds accept=${SCANS} files=${scans} questions=${questions} app=${app}
         help="STL, OBJ, PLY or GLB, points alone (PLY, XYZ), or a body file (TOML); up to 32 MiB." />
       <${Choice} label="Body" value=${chosen.value} on=${choose} chosen=${scan?.sha ?? chosen.value} options=${[
         ...(files.value.length ? files.value.map((/** @type {SentFile} */ { name, sha }) => [sha, name]) : [["", "a scan"]]), [OWN, "the body of this project"]]} />
-      ${chosen.value === OWN ? html`<p class="field-help">A block or a section, over its depth.</p>` : html`
-      <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY do not say theirs." />
-      ${pose.value ? html`<p class="space-pose">${t("Stands in pose {pose} of the last answer.", { pose: pose.value.number })}
+      ${chosen.value === OWN ? html`<p class="field-help">Block or section, extruded over its depth.</p>` : html`
+      <${Choice} label="Unit of the file" name="units" value=${units} options=${UNITS} help="STL, OBJ and PLY files contain no unit." />
+      ${pose.value ? html`<p class="space-pose">${t("Pose {pose} of the last result.", { pose: pose.value.number })}
           <${Button} kind="quiet" onClick=${() => (pose.value = null)}>As in the file<//></p>`
-        : html`<${Choice} label="Up" value=${up} options=${UP} help="It is let down from there until it rests." />`}
-      <${Field} label="Density" name="density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Concrete's if empty." />
-      <details><summary>What may be mended</summary>
-        <${Choice} label="Mend" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and 0.5 % of the size for the centre." />
+        : html`<${Choice} label="Up" value=${up} options=${UP} help="The body settles from this orientation." />`}
+      <${Field} label="Density" name="density" unit="kg/m\u00b3" value=${density} inputmode="decimal" help="Empty: concrete." />
+      <details><summary>Mesh repairs</summary>
+        <${Choice} label="Repairs" value=${repair} options=${REPAIRS} help="Safe: at most 1 % of the volume, and a shift of the centre of mass of 0.5 % of the size." />
         <${Choice} label="Surface" value=${surface} options=${SURFACES} />
-        <${Choice} label="Closed parts inside" value=${inner} options=${INNER} help="Parts that are wound like the part around them." />
+        <${Choice} label="Inner closed parts" value=${inner} options=${INNER} help="Inner parts with the same winding as the outer part." />
       </details>`}
-      <${Choice} label="Asked is" value=${asked} options=${ASKED} />
+      <${Choice} label="Analysis" value=${asked} options=${ASKED} />
       ${asked.value === "simulate" && html`
-        <${Choice} label="Shaken by" value=${shaken} options=${SHAKEN} />
+        <${Choice} label="Ground motions" value=${shaken} options=${SHAKEN} />
         ${shaken.value === "records" && html`
           ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${t("A record along {axis}, or", { axis })}
-            accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Upward." : ""} />`)}
-          <${Field} label="Unit of the accelerations" name="record units" value=${recordUnits} help="Only where the files state none: g, m/s2, cm/s2." />`}
-        <${Field} label="Motion" name="times" unit="times" value=${times} inputmode="decimal" />
-        <${Field} label="Friction" name="friction" value=${friction} inputmode="decimal" help="Coefficient: it may slide, hop and fall." />
+            accept=${recordEndings(app)} files=${sent} questions=${questions} app=${app} help=${axis === "z" ? "Positive upward." : ""} />`)}
+          <${Field} label="Unit of the accelerations" name="record units" value=${recordUnits} help="Only for files without a unit: g, m/s2, cm/s2." />`}
+        <${Field} label="Scale factor" name="times" value=${times} inputmode="decimal" />
+        <${Field} label="Friction" name="friction" value=${friction} inputmode="decimal" help="Friction coefficient. The body can slide, lift off and overturn." />
         <${Choice} label="Impacts" value=${law} options=${LAWS} />
         ${!law.value && html`<${Field} label="Coefficient of restitution" name="value" value=${coefficient} inputmode="decimal" help="From 0 to 1." />`}`}
     <//>`;
@@ -138,11 +138,11 @@ const Space = ({ app, questions }) => {
 /** The table of the body, with what was said alone; missing: what has to be said first.
  * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} said @returns {{ table?: any, missing?: Wrong }} */
 const bodyOf = (scan, said) => {
-  if (!scan) return { missing: { key: "files", words: "No scan was sent yet." } };
+  if (!scan) return { missing: { key: "files", words: "Add a scan." } };
   const kind = scan.name.replace(/^.*\./s, "").toLowerCase();
-  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: t("{format} files do not say their unit: choose it.", { format: kind.toUpperCase() }) } };
+  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: t("{format} files contain no unit. Choose the unit.", { format: kind.toUpperCase() }) } };
   const density = said.density ? parseNumber(said.density) : null;
-  if (said.density && !(Number(density) > 0)) return { missing: { key: "density", words: "The density is a number above 0." } };
+  if (said.density && !(Number(density) > 0)) return { missing: { key: "density", words: "Enter a density above 0." } };
   const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
   return { table: { file: scan.name, ...Object.fromEntries(stated) } };
 };
@@ -151,10 +151,10 @@ const bodyOf = (scan, said) => {
  * @param {App} app @param {string} shaken @param {{ [axis: string]: { value: SentFile[] } }} records @param {string} units @param {string} times @returns {Shaking} */
 const shakenBy = (app, shaken, records, units, times) => {
   const scale = parseNumber(times);
-  if (scale === null || scale === 0) return { missing: { key: "times", words: "How many times the motion? A number is needed." } };
+  if (scale === null || scale === 0) return { missing: { key: "times", words: "Enter a scale factor other than 0." } };
   if (shaken !== "records") {
     const motion = motionOf(app.inputs.get());
-    const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion: choose one, or send records.");
+    const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion. Choose a motion, or add records.");
     if (missing || !motion) return { missing };
     return { tables: { motion: { [shaken]: motion.tables.motion, scale } }, files: motion.files };
   }
@@ -163,7 +163,7 @@ const shakenBy = (app, shaken, records, units, times) => {
   const along = Object.fromEntries(sent.map(([axis, one]) => [axis, { record: one.name, ...(units ? { units } : {}) }]));
   return {
     tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, one]) => [one.name, one.sha])),
-    missing: sent.length ? "" : { key: "x", words: "No record was sent yet." },
+    missing: sent.length ? "" : { key: "x", words: "Add a record." },
   };
 };
 
@@ -175,7 +175,7 @@ const Answer = ({ answer, question, onPose }) => {
   return html`
     <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}</p>
     <${MotionScene} question=${question} answer=${answer} />
-    <p>${t("Largest tilt {tilt}\u00b0, impacts: {impacts}; slid {distance} mm at most.", { tilt: number((answer.peak_tilt * 180) / Math.PI, 4), impacts: answer.impacts.length, distance: number(1000 * answer.sliding_distance, 3) })}</p>
+    <p>${t("Largest tilt {tilt}\u00b0, impacts: {impacts}, largest sliding distance {distance} mm.", { tilt: number((answer.peak_tilt * 180) / Math.PI, 4), impacts: answer.impacts.length, distance: number(1000 * answer.sliding_distance, 3) })}</p>
     <${Drawing} question=${question} alt="Tilt, direction and energy over time" />
     ${scan}`;
 };
@@ -184,10 +184,10 @@ const Answer = ({ answer, question, onPose }) => {
 const Taken = ({ body, repairs, own }) => {
   const size = body.size.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
   return html`
-  <h3>${own ? "The body" : "The scan, as it was taken"}</h3>
-  <p>${t("{size} mm, {mass} kg, centre {height} mm over the ground.", { size, mass: number(body.mass, 4), height: number(1000 * body.centre_height, 4) })}</p>
-  <ul class="space-repairs" aria-label="What was mended">
-    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}</li>`) : html`<li>Nothing had to be mended.</li>`}
+  <h3>${own ? "The body" : "The scan"}</h3>
+  <p>${t("{size} mm, {mass} kg, centre of mass {height} mm above the ground.", { size, mass: number(body.mass, 4), height: number(1000 * body.centre_height, 4) })}</p>
+  <ul class="space-repairs" aria-label="Repairs">
+    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}</li>`) : html`<li>No repairs were needed.</li>`}
     ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}</li>`)}
   </ul>`;
 };

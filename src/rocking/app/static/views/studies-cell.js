@@ -40,7 +40,7 @@ export const createCell = (app, study) => {
   const took = (found, kept) => {
     ({ inputs } = found);
     opens.value = Boolean(inputs) && kept && next === null;
-    words.value = kept ? wordsOf(found) : `${wordsOf(found)} ${t("Click the cell, or press Enter, to keep it.")}`;
+    words.value = kept ? wordsOf(found) : `${wordsOf(found)} ${t("Click the cell or press Enter to keep its time history.")}`;
     curve.value = Boolean(found.answer);
     if (found.answer) data.value = [found.answer.series.time, shareOf(found.answer).map((share) => (Math.abs(share) > MOST ? null : share))];
   };
@@ -72,7 +72,7 @@ export const createCell = (app, study) => {
 /** The panel of a cell. @param {{ cell: ReturnType<typeof createCell> }} props */
 export const Cell = ({ cell: { words, data, curve, opens, open } }) => html`
   <div class="cell-history" data-testid="cell-history">
-    <h3>History of a cell</h3>
+    <h3>Time history of a cell</h3>
     <p class="quiet" data-testid="cell-words">${words.value}</p>
     <div hidden=${!curve.value}>${data.value && html`<${Figure} shape=${SHAPE} data=${data.value} />`}</div>
     <div class="toolbar"><${Button} kind="primary" disabled=${!opens.value} onClick=${open}>Open in Response<//></div>

@@ -11,7 +11,7 @@ const MOST = 500;
 export const Counts = ({ found }) => {
   const several = found.restitutions?.length > 1;
   return html`
-    ${(found.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "histories", "share"]} testid="study-counts"
+    ${(found.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "simulations", "fraction"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
       caption=${several ? t("Outcomes with {model}", { model: modelWords(found.restitutions[k]) }) : "Outcomes"} />`)}
     ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
@@ -23,5 +23,5 @@ const Columns = ({ name, columns }) => {
   const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));
   const heads = columns.map((each) => ({ label: each.name.replaceAll("_", " "), unit: each.unit === "1" ? "" : each.unit }));
   return html`<div><${Table} columns=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
-    ${count > MOST && html`<p class="quiet">${t("{count} more rows are in the files.", { count: count - MOST })}</p>`}</div>`;
+    ${count > MOST && html`<p class="quiet">${t("The files contain {count} more rows.", { count: count - MOST })}</p>`}</div>`;
 };

@@ -9,7 +9,7 @@ const FILES = [
 ];
 const FRAGILITIES = new Set(["stripes", "incremental", "cloud"]);
 
-const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
+const NO_FIT = "NRML needs a fitted curve. This study has none.";
 
 /** @param {any} found @param {number} k */
 const hasFit = (found, k) => Object.keys(found.analyses?.[k]?.curves ?? {}).length > 0;
@@ -30,7 +30,7 @@ export const Exports = ({ app, study, found, chosen }) => {
   };
   return html`
     <div class="study-exports">
-      <h3>Take away</h3>
+      <h3>Export</h3>
       <div class="toolbar">${offered.map(([suffix, text]) => html`
         <${Button} key=${suffix} aria-label=${t("{study} as {format}", { study: userText(study.name), format: text })} data-testid=${`export-${suffix}`}
           disabled=${suffix === "xml" && curveless} onClick=${() => save(suffix)}>${text}<//>`)}</div>

@@ -40,16 +40,16 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
       [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
-    ${field(NumberField, "state", "Rocking counts from", {
+    ${field(NumberField, "state", "Rocking limit state", {
       unit: "\u03b1", above: 0, step: 0.05,
-      help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
+      help: "Fraction of the slenderness angle \u03b1.",
     })}
   </div>`;
 };
 
 /** @param {Server.Inputs} inputs @param {any} chosen @param {any} levels @param {() => any} records */
 const tablesOf = (inputs, { kind, source, family, count, seed, measure, state }, levels, records) => {
-  if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
+  if (!inputs.body) throw new Error("A fragility needs a body. Choose a body in the step Body.");
   const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
   const motions = source === "synthetic" ? [set] : records();
   const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: rangeOf(levels) }) };

@@ -12,7 +12,7 @@ export const KeysQuestion = ({ app, question, kind: { name, table, has_body: has
   question.current = {
     name: label.toLowerCase(),
     tables: (inputs) => {
-      if (hasBody && !inputs.body) throw new Error("This study needs a body: choose one in the step Body.");
+      if (hasBody && !inputs.body) throw new Error("This study needs a body. Choose a body in the step Body.");
       const body = hasBody ? { body: inputs.body } : {};
       return { kind: name, job: { ...body, motions: motionsOf(inputs), [table]: filled(texts.value, keys) } };
     },

@@ -8,7 +8,7 @@ import { t } from "/app/words.js";
 /** Axes that only a pulse has. */
 const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
-const SIDES = { x: "Across", y: "Up" };
+const SIDES = { x: "Horizontal axis", y: "Vertical axis" };
 
 /** Form of a map: its axes are those of the motion of the inputs until others are chosen that this motion has.
  * @param {{ app: App, question: StudyQuestion }} props */
@@ -23,7 +23,7 @@ export const MapQuestion = ({ app, question }) => {
   question.current = {
     name: "overturning map",
     tables: (inputs) => {
-      if (!inputs.body) throw new Error("A map needs a body: choose one in the step Body.");
+      if (!inputs.body) throw new Error("A map needs a body. Choose a body in the step Body.");
       const map = { x: { axis: chosen.x, ...rangeOf(x) }, y: { axis: chosen.y, ...rangeOf(y) } };
       return { kind: "overturning-map", job: { body: inputs.body, motions: motionsOf(inputs), map } };
     },

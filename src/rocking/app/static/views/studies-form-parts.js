@@ -31,14 +31,14 @@ export const unitOf = ({ unit } = { unit: "" }) => (unit === "1" ? "" : unit);
 /** Motions of a job from the motion of the inputs. @param {Server.Inputs} inputs */
 export const motionsOf = (inputs) => {
   const motion = inputs.motion;
-  if (!motion) throw new Error("A study needs a motion: choose one in the step Motion.");
+  if (!motion) throw new Error("A study needs a motion. Choose a motion in the step Motion.");
   const { pulse, record, synthetic, scale, file_name: _name, member = 0, seed = 0, ...told } = motion;
   const factor = scale == null || scale === 1 ? {} : { scale };
   if (pulse) return [{ pulse: [pulse], ...factor }];
   if (record) return [{ records: [record], ...told, ...factor }];
   if (member !== 0 || factor.scale) {
     throw new Error(
-      "A study takes a synthetic motion as its family makes it: set its member to 0 and its scale to 1.",
+      "A study needs an unscaled synthetic motion. Set its realization to 0 and its scale to 1.",
     );
   }
   return [{ synthetic, seed, count: 1, ...told }];

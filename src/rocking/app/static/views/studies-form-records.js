@@ -6,7 +6,7 @@ import { Needs } from "/views/motion-record-needs.js";
 import { forgetTold, rememberTold, toldOf } from "/views/motion-told.js";
 import { t, userText } from "/app/words.js";
 
-const EMPTY = "No record has been uploaded yet: drop some files in the step Motion.";
+const EMPTY = "No record is uploaded. Add records in the step Motion.";
 
 /** List of the records, read at every visit; `taken.current()` gives those that are ticked as motions of a job.
  * @param {{ app: App, taken: { current: any }, visits: number, hidden: boolean }} props */
@@ -38,7 +38,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   const ticked = stored.value.filter(isTicked);
   taken.current = () => {
     if (!stored.value.length) throw new Error(EMPTY);
-    if (!ticked.length) throw new Error("No record is ticked: tick at least one.");
+    if (!ticked.length) throw new Error("No record is selected. Select at least one record.");
     return together(ticked.map(({ record }) => ({ records: [record], ...toldOf(record) })));
   };
   /** @param {string} record @param {boolean} on */
@@ -56,7 +56,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   return html`
     <div class="question" data-testid="record-choice" hidden=${hidden}>
       <p class="quiet" aria-live="polite">${refused.value
-        || (stored.value.length ? t("{number} of {count} records are taken.", { number: ticked.length, count: stored.value.length }) : EMPTY)}</p>
+        || (stored.value.length ? t("{number} of {count} records are selected.", { number: ticked.length, count: stored.value.length }) : EMPTY)}</p>
       <ul class="record-list" aria-label="Uploaded records">${stored.value.map((one) => html`
         <${Row} key=${one.record} app=${app} record=${one.record} name=${one.file_name} seen=${looked.value[one.record]}
           ticked=${isTicked(one)} tick=${tick} look=${look} gone=${gone} />`)}</ul>
@@ -107,9 +107,9 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
       <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
       <${Button} kind="quiet" aria-label=${t("Delete {name}", { name: userText(name) })} onClick=${remove}>Delete<//>
-      <span class="quiet">${refused ?? (open ? "something must still be told:" : found && factsOf(found, told))}</span>
+      <span class="quiet">${refused ?? (open ? "Missing input:" : found && factsOf(found, told))}</span>
       ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
-        take=${take} button=${{ "aria-label": t("Read {name} so", { name: userText(name) }) }} />`}
+        take=${take} button=${{ "aria-label": t("Apply to {name}", { name: userText(name) }) }} />`}
     </li>`;
 };
 
@@ -119,9 +119,9 @@ const factsOf = ({ components }, { units, component, vertical }) => {
   const step = chosen?.time_step;
   return [
     component,
-    vertical && t("{component} upwards", { component: vertical }),
+    vertical && t("{component} vertical", { component: vertical }),
     units && t("in {unit}", { unit: units }),
-    step ? t("every {time}", { time: quantity(step, "s") }) : null,
+    step ? t("time step {time}", { time: quantity(step, "s") }) : null,
   ]
     .filter(Boolean)
     .join(", ");

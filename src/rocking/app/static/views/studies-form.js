@@ -40,7 +40,7 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   const faultOf = () => {
     const wrong = wrongIn(form.current);
     wrong?.focus();
-    return wrong ? "A number of this form is marked as wrong: correct it first." : app.faults.sentence({ inputs: true });
+    return wrong ? "An input of this form is invalid. Correct it first." : app.faults.sentence({ inputs: true });
   };
   /** @param {Event} event */
   const launch = async (event) => {

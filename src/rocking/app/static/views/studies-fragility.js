@@ -20,7 +20,7 @@ export const Fragility = ({ study, found, chosen }) => {
     <div data-about=${options[chosen.restitution][1]}>
       <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />
       ${study.kind === "incremental" && html`<h3>Curves of the incremental analysis</h3><${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
-        path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of every motion over the intensity to which it is scaled" />`}</div>`;
+        path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of each motion over its intensity level" />`}</div>`;
 };
 
 /** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
@@ -52,8 +52,8 @@ const whyNone = (verdict, threshold, unit) => stopped(t("No curve is drawn: {rea
 
 /** Of uplift under a measure that decides it nothing is fitted: it is no matter of chance.
  * @param {number | null} threshold @param {string} unit */
-const stepWords = (threshold, unit) => (threshold === null ? "these shares fit none"
-  : t("below {acceleration} the body cannot uplift and above it always does, a step from 0 to 1", { acceleration: quantity(threshold, unit) }));
+const stepWords = (threshold, unit) => (threshold === null ? "these fractions allow no fit"
+  : t("no uplift below {acceleration}, always uplift above it: a step from 0 to 1", { acceleration: quantity(threshold, unit) }));
 
 const NO_CURVE = { x: [], probability: [], low: null, high: null };
 
@@ -64,10 +64,10 @@ const Curve = ({ state, curve, points, index, x }) => {
   // the legend names what is drawn, and nothing else
   const drawn = [curve.x.length > 0, band, band, true];
   const series = [
-    { label: "most likely", colour, width: 2.2 },
+    { label: "maximum likelihood", colour, width: 2.2 },
     { label: "95 % band, low", colour, dash: [3, 3], width: 1 },
     { label: "95 % band, high", colour, dash: [3, 3], width: 1 },
-    { label: "share of the motions", colour: "--ink-soft", width: 0, points: true },
+    { label: "fraction of the motions", colour: "--ink-soft", width: 0, points: true },
   ].filter((_, k) => drawn[k]);
   const shape = {
     title: t("Probability: {state}", { state: greek(state) }),
@@ -108,9 +108,9 @@ const between = (curve, at) => {
 const columnsOf = (unit) => [
   "State",
   { label: "median", unit },
-  { label: "its 95 % interval", unit },
+  { label: "95 % interval", unit },
   "dispersion",
-  "its 95 % interval",
+  "95 % interval",
 ];
 
 /** @param {string} state @param {Server.FitFacts} fit */

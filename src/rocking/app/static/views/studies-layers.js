@@ -7,8 +7,8 @@ import { t } from "/app/words.js";
 
 const FAILED = "#999999";
 const VERDICTS = [
-  { paint: "#F2F0E8", words: "does not lift" },
-  { paint: "#9CC9E8", words: "rocks and stays standing" },
+  { paint: "#F2F0E8", words: "no uplift" },
+  { paint: "#9CC9E8", words: "rocks, does not overturn" },
   { paint: "#B33D00", words: "overturns without an impact" },
   { paint: "#AC5B2B", words: "overturns after one impact" },
   { paint: "#F5DC57", words: "overturns after more impacts" },
@@ -36,7 +36,7 @@ export const layersOf = (found, k, other) => {
   const layers = [
     {
       value: "verdict",
-      text: "Verdict",
+      text: "Outcome",
       legend: VERDICTS,
       /** @param {number} ix @param {number} iy */
       paint: (ix, iy) => VERDICTS[verdictOf(outcome[iy][ix], impacts[iy][ix])].paint,
@@ -77,7 +77,7 @@ const difference = (found, k, other) => {
   const [mine, theirs] = [found.outcome[k], found.outcome[other]];
   const names = [k, other].map((place) => modelWords(found.restitutions[place]));
   const legend = [
-    { paint: "#F2F0E8", words: "same verdict" },
+    { paint: "#F2F0E8", words: "same outcome" },
     { paint: "#D96C00", words: t("overturns only with {model}", { model: names[0] }) },
     { paint: "#0070B2", words: t("overturns only with {model}", { model: names[1] }) },
   ];
@@ -96,7 +96,7 @@ export const cellWords = (found, k, { ix, iy }) => {
   /** @param {Server.Coordinate} axis @param {number} place */
   const named = ({ words, values, unit }, place) => `${t(greek(words))} = ${quantity(Number(values[place]), unit)}`;
   const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
-  const verdict = outcome === 1 ? t("rocks and stays standing, peak {rotation} \u03b1", { rotation: number(found.peak[k][iy][ix]) })
+  const verdict = outcome === 1 ? t("rocks, does not overturn, peak {rotation} \u03b1", { rotation: number(found.peak[k][iy][ix]) })
     : t(VERDICTS[verdictOf(outcome, impacts)].words);
   return `${where}: ${verdict}`;
 };

@@ -5,10 +5,10 @@ import { t, userText } from "/app/words.js";
 
 /** @type {Words} */
 const WORDS = {
-  waiting: "waiting for its turn",
+  waiting: "queued",
   running: "running",
-  cancelled: "cancelled; what is finished is kept",
-  interrupted: "interrupted; what is finished is kept",
+  cancelled: "cancelled; finished simulations are kept",
+  interrupted: "interrupted; finished simulations are kept",
   failed: "failed",
   done: "finished",
 };
@@ -27,7 +27,7 @@ const BUSY = ["waiting", "running"];
 
 /** Seconds in words that a person would use. @param {number} seconds */
 const duration = (seconds) => {
-  if (seconds < 1.5) return t("a second");
+  if (seconds < 1.5) return t("1 s");
   if (seconds < 90) return `${Math.round(seconds)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
   return `${fixed(seconds / 3600, 1)} h`;
@@ -35,16 +35,16 @@ const duration = (seconds) => {
 
 /** @param {Server.StudyFacts} study */
 const left = (study) => {
-  if (study.seconds_left == null) return t("measuring the time left");
+  if (study.seconds_left == null) return t("estimating the remaining time");
   const [low, high] = (study.seconds_left_between ?? []).map(duration);
   const time = duration(study.seconds_left);
-  return low === high ? t("about {time} left", { time }) : t("about {time} left ({low} to {high})", { time, low, high });
+  return low === high ? t("about {time} remaining", { time }) : t("about {time} remaining ({low} to {high})", { time, low, high });
 };
 
 /** @param {Server.StudyFacts} study */
 const pace = (study) => {
-  const parts = [t("{done} of {count} histories", { done: number(study.histories_done || 0), count: number(study.histories || 0) })];
-  if (study.state === "running" && study.rate) parts.push(t("{count} a second", { count: number(study.rate, 3) }));
+  const parts = [t("{done} of {count} simulations", { done: number(study.histories_done || 0), count: number(study.histories || 0) })];
+  if (study.state === "running" && study.rate) parts.push(t("{count} per second", { count: number(study.rate, 3) }));
   if (study.state === "running") parts.push(left(study));
   return parts.join(" \u00b7 ");
 };
@@ -72,7 +72,7 @@ export const actsOf = (app, after) => {
  * @param {{ studies: Server.StudyFacts[], onShow: (study: Server.StudyFacts) => unknown, acts: ReturnType<typeof actsOf> }} props */
 export const StudyList = ({ studies, onShow, acts }) => html`
   <div>
-    <p class="quiet" hidden=${studies.length > 0}>None yet. A study is many histories of the body and motion of the other steps.</p>
+    <p class="quiet" hidden=${studies.length > 0}>No studies yet. A study runs many simulations with the body and the motion of this project.</p>
     <ul class="study-list" data-testid="study-list">${studies.map((study) => html`
       <${Study} key=${study.id} study=${study} onShow=${onShow} acts=${acts} />`)}</ul>
   </div>`;

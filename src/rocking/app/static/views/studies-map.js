@@ -17,8 +17,8 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 
 /** @type {{ [key: string]: number | undefined }} */
 const CLOSER = { "+": 2, "=": 2, "-": 0.5 };
-const MAP = "Map of {x} and {y}; arrow keys move from cell to cell, Enter opens the history in Response, plus and minus look closer and from further away, 0 shows all";
-const START = "Click a cell, or walk with the arrow keys. Draw a frame with the pointer, or press +, to look closer.";
+const MAP = "Map of {x} and {y}. Arrow keys move between cells, Enter opens the time history in Response, plus and minus zoom, 0 shows the whole map.";
+const START = "Click a cell or use the arrow keys. Drag a frame or press + to zoom in.";
 const SHORTEST = 6; // a pointer that moves less has clicked [CSS pixel]
 /** @type {Lines} */
 const NONE = [];

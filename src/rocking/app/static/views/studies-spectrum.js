@@ -6,7 +6,7 @@ import { angleStyle, modelWords } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
 import { t } from "/app/words.js";
 
-const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Share that overturns"]];
+const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Overturning fraction"]];
 
 /** Spectra, of the peaks or of how often the block overturns. @param {{ found: Server.SpectrumResult }} props */
 export const Spectrum = ({ found }) => {
@@ -16,13 +16,13 @@ export const Spectrum = ({ found }) => {
   const share = what.value === "overturned";
   const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (what.value)])], [what.value]);
   const marks = useMemo(() => ({
-    words: count === 1 ? "A gap is a block that overturns." : t("Over {count} motions; a gap is where they overturn the block.", { count }),
+    words: count === 1 ? "A gap means that the block overturns." : t("{count} motions. A gap means that the block overturns.", { count }),
   }), []);
   const shape = {
-    title: share ? "Share of the motions that overturn the block" : "Peak rotation over the slenderness angle",
+    title: share ? "Fraction of the motions that overturn the block" : "Peak rotation over the slenderness angle",
     height: 340,
     x: { label: "period 2\u03c0/p", unit: "s", log: periods.length > 2 && periods[periods.length - 1] / periods[0] > 8 },
-    y: { label: share ? "share" : "peak / \u03b1", unit: "" },
+    y: { label: share ? "fraction" : "peak / \u03b1", unit: "" },
     series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
   };
   return html`

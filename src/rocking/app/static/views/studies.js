@@ -49,7 +49,7 @@ export const mount = (section, app) => {
   });
   /** @param {string} id */
   const launched = (id) => {
-    app.say("The study has been launched.");
+    app.say("Study started.");
     expected = id;
     live.refresh();
   };
@@ -67,7 +67,7 @@ export const mount = (section, app) => {
 /** @param {any} props */
 const Studies = ({ app, studies, every, open, visits, show, acts, launched }) => html`
   <header class="view-head"><h1>Studies</h1>
-    <p class="lead">Many histories at once: maps, spectra and fragility. They go on while you do something else.</p></header>
+    <p class="lead">Many simulations at once: maps, spectra and fragility. Studies run in the background.</p></header>
   <div class="studies">
     <div class="studies-left">
       <section class="card" aria-labelledby="studies-new"><h2 id="studies-new">New study</h2>

@@ -38,7 +38,7 @@ export const Film = ({ app, children, ...more }) => {
   return html`
     <button ref=${start} type="button" class="button" aria-disabled=${String(running)} onClick=${draw} ...${more}>${children}</button>
     <div ref=${progress} class="film-progress" hidden=${!running} data-testid="film-progress">
-      <span role="status">${running && t("The frames of the GIF are being drawn: {time} s so far; half a minute is usual.", { time: seconds.value })}</span>
+      <span role="status">${running && t("Drawing the frames of the GIF: {time} s so far, typically 30 s.", { time: seconds.value })}</span>
       <${Button} aria-label="Cancel the GIF" onClick=${() => abort.current.abort()}>Cancel<//></div>`;
 };
 
@@ -51,7 +51,7 @@ const save = async (path, inputs, signal) => {
   if (!answer.ok) {
     const told = await answer.json().catch(() => ({}));
     if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-    throw new Error(told.error?.message ?? t("the server answered {status}", { status: answer.status }));
+    throw new Error(told.error?.message ?? t("the server returned status {status}", { status: answer.status }));
   }
   const header = answer.headers.get("Content-Disposition") ?? "";
   saveBlob(await answer.blob(), header.match(/filename="([^"]+)"/)?.[1] ?? NAME);

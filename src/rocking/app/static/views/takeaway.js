@@ -48,27 +48,27 @@ const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
   const row = (name, ...files) => html`<li key=${name} class="take-row"><span>${name}</span><div class="toolbar">${files}</div></li>`;
   const labels = labelsOf(inputs.restitution);
   return html`
-    <header class="view-head"><h1>Take away</h1>
-      <p class="lead">All of it as files, as tables and as a link: what was put in, and what came out.</p></header>
+    <header class="view-head"><h1>Export</h1>
+      <p class="lead">Inputs and results as files, as tables and as a link.</p></header>
     <div class="takeaway">
       <div class="takeaway-part">
         <${Link} app=${app} link=${link} />
-        <${Card} title="For the command line, and for colleagues">
-          <p class="quiet">The same numbers, to the last digit, with: rocking simulate response.toml</p>
+        <${Card} title="Input file">
+          <p class="quiet">Same numbers on the command line: rocking simulate response.toml</p>
           <div class="toolbar">${file("inputs.toml", "Inputs", null, "take-toml")}${file("inputs.zip", "Inputs", null, "take-zip")}
-            <${Button} onClick=${() => chooser.current.click()}>${"Read a TOML or its ZIP \u2026"}<//></div><//>
+            <${Button} onClick=${() => chooser.current.click()}>${"Read a TOML or ZIP file \u2026"}<//></div><//>
         <${Card} title="Report">
-          <p class="quiet">Body, coefficients against the measurements, motion, response and impacts, with where every number comes from.</p>
+          <p class="quiet">Body, coefficients compared with measurements, motion, response and impacts, with the source of each number.</p>
           <div class="toolbar">${file("report.pdf", "Report", "response", "take-report")}</div><//>
         <${Card} title="Pictures">
-          <p class="quiet">Every figure is saved where it stands: open \u201cSave\u201d below it.</p>
+          <p class="quiet">To save a figure, open \u201cSave\u201d below the figure.</p>
           <ul>${row("Animation", file("animation.html", "Animation", "response"), html`<${Film} app=${app} aria-label="Animation as GIF"
             data-testid="animation-gif" disabled=${!moves}>GIF<//>`)}</ul><//>
       </div>
       <div class="takeaway-part"><${Card} title="Tables">
-        <${Choice} label="Model in files that hold one" hidden=${labels.length < 2} value=${chosenOf(labels)} on=${look}
+        <${Choice} label="Model in files with one model" hidden=${labels.length < 2} value=${chosenOf(labels)} on=${look}
           options=${labels.map((label) => [label, wordsOf(label)])}
-          help="Animation, and response as CSV, MATLAB and netCDF; the name of the file says it." />
+          help="For the animation, and the response as CSV, MATLAB and netCDF. The file name contains the model." />
         <ul>${TABLES.map(([what, name, kinds, needs]) => row(name, kinds.map((kind) => file(`table/${what}.${kind}`, name, needs))))}</ul><//></div>
     </div>
     <input ref=${chooser} type="file" accept=".toml,.zip" hidden aria-label="File of inputs, TOML or ZIP" data-testid="read-toml"
@@ -95,14 +95,14 @@ const Link = ({ app, link }) => {
   const copy = async () => {
     try {
       await navigator.clipboard.writeText(link);
-      app.say("The link is on the clipboard.");
+      app.say("Link copied.");
     } catch {
       document.getElementById("permanent-link").focus();
       app.say("Press Ctrl+C to copy the link.");
     }
   };
   return html`<${Card} title="Link">
-    <p class="quiet">It holds all inputs. Whoever runs rocking on a computer of their own sees the same with it; records travel by their hash, so send the file along, or take the ZIP.</p>
+    <p class="quiet">The link contains all inputs and opens on any computer with rocking. It does not contain record files: send them too, or export the ZIP.</p>
     <${Field} id="permanent-link" label="Permanent link of the inputs" value=${link} readonly data-testid="permanent-link"
       onFocus=${({ target }) => target.select()} />
     <div class="toolbar"><${Button} kind="primary" onClick=${copy} data-testid="copy-link">Copy link<//></div><//>`;
@@ -115,7 +115,7 @@ const read = async (app, box) => {
   if (!file) return;
   try {
     const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-    app.inputs.lend(found, t("what {name} holds", { name: file.name }));
+    app.inputs.lend(found, t("the file {name}", { name: file.name }));
     app.say(t("The inputs of {name} are loaded.", { name: file.name }));
   } catch (error) {
     app.say(error.message, "error");
