@@ -34,9 +34,7 @@ def test_nrml_needs_a_curve(open_page: Callable[..., Any], served: Any, shot: An
     page = open_page(view="studies")
     opened(page, made)
     expect(page.get_by_test_id("export-xml")).to_be_disabled()
-    expect(page.get_by_test_id("no-nrml")).to_have_text(
-        "NRML needs a fitted curve. This study has none."
-    )
+    expect(page.get_by_test_id("no-nrml")).to_have_text("NRML needs a fitted curve. This study has none.")
     expect(page.get_by_test_id("export-csv")).to_be_enabled()
     shot(page, "studies-no-nrml")
 

@@ -45,7 +45,7 @@ def _check_answers(page, app):
         for method, operation in item.items():
             card = page.locator(f"section[aria-label='{method} {path}']")
             told = card.text_content()
-            assert "What comes back" in told, path
+            assert "Response" in told, path
             good = next(value for status, value in operation["responses"].items() if status.startswith("2"))
             assert all(kind in told for kind in good["content"] if kind != "application/json"), path
     words = page.locator("section[aria-label='post /api/response']").text_content()
