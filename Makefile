@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks questions bench mutants pelicun lock clean
+.PHONY: help demo test speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks bench mutants pelicun lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -123,11 +123,6 @@ speed: $(VENV)/dev $(ENGINE)
 coverage: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not speed" --cov
 
-# The documentation of the keys of questions, from their tables; a test asks whether it is what would be written.
-questions: $(VENV)/dev
-	$(BIN)/python -c "from pathlib import Path; from rocking.spec.reference import reference; page = Path('docs/questions.md'); \
-		page.write_text(page.read_text('utf-8').partition('### [response]')[0] + reference(), 'utf-8')"
-
 # A warning is an error, and so is an example that fails. `rocking serve` has it under /manual, and wheels that are built after it bring it.
 docs: $(VENV)/dev $(ENGINE)
 	@rm -rf build/manual
@@ -226,4 +221,4 @@ lock: $(VENV)/created
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) docs/gallery docs/reference
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) docs/gallery docs/keys docs/reference

@@ -1,4 +1,4 @@
-"""How the manual is built: `make docs`. All of it is local, and what it shows was run when it was built."""
+"""Configuration of the manual (`make docs`). The build needs no network and runs all code of the pages."""
 
 import sys
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import rocking
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]  # the second for what benchmarks count
+sys.path[:0] = [str(HERE / "_ext"), str(HERE.parent)]  # the second for benchmarks
 
 project = "rocking"
 author = "The rocking developers"
@@ -23,6 +23,7 @@ extensions = [
     "mathml",
     "equations",
     "commands",
+    "tables",
     "reference",
     "section_search",
     "notebooks",
@@ -43,26 +44,26 @@ html_show_sphinx = False
 html_math_renderer = "mathml"
 html_theme_options = {"navigation_with_keys": True}
 
-# Pages that hold {code-cell}s are notebooks: run when the manual is built, and to download.
+# Pages with {code-cell}s are notebooks: they run during the build and can be downloaded.
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 1200  # only a guard against hanging
 nb_merge_streams = True
-nb_render_markdown_format = "myst"  # answers in Markdown hold tables
+nb_render_markdown_format = "myst"  # results in Markdown contain tables
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
 
 default_role = "code"
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"  # numpydoc's sections say them, in words
+autodoc_typehints = "none"  # the sections of numpydoc contain them
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 
 sphinx_gallery_conf = {
-    "examples_dirs": str(HERE.parent / "build" / "examples"),  # a copy, into which they may write
+    "examples_dirs": str(HERE.parent / "build" / "examples"),  # a copy, into which the scripts write
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
     "subsection_order": "gallery_pictures.section_order",

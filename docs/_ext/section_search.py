@@ -1,6 +1,7 @@
-"""The search of the manual: sections and names of the reference that hold the most telling words of a question.
+"""The search of the manual: sections and names of the reference, ranked by the rarest words of a query.
 
-What Sphinx brings finds pages that hold all of them. MiniSearch ranks (BM25), offline and from files too.
+The search of Sphinx finds pages that contain all words. MiniSearch ranks (BM25), also offline and from files. The terms
+of an `index` directive are other words for its section, such as the title that it had before.
 """
 
 import json
@@ -18,7 +19,7 @@ _LATEX = str.maketrans("", "", "\\{}$")
 
 
 def texts(node: nodes.Element) -> Iterator[str]:
-    """Yield the text of a section or name, without that of those within it."""
+    """Yield the text of a section or name, without the text of inner sections and names."""
     for child in node.children:
         if isinstance(child, nodes.Text):
             yield str(child)
@@ -30,7 +31,7 @@ def texts(node: nodes.Element) -> Iterator[str]:
 
 
 def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
-    """Yield every section and every documented name of a page: its title, that of the page, its address and text."""
+    """Yield each section and documented name of a page: title, page title, index terms, address and text."""
     page = next((title.astext() for title in tree.findall(nodes.title)), address)
     for node in tree.findall(lambda each: isinstance(each, _INNER)):
         heading = next(
@@ -41,17 +42,19 @@ def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
         named = isinstance(heading, addnodes.desc_signature)
         title = heading.get("fullname", heading.astext()) if named else heading.astext()
         ids = heading.get("ids") or node.get("ids") or [""]
-        words = " ".join("".join(texts(node)).split())
+        text = " ".join("".join(texts(node)).split())
+        terms = [entry[1] for index in node.children if isinstance(index, addnodes.index) for entry in index["entries"]]
         yield {
             "title": title,
             "page": page,
+            "terms": ", ".join(terms),
             "address": f"{address}#{ids[0]}",
-            "text": words.removeprefix(title).strip(),
+            "text": text.removeprefix(title).strip(),
         }
 
 
 def finished(app: Sphinx, error: Exception | None) -> None:
-    """Write what the page of the search reads."""
+    """Write the data of the search page."""
     if error is None and app.builder.format == "html":
         every = [
             entry
@@ -63,7 +66,7 @@ def finished(app: Sphinx, error: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx."""
+    """Register the events."""
     app.config.html_static_path.append(str(_VENDOR))
     app.connect("build-finished", finished)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

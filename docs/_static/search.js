@@ -1,10 +1,10 @@
-// The page of the search: sections that hold the most telling words of a question, the best first.
+// The search page: sections and documented names that match the words of a query, the best match first.
 const ASKING = new Set(
   ("a an and are as at be by can could did do does for from get give given gives how i if in into is it me my need of on or " +
     "should that the there this to use was what when where which who why will with you your").split(" "),
 );
 const SPELLED = new Map([["center", "centre"], ["centers", "centres"], ["meter", "metre"], ["meters", "metres"], ["color", "colour"]]);
-const WEIGHTS = { how_to: 1.7, reference: 0.5, changes: 0.5 };
+const WEIGHTS = { how_to: 1.7, choose_a_tool: 1.5, commands: 1.3, terms: 1.3, reference: 0.5, changes: 0.3 };
 const words = (term) => {
   const word = term.toLowerCase();
   if (ASKING.has(word)) return null;
@@ -13,11 +13,11 @@ const words = (term) => {
 };
 
 const index = new MiniSearch({
-  fields: ["title", "page", "text"],
+  fields: ["title", "terms", "page", "text"],
   storeFields: ["title", "page", "address", "text"],
   processTerm: words,
   searchOptions: {
-    boost: { title: 5, page: 1.5 },
+    boost: { title: 5, terms: 4, page: 1.5 },
     fuzzy: (term) => (term.length > 5 ? 0.2 : false),
     prefix: (term) => term.length > 3,
     boostDocument: (id, term, section) => WEIGHTS[section.address.split(/[/.]/)[0]] ?? 1,
@@ -31,7 +31,7 @@ const element = (name, properties, ...children) => {
   return made;
 };
 
-// A stretch of the text around the first of the terms, with all of them marked.
+// The segment of the text around the first term, with all terms marked.
 function excerpt(text, terms) {
   const wanted = terms.map((term) => term.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|");
   const marks = new RegExp(`\\b(?:${wanted})`, "gi");
@@ -52,10 +52,10 @@ const query = new URLSearchParams(location.search).get("q") ?? "";
 const hits = index.search(query).slice(0, 30);
 for (const box of document.querySelectorAll("input[name=q]")) box.value = query;
 document.getElementById("search-summary").textContent = !query.trim()
-  ? "Ask a question, or name what you look for."
+  ? "Enter a question or a term."
   : hits.length
-    ? `What is said of “${query}”, the best first.`
-    : `Nothing is said of “${query}”. Try other words, or fewer.`;
+    ? `Results for “${query}”, the best match first.`
+    : `No result for “${query}”. Use other words or fewer words.`;
 document.getElementById("search-results").append(
   ...hits.map((hit) =>
     element(

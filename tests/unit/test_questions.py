@@ -22,12 +22,12 @@ from rocking.studies import axes
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_documentation_of_keys_is_that_of_the_tables():
-    """docs/questions.md ends with what the tables say of themselves; every key has its meaning."""
-    text = reference()
-    assert (ROOT / "docs" / "questions.md").read_text(encoding="utf-8").endswith(text)
-    rows = [line for line in text.splitlines() if line.startswith("| `")]
+def test_every_key_has_a_meaning():
+    """The pages of keys have a row per key, with type, unit, default, range and meaning."""
+    rows = [line for page in reference().values() for line in page.splitlines() if line.startswith("| `")]
     assert [row for row in rows if row.endswith("|  |")] == []
+    assert "| `friction` | number | - |" in reference()["input_files"]
+    assert "| `count` | integer |  |  | >= 1" in reference()["input_files"]
 
 
 def test_the_keys_of_a_body_are_documented():
@@ -56,7 +56,7 @@ def test_the_files_on_the_page_are_questions():
 
 def test_names_that_stand_as_values_are_documented():
     """Every axis, measure, synthetic family and pulse is in the documentation, and what is none is not."""
-    text = reference().partition("## Names that stand as values")[2].partition("## The keys of body files")[0]
+    text = reference()["names"]
     names = [f"`{name}`" for name in (*axes(), *MEASURES, *families())] + [f"`{name}:" for name in pulses.catalogue()]
     assert [name for name in names if f"| {name}" not in text] == []
     assert "| `amplitude`" not in text

@@ -1,4 +1,4 @@
-"""The documentation of the keys of a question, made from its tables: docs/questions.md."""
+"""Documentation of the keys of input files, from their tables; the manual contains it."""
 
 import re
 import types
@@ -8,6 +8,7 @@ from itertools import chain
 from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
@@ -27,11 +28,11 @@ from rocking.studies.inventory import Thresholds
 _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (ResponseTable, "`rocking simulate`"),
     "motion": (ComponentsTable, "`rocking simulate`, `rocking motion`"),
-    "[motions]": (MotionTable, "every study"),
-    'motions.files."NAME"': (FileKeys, "every study"),
-    "restitution": (RestitutionTable, "every question"),
-    "restitution.distribution": (RandomTable, "every question but [inventory]"),
-    "settings": (StudySettingsTable, "every question"),
+    "[motions]": (MotionTable, "all studies"),
+    'motions.files."NAME"': (FileKeys, "all studies"),
+    "restitution": (RestitutionTable, "all commands"),
+    "restitution.distribution": (RandomTable, "all commands except `rocking inventory`"),
+    "settings": (StudySettingsTable, "all commands"),
     "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
     "assess": (AssessTable, "`rocking assess`"),
     "measurement": (MeasurementTable, "`rocking identify`"),
@@ -62,11 +63,15 @@ _BODIES: dict[str, type[BaseModel]] = {
 }
 
 
-def reference() -> str:
-    """Return a table of keys for every table of a question and of a body file: name, kind, usual value, meaning."""
-    questions = [_table(name, table, f" Of {where}.") for name, (table, where) in _tables().items()]
-    bodies = [_table(name, table) for name, table in _BODIES.items()]
-    return "\n".join([*chain(*questions), *_names(), "## The keys of body files\n", *chain(*bodies)]) + "\n"
+def reference() -> dict[str, str]:
+    """Return the pages of the manual by name: keys of input files, names of values, and keys of body files."""
+    keys = chain(*(_table(name, table, f" Used by {where}.") for name, (table, where) in _tables().items()))
+    body_keys = chain(*(_table(name, table) for name, table in _BODIES.items()))
+    return {
+        "input_files": "\n".join(["# Keys of input files\n", *keys]),
+        "names": "\n".join(["# Names of values\n", *_names()]),
+        "body_files": "\n".join(["# Keys of body files\n", *body_keys]),
+    }
 
 
 def _tables() -> dict[str, tuple[type[JobTable], str]]:
@@ -187,7 +192,6 @@ def _names() -> Iterator[str]:
         )
         for name, make in catalogue().items()
     ]
-    yield "## Names that stand as values\n"
     for title, head, rows in (
         ("Axes of a map", "axis", [(name, f"{axis.words} [{axis.unit}]") for name, axis in axes().items()]),
         ("Measures of intensity", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
@@ -196,7 +200,7 @@ def _names() -> Iterator[str]:
         ("Steps of a record", "step", _written(steps())),
         ("Target spectra", "spectrum", _written(targets())),
     ):
-        yield f"### {title}\n\n| {head} | what it is |\n|---|---|"
+        yield f"## {title}\n\n| {head} | meaning |\n|---|---|"
         yield from (f"| `{name}` | {words.replace('[1]', '[-]').rstrip('.')} |" for name, words in rows)
         yield ""
 
@@ -220,19 +224,33 @@ def _first_line(documented: Any) -> str:
 
 
 def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
-    yield "### The file" if name == "the file" else f"### [{name}]"
+    yield "## The file" if name == "the file" else f"## [{name}]"
     yield f"\n{_first_line(table)}{where}\n"
-    yield "| key | kind | if left out | meaning |"
-    yield "|---|---|---|---|"
+    yield "| key | type | unit | default | range | meaning |"
+    yield "|---|---|---|---|---|---|"
     for key, field in table.model_fields.items():
-        usual = "needed" if field.is_required() else _usual(field.default)
-        if table is StudySettingsTable and not usual:
-            usual = _usual_setting(key)
+        default = "required" if field.is_required() else _usual(field.default)
+        if table is StudySettingsTable and not default:
+            default = _usual_setting(key)
         elif table is ThresholdsTable:
-            usual = _usual(getattr(Thresholds(), key))
+            default = _usual(getattr(Thresholds(), key))
         choices = ", ".join(questions()) if (table, key) == (CampaignTable, "kind") else _kind(field.annotation)
-        yield f"| `{field.alias or key}` | {choices} | {usual} | {field.description or ''} |"
+        meaning, unit = meaning_and_unit(field.description or "")
+        if '"' in unit:  # the name of a table
+            meaning, unit = f"{meaning} [{unit}]", ""
+        kind = choices.replace("whole number", "integer").replace("true or false", "boolean")
+        row = (f"`{field.alias or key}`", kind, unit, default, _range(field), meaning)
+        yield f"| {' | '.join(row)} |"
     yield ""
+
+
+_HUGE = 1e9  # limits of the storage, not of the quantity
+_SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
+
+
+def _range(field: FieldInfo) -> str:
+    """Return the limits of a number, such as "> 0, <= 1"."""
+    return ", ".join(f"{_SIGNS[name]} {limit:g}" for name, limit in limits_of(field).items() if limit < _HUGE)
 
 
 def _usual(value: Any) -> str:

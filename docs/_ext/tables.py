@@ -1,0 +1,78 @@
+"""Tables of the reference that come from the package: keys of files, record formats, and the names of results."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+
+def table(heading: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a table in Markdown."""
+    heading = list(heading)
+    lines = [heading, ["---"] * len(heading), *([cell.replace("|", "\\|") for cell in row] for row in rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+class RecordFormats(SphinxDirective):
+    """The record formats, one section each."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return a table of all formats, and one paragraph of notes per format."""
+        from rocking.motions.formats import formats
+
+        every = formats()
+        rows = [
+            (
+                f"`{name}`",
+                each.title,
+                ", ".join(f"`{suffix}`" for suffix in each.suffixes),
+                "yes" if each.states_unit else "no: `units=`",
+                "yes" if each.states_time_step else "no: `time_step=`",
+            )
+            for name, each in every.items()
+        ]
+        notes = [f"`{name}`\n: {each.notes}\n" for name, each in every.items() if each.notes]
+        heading = ("name", "source", "extensions", "unit in the file", "time step in the file")
+        text = "\n".join([table(heading, rows), "", "**Notes**", "", *notes])
+        return self.parse_text_to_nodes(text)
+
+
+class Quantities(SphinxDirective):
+    """The names of results in JSON, tables and files."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return a table of names, units and meanings."""
+        from rocking.quantities import QUANTITIES
+
+        rows = (
+            (f"`{name}`", "-" if entry.unit == "1" else entry.unit, _meaning(entry))
+            for name, entry in sorted(QUANTITIES.items())
+        )
+        return self.parse_text_to_nodes(table(("name", "unit", "meaning"), rows))
+
+
+def _meaning(entry: object) -> str:
+    meaning, codes = entry.meaning, entry.codes  # type: ignore[attr-defined]
+    shown = f"{meaning} ({', '.join(f'{key} {word}' for key, word in codes.items())})" if codes else meaning
+    return shown.replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;")
+
+
+def write(folder: Path) -> None:
+    """Write the pages of the keys of input files and body files."""
+    from rocking.spec.reference import reference
+
+    folder.mkdir(exist_ok=True)
+    for name, text in reference().items():
+        path = folder / f"{name}.md"
+        if not path.exists() or path.read_text("utf-8") != text:  # an unchanged page is not built again
+            path.write_text(text, "utf-8")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the directives."""
+    app.connect("builder-inited", lambda started: write(Path(started.srcdir) / "keys"))
+    app.add_directive("record-formats", RecordFormats)
+    app.add_directive("quantities", Quantities)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
