@@ -13,7 +13,7 @@ from rocking.cli import main
 trimesh = pytest.importorskip("trimesh")
 
 COMMAND = "predict"
-DOCS = Path(__file__).parents[3] / "docs" / "how_to.md"
+DOCS = Path(__file__).parents[3] / "docs" / "how_to" / "assessment.md"
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=4.2,period=0.8"
 FEW = ("--set", "predict.count=16")
@@ -82,10 +82,10 @@ def test_two_components_have_an_azimuth(printed, tmp_path):
 
 @pytest.mark.verifies("behaviour", room="doors")
 def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
-    """Three commands from an open scan in mm to a picture, a probability and a document, as docs/how_to.md has them."""
+    """The commands of docs/how_to/assessment.md give a picture, a probability and a report of an open scan in mm."""
     vertices, sides, _ = bad_scans.statue(12, 9)
     trimesh.Trimesh(1000.0 * vertices[:-1], sides, process=False).export(tmp_path / "statue.stl")
-    text = DOCS.read_text("utf-8").partition("### How do I get from a scan to a probability?")[2]
+    text = DOCS.read_text("utf-8").partition("## Compute a probability from a scan")[2]
     commands = [line.split()[1:] for line in text.partition("```\n")[2].partition("```")[0].splitlines()]
     assert [words[0] for words in commands] == ["equilibria", "predict", "predict"]
     monkeypatch.chdir(tmp_path)
