@@ -1,4 +1,4 @@
-"""Does it stand? Histories with every model, margins, a probability, code methods, and what to do, in one answer."""
+"""Assessment of overturning: histories with all models, margins, a probability, code methods and measures."""
 
 from rocking.assessment._assess import assess
 from rocking.assessment.answer import BodyAssessment, ModelMargin

@@ -1,4 +1,4 @@
-"""`assess`: histories with every model, in a plane or in space, margins, code methods, a probability, and remedies."""
+"""`assess`: histories with all models, in 2D or 3D, margins, code methods, a probability, and measures."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -29,184 +29,197 @@ from rocking.studies.motion_sets import MotionList
 from rocking.studies.remedies import CALIBRATED, Margins, first_to_fall, highest, lifting_factor, remedies
 
 SPACE_DIRECTIONS = 6
-"""Over half a turn, into which a solid is turned; both ways round make it a whole one."""
+"""Directions of a solid over half a turn; both polarities cover the full turn."""
 
 POINTS, REACH, TOGETHER = 24, 20.0, 8
-"""Factors at which the least that overturns it is looked for, up to so many times that which lifts it, so many at once:
-a history in space takes a thousand times as long as one in the plane."""
+"""Number of factors in the search for the smallest overturning factor, largest factor over the uplift factor, and
+factors per batch. A 3D history takes a thousand times as long as a plane one."""
 
 TURN, SAME = 2.0 * math.pi, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class TurnedMotion(Components):
-    """A motion of several components under a solid that is turned."""
+    """A motion of several components, in the axes of a rotated solid."""
 
-    called: str
-    azimuth: float  # of the solid's x axis, from the ground's [rad]
-    in_plane: GroundMotion  # what of it moves the plane body beside the solid
+    unique_name: str
+    azimuth: float  # from the ground's x axis to the solid's x axis [rad]
+    in_plane: GroundMotion  # component in the plane of the plane body
 
     @property
     def name(self) -> str:
-        return self.called
+        return self.unique_name
 
     @property
     def vertical(self) -> FloatArray | None:
-        """Vertical acceleration, as of a plane motion [m/s2]."""
+        """Vertical acceleration [m/s2]."""
         return self.in_plane.vertical
 
 
 class SolidHistories:
-    """Histories of a solid under motions, turned into every direction, both ways round."""
+    """Histories of a solid under motions, in all directions and both polarities."""
 
     def __init__(self, solid: Solid, motions: Any, azimuth: Any, friction: float, options: dict[str, Any]) -> None:
-        self.given = [Components(*components_of(motions[k])) for k in range(len(motions))]
-        for each in self.given:
-            parts(each)  # refuses what is none
-        told = {"friction": friction, "base": 0.0, "centre": 1.0, "restitution": 0.0}
-        self._mechanics, self._options = SampledInSpace(solid, self.given, told, options["gravity"]), options
+        self.components = [Components(*components_of(motions[k])) for k in range(len(motions))]
+        for components in self.components:
+            parts(components)  # raises an error for other types
+        inputs = {"friction": friction, "base": 0.0, "centre": 1.0, "restitution": 0.0}
+        self._mechanics, self._options = SampledInSpace(solid, self.components, inputs, options["gravity"]), options
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()
         self._edges, self._outward = pose.edge_distances, _outward(pose)
-        fixed = float(azimuth) if isinstance(azimuth, (int, float)) else None
-        # over which edge it lifts first: the nearest one, or that of the direction in which it stands
-        first = self._edges if fixed is None else np.min([self._lifting(each, fixed) for each in self.given], axis=0)
-        towards = np.arctan2(self._outward[:, 1], self._outward[:, 0]) + 0.0
-        alike = np.flatnonzero(first <= (1.0 + SAME) * first.min())
-        edge = alike[np.lexsort((-towards[alike], np.abs(towards[alike])))[0]]
-        reach = float(self._edges[edge])
+        fixed_azimuth = float(azimuth) if isinstance(azimuth, (int, float)) else None
+        # uplift begins at the nearest edge, or at the edge of the stated direction
+        uplift_factors = self._edges
+        if fixed_azimuth is not None:
+            by_motion = [self._edge_uplift_factors(components, fixed_azimuth) for components in self.components]
+            uplift_factors = np.min(by_motion, axis=0)
+        azimuths = np.arctan2(self._outward[:, 1], self._outward[:, 0]) + 0.0
+        governing_edges = np.flatnonzero(uplift_factors <= (1.0 + SAME) * uplift_factors.min())
+        edge = governing_edges[np.lexsort((-azimuths[governing_edges], np.abs(azimuths[governing_edges])))[0]]
+        edge_distance = float(self._edges[edge])
         self.standing = StandingSolid(
-            self._mechanics.solid, pose, float(towards[edge]), reach,
-            bool(reach <= (1.0 + SAME) * self._edges.min()),
+            self._mechanics.solid, pose, float(azimuths[edge]), edge_distance,
+            bool(edge_distance <= (1.0 + SAME) * self._edges.min()),
             next(iter(equilibria.neighbours(pose)), None),
         )  # fmt: skip
         self.motions: list[TurnedMotion] = []
         self.records: IntArray = np.empty(0, np.int64)
-        self._turn(fixed)
+        self._turn(fixed_azimuth)
 
-    def _turn(self, fixed: float | None) -> None:
-        """Turn every motion into every direction that the solid may have."""
-        plane, numbers = self.standing.plane, list[int]()
-        for k, each in enumerate(self.given):
-            x = sampled(each.x)
-            z = None if each.z is None else sampled(each.z)
-            for step in range(SPACE_DIRECTIONS if fixed is None else 1):
-                towards = 0.5 * TURN * step / SPACE_DIRECTIONS if fixed is None else fixed + plane
-                along = x
-                if each.y is not None or fixed is not None:
-                    y = x.changed("none", acceleration=0.0 * x.acceleration) if each.y is None else each.y
-                    least = min(len(x), len(y))
-                    first, second = (part.changed("cut", acceleration=part.acceleration[:least]) for part in (x, y))
-                    along, _ = rotated(first, second, towards)
-                name = f"{each.x.name}, {math.degrees(towards):.0f} deg" if fixed is None else each.x.name
-                called = numbered(name, self.motions)
-                whole = along if z is None else with_vertical(along, z)
-                self.motions.append(TurnedMotion(*each.parts, called, towards - plane, whole))
-                numbers.append(k)
-        self.records = np.array(numbers)
+    def _turn(self, fixed_azimuth: float | None) -> None:
+        """Rotate each motion into each possible direction of the solid."""
+        plane, records = self.standing.plane_azimuth, list[int]()
+        for k, components in enumerate(self.components):
+            x = sampled(components.x)
+            z = None if components.z is None else sampled(components.z)
+            for step in range(SPACE_DIRECTIONS if fixed_azimuth is None else 1):
+                azimuth = 0.5 * TURN * step / SPACE_DIRECTIONS if fixed_azimuth is None else fixed_azimuth + plane
+                in_plane = x
+                if components.y is not None or fixed_azimuth is not None:
+                    y = x.changed("none", acceleration=0.0 * x.acceleration) if components.y is None else components.y
+                    length = min(len(x), len(y))
+                    first, second = (
+                        component.changed("cut", acceleration=component.acceleration[:length]) for component in (x, y)
+                    )
+                    in_plane, _ = rotated(first, second, azimuth)
+                direction = f", {math.degrees(azimuth):.0f} deg" if fixed_azimuth is None else ""
+                unique_name = numbered(f"{components.x.name}{direction}", self.motions)
+                ground = in_plane if z is None else with_vertical(in_plane, z)
+                self.motions.append(TurnedMotion(*components.parts, unique_name, azimuth - plane, ground))
+                records.append(k)
+        self.records = np.array(records)
 
     @property
     def body(self) -> Body:
-        """The plane body beside it."""
-        return self.standing.solid.in_plane(self.standing.plane)
+        """The plane body of the solid."""
+        return self.standing.solid.in_plane(self.standing.plane_azimuth)
 
     @property
-    def ways(self) -> int:
-        """Whether turning it half round makes a difference: 2, or 1."""
+    def polarities(self) -> int:
+        """Number of different polarities: 1 for a solid that is symmetric under half a turn, otherwise 2."""
         size, inertia = self._edges.min() * SAME, self._mechanics.inertia
         corners = np.round(self._mechanics.corners / size) + 0.0
         same = set(map(tuple, corners.tolist())) == set(map(tuple, (corners * [-1.0, -1.0, 1.0] + 0.0).tolist()))
         return 1 if same and np.abs(inertia[2, :2]).max() <= SAME * np.trace(inertia) else 2
 
-    def lifts(self) -> FloatArray:
-        """Return the factor on each motion from which on it lifts the solid over an edge, either way round [-]."""
-        return np.array([self._lifting(each, each.azimuth).min() for each in self.motions])
+    def uplift_factors(self) -> FloatArray:
+        """Return the smallest factor on each motion with uplift over an edge, both polarities [-]."""
+        return np.array([self._edge_uplift_factors(motion, motion.azimuth).min() for motion in self.motions])
 
-    def _lifting(self, motion: Components, azimuth: float) -> FloatArray:
-        """Return the factor on a motion from which on it lifts the solid over each edge, either way round [-]."""
-        ground = [np.zeros(0) if part is None else sampled(part).acceleration for part in motion.parts]
-        x, y, up = (np.pad(part, (0, max(map(len, ground)) - len(part))) for part in ground)
+    def _edge_uplift_factors(self, motion: Components, azimuth: float) -> FloatArray:
+        """Return the smallest factor on a motion with uplift over each edge, both polarities [-]."""
+        ground = [np.zeros(0) if component is None else sampled(component).acceleration for component in motion.parts]
+        x, y, vertical = (np.pad(component, (0, max(map(len, ground)) - len(component))) for component in ground)
         c, s = math.cos(azimuth), math.sin(azimuth)
-        towards = self._outward @ np.array([[c, s], [-s, c]])  # in the axes of the ground
+        outward = self._outward @ np.array([[c, s], [-s, c]])  # in the axes of the ground
         height, gravity = self._mechanics.pose.height, self._options["gravity"]
-        push = np.abs(towards[:, :1] * x + towards[:, 1:] * y) * height - self._edges[:, None] * up
+        push = np.abs(outward[:, :1] * x + outward[:, 1:] * y) * height - self._edges[:, None] * vertical
         return np.asarray(gravity * self._edges / np.maximum(push.max(axis=1), 1e-300))  # Eq. 312
 
-    def margin(self, beside: ModelMargin, told: Any, level: float, lifts: FloatArray) -> ModelMargin:
-        """Return what becomes of it with one restitution.
+    def margin(
+        self, plane_margin: ModelMargin, restitution: Any, level: float, uplift_factors: FloatArray
+    ) -> ModelMargin:
+        """Return the margin with one restitution.
 
-        beside: of the plane body, whose coefficients it has; told: what an impact costs, as `predict` takes it; level:
-        probability of its distribution, if it has one.
+        plane_margin: that of the plane body, with its coefficients; restitution: as for `predict`; level: probability
+        in its distribution, if it has one.
         """
-        mechanics, ways, count = self._mechanics.with_restitution(told), self.ways, len(self.motions)
-        peaks = np.array([each.peak for each in self.motions])
-        grid = np.array([np.geomspace(f, highest(f * a, REACH) / a, POINTS) for f, a in zip(lifts, peaks, strict=True)])
+        mechanics, polarities, count = self._mechanics.with_restitution(restitution), self.polarities, len(self.motions)
+        peaks = np.array([motion.peak for motion in self.motions])
+        grid = np.array([
+            np.geomspace(factor, highest(factor * peak, REACH) / peak, POINTS)
+            for factor, peak in zip(uplift_factors, peaks, strict=True)
+        ])  # fmt: skip
 
         def overturned(rows: IntArray, factors: FloatArray) -> FloatArray:
             return self._run(mechanics, level, rows, factors)[0]
 
-        fell = overturned(np.arange(ways * count), np.ones(ways * count)).reshape(ways, count)
-        least = first_to_fall(np.tile(grid, (ways, 1)), overturned, TOGETHER).reshape(ways, count)
-        # a factor of 1 may lie in a stretch that the levels have missed
-        least = np.where(fell == 1.0, np.minimum(least, 1.0), least)
-        return replace(beside, overturned=np.maximum.reduce(fell), least=least)
+        unscaled = overturned(np.arange(polarities * count), np.ones(polarities * count)).reshape(polarities, count)
+        min_factors = first_to_fall(np.tile(grid, (polarities, 1)), overturned, TOGETHER).reshape(polarities, count)
+        # the factor 1 may be in an interval of overturning between two levels
+        min_factors = np.where(unscaled == 1.0, np.minimum(min_factors, 1.0), min_factors)
+        return replace(plane_margin, overturned=np.maximum.reduce(unscaled), min_factors_by_polarity=min_factors)
 
-    def fallen(self, margin: ModelMargin, told: Any, level: float, in_plane: float) -> StandingSolid:
-        """Return it with how it falls at its least factor; in_plane: that of the plane body."""
-        mechanics, (way, motion) = self._mechanics.with_restitution(told), margin.place
-        turned = self.motions[motion].azimuth + 0.5 * TURN * way
-        known = replace(self.standing, in_plane=in_plane, restitution=mechanics.law(level), turned=turned)
-        if not math.isfinite(margin.lowest):
-            return known
-        factor, row = np.array([just_above(margin.lowest)]), np.array([way * len(self.motions) + motion])
-        fell, slid, towards = (float(each[0]) for each in self._run(mechanics, level, row, factor))
-        own = math.remainder(towards - turned, TURN) if fell == 1.0 else math.nan
-        return replace(known, falls_towards=own, slides=slid)
+    def with_overturning(self, margin: ModelMargin, restitution: Any, level: float, in_plane: float) -> StandingSolid:
+        """Return the solid with its overturning at the smallest factor; in_plane: factor of the plane body."""
+        mechanics, (polarity, motion) = self._mechanics.with_restitution(restitution), margin.governing_case
+        azimuth = self.motions[motion].azimuth + 0.5 * TURN * polarity
+        standing = replace(
+            self.standing, min_factor_in_plane=in_plane, restitution=mechanics.law(level), azimuth=azimuth
+        )
+        if not math.isfinite(margin.min_factor):
+            return standing
+        factor, row = np.array([just_above(margin.min_factor)]), np.array([polarity * len(self.motions) + motion])
+        columns = self._run(mechanics, level, row, factor)
+        overturned, sliding_distance, direction = (float(column[0]) for column in columns)
+        own_direction = math.remainder(direction - azimuth, TURN) if overturned == 1.0 else math.nan
+        return replace(standing, overturning_direction=own_direction, sliding_distance=sliding_distance)
 
     def _run(
         self, mechanics: SampledInSpace, level: float, rows: IntArray, factors: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return whether each row overturns, how far it slides and in which direction it falls."""
-        way, motion = np.divmod(rows, len(self.motions))
-        turns = np.array([each.azimuth for each in self.motions])[motion] / TURN + 0.5 * way
-        levels = {"restitution": np.full(rows.size, level), "azimuth": turns % 1.0}
+        """Return flag of overturning, sliding distance [m] and direction of overturning [rad] of each row."""
+        polarity, motion = np.divmod(rows, len(self.motions))
+        azimuths = np.array([turned_motion.azimuth for turned_motion in self.motions])[motion] / TURN + 0.5 * polarity
+        levels = {"restitution": np.full(rows.size, level), "azimuth": azimuths % 1.0}
         draws = np.column_stack([levels[name] for name in mechanics.widths])
-        found = np.full((3, rows.size), np.nan)
+        results = np.full((3, rows.size), np.nan)
         for k in np.unique(self.records[motion]):
-            some = np.flatnonzero(self.records[motion] == k)
-            one = mechanics.run(draws[some], int(k), factors[some], self._options["threads"])
-            assert one.direction is not None
-            found[:, some] = one.overturning, one.sliding, one.direction
+            indices = np.flatnonzero(self.records[motion] == k)
+            endings = mechanics.run(draws[indices], int(k), factors[indices], self._options["threads"])
+            assert endings.direction is not None
+            results[:, indices] = endings.overturning, endings.sliding, endings.direction
             if self._options["progress"] is not None:
-                self._options["progress"](some.size)
-        return found[0], found[1], found[2]
+                self._options["progress"](indices.size)
+        return results[0], results[1], results[2]
 
 
-def numbered(name: str, among: Sequence[Any]) -> str:
-    """Return a name that none of some motions has: with a number behind it where one has it."""
-    many = sum(other.name.partition(" (no. ")[0] == name for other in among)
-    return f"{name} (no. {many + 1})" if many else name
+def numbered(name: str, named: Sequence[Any]) -> str:
+    """Return a unique name, with a number appended if another motion has the same name."""
+    count = sum(other.name.partition(" (no. ")[0] == name for other in named)
+    return f"{name} (no. {count + 1})" if count else name
 
 
 def _outward(pose: StablePose) -> FloatArray:
-    """Return the horizontal normals of the edges on which it stands, as set down."""
+    """Return the horizontal outward normals of the edges of the base, in the initial pose."""
     along = np.roll(pose.support, -1, axis=0) - pose.support
     return np.asarray(np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True))
 
 
 ENDS = {"low": 0.025, "high": 0.975}
-"""Of the 95 % interval of what is measured of single bodies, which are asked beside the calibrated model: quantiles."""
+"""Quantiles at the ends of the 95 % interval of single measured bodies, assessed with the calibrated model."""
 
-MOST_ASKED = 50.0
-"""Largest factor on the motions that remedies may be asked to hold, that up to which margins are looked for [-]."""
+MAX_MARGIN = 50.0
+"""Largest required margin of measures, equal to the largest factor in the search for margins [-]."""
 
 DIRECTIONS = 12
-"""Over half a turn, into which two components are turned; both ways round make it a whole one."""
+"""Directions of two components over half a turn; both polarities cover the full turn."""
 
 IN_SPACE = CALIBRATED, "ked", "housner"
-"""Models that say something of solids, where nobody names others."""
+"""Default models of solids."""
 
 
-def assess(  # noqa: PLR0913 - what is asked, what is known and how it is computed
+def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     body: Body | Solid,
     motions: Any,
     restitution: Any = None,
@@ -219,26 +232,26 @@ def assess(  # noqa: PLR0913 - what is asked, what is known and how it is comput
     progress: Callable[[int], None] | None = None,
     **known: Any,
 ) -> BodyAssessment:
-    """Say whether a body stands under motions, how far it is from overturning, what decides it and what to do.
+    """Assess overturning of a body: outcome, margin, probability, causes and measures.
 
-    Histories are computed under every motion, both ways round, with every model of restitution, rocking alone, and with
-    the one of the least margin also where it may slide. Each is repeated at factors on the motion, to find the least
-    one that overturns. Beside them stand a probability, in which what is not known is drawn, and the code methods.
+    Histories of pure rocking are computed under all motions, in both polarities, with all restitution models. The model
+    of the smallest margin is also computed with sliding. A search over scale factors gives the smallest factor with
+    overturning. The result also contains a probability, with uncertain inputs sampled, and the code methods.
 
     Parameters
     ----------
     body : Block, Section, MassPoints or Solid
-        A body in its plane; or a solid, which stands in space on the vertices of its hull, in the pose into which it
-        settles. Code methods and remedies of a solid are those of ``solid.in_plane`` over its nearest edge.
+        A plane body, or a solid with contact at the vertices of its hull, in its stable pose. Code methods and
+        measures of a solid apply to ``solid.in_plane`` over its nearest edge.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
-        With y, the body is turned to both components in 12 directions; a solid in 6, with one component too.
+        With a y component, a plane body is computed in 12 directions. A solid is always computed in 6 directions.
     restitution : str, float, RestitutionModel or a sequence of them, optional
-        Names, models and coefficients; if not given all registered models, and of the calibrated one its mean and
-        both ends of its 95 % interval; of a solid "calibrated", "ked", "housner" and coefficients [-].
+        Names, models and coefficients. Default: all registered models, with the mean and both ends of the 95 %
+        interval of the calibrated model. Solids: "calibrated", "ked", "housner" and coefficients [-].
     friction : as for `predict`
-        Coefficient of friction; histories that slide, and all of a solid, take its median [-].
+        Coefficient of friction; histories with sliding, and all histories of a solid, use its median [-].
     margin : float
-        Factor on the motions that remedies must hold, up to 50 [-].
+        Required factor on the motions after measures, at most 50 [-].
     pga : float, optional
         Peak ground acceleration to which each motion is scaled, as for `predict` [m/s2].
     gravity : float
@@ -248,152 +261,174 @@ def assess(  # noqa: PLR0913 - what is asked, what is known and how it is comput
     progress : callable, optional
         Called with the number of histories done since the last call.
     **known
-        What else is known of the body, as for `predict`: ``base``, ``centre``, ``polarity``, ``azimuth``, ``count``,
-        ``seed`` and more; also its ``restitution`` as ``predicted``. With a number as azimuth it is not turned.
+        Other inputs of `predict`: ``base``, ``centre``, ``polarity``, ``azimuth``, ``count``, ``seed`` and more;
+        its ``restitution`` as ``predicted``. A number as azimuth fixes the direction of the body.
 
     Returns
     -------
     BodyAssessment
-        Verdict, margins, probability, code methods, remedies.
+        Outcome, margins, probability, code methods, measures.
 
     Raises
     ------
     InvalidValueError
-        If it is no body, a motion is zero throughout, or a value is outside its range.
+        If the body has another type, a motion is zero throughout, or a value is outside its range.
 
     Examples
     --------
     >>> import rocking as rk
-    >>> found = assess(rk.Block(width=0.5, height=2.0, mass=300.0), rk.pulses.sine(2.0, 0.8), ["ked", 0.95], count=16)
-    >>> found.verdict
-    'It does not lift: it overturns under none of 1 motion, with none of 2 restitutions, either way round.'
+    >>> block = rk.Block(width=0.5, height=2.0, mass=300.0)
+    >>> assessment = assess(block, rk.pulses.sine(2.0, 0.8), ["ked", 0.95], count=16)
+    >>> assessment.verdict
+    'No uplift and no overturning: 0 of 1 motion, 2 restitutions, both polarities.'
     """
     checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
-    checks.within("margin", margin, 0.0, MOST_ASKED, open_low=True)
+    checks.within("margin", margin, 0.0, MAX_MARGIN, open_low=True)
     margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
-    whole = several(motions, pga)
+    motion_set = several(motions, pga)
     stated = (mu for mu in (friction, FRICTION[0]) if mu is not None)
     coefficient = Uncertain.of("friction", next(stated), *FRICTION[1:]).median
     options, subject = {"gravity": gravity, "threads": threads, "progress": progress}, cast(Any, body)
     space: SolidHistories | None = None
     moving: Sequence[Any]
     if not mechanics_for(subject, friction, study=True).in_plane:
-        space = SolidHistories(subject, whole, known.get("azimuth"), coefficient, options)
-        flat, moving, records, body, whole = space.body, space.motions, space.records, space.standing.solid, space.given
-        plane = [each.in_plane for each in space.motions]
-        asked = IN_SPACE if restitution is None else restitution
-        restitution = [each.removesuffix("-3d") if isinstance(each, str) else each for each in asked]
+        space = SolidHistories(subject, motion_set, known.get("azimuth"), coefficient, options)
+        flat, body = space.body, space.standing.solid
+        moving, records, motion_set = space.motions, space.records, space.components
+        plane = [item.in_plane for item in space.motions]
+        restitution = [
+            item.removesuffix("-3d") if isinstance(item, str) else item
+            for item in (IN_SPACE if restitution is None else restitution)
+        ]
     else:
-        plane, records = in_the_plane(whole, known.get("azimuth"))
+        plane, records = in_the_plane(motion_set, known.get("azimuth"))
         flat, moving = subject, plane
-    if still := next((each for each in plane if not each.peak > 0.0), None):
-        raise InvalidValueError("motion {motion!r} is zero throughout: nothing would move", motion=still.name)
-    different = list({id(each): each for each in plane}.values())
-    place = [next(k for k, other in enumerate(different) if other is each) for each in plane]
-    kept = MotionList(different)
-    lifts = np.array([lifting_factor(flat, each, gravity) for each in plane]) if space is None else space.lifts()
+    if zero_motion := next((item for item in plane if not item.peak > 0.0), None):
+        raise InvalidValueError(
+            "motion {motion!r} is zero throughout; use a motion with acceleration", motion=zero_motion.name
+        )
+    unique_motions = list({id(item): item for item in plane}.values())
+    unique_index = [next(k for k, other in enumerate(unique_motions) if other is item) for item in plane]
+    unique_set = MotionList(unique_motions)
+    uplift_factors = (
+        np.array([lifting_factor(flat, item, gravity) for item in plane]) if space is None else space.uplift_factors()
+    )
 
     chosen = choices(flat, restitution)
-    found, beside, refused = _margins(flat, kept, chosen, options, space, lifts)
-    worst = sorted(found, key=lambda name: np.nan_to_num(found[name].lowest, nan=np.inf))
-    lowest = float(np.nanmin([*(each.lowest for each in beside.values()), np.inf]))
+    margins, plane_margins, refused = _margins(flat, unique_set, chosen, options, space, uplift_factors)
+    ranked = sorted(margins, key=lambda name: np.nan_to_num(margins[name].min_factor, nan=np.inf))
+    lowest = float(np.nanmin([*(item.min_factor for item in plane_margins.values()), np.inf]))
     standing = None
     if space is None:
-        sliding = _margin(flat, kept, chosen[worst[0]], {**options, "friction": coefficient})
+        sliding = _margin(flat, unique_set, chosen[ranked[0]], {**options, "friction": coefficient})
     else:
-        sliding = found[worst[0]]
-        standing = space.fallen(sliding, *_told(worst[0], chosen[worst[0]]), lowest)
-    falls = max(lowest, sliding.lowest) if space else lowest
-    sides, shaking = BodySides.of([flat], gravity), Shaking.of(kept)
+        sliding = margins[ranked[0]]
+        standing = space.with_overturning(sliding, *_sampled_restitution(ranked[0], chosen[ranked[0]]), lowest)
+    overturning_factor = max(lowest, sliding.min_factor) if space else lowest
+    sides, shaking = BodySides.of([flat], gravity), Shaking.of(unique_set)
     prediction = predict(
-        body, whole, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
+        body, motion_set, restitution=known.pop("predicted", None), friction=friction, gravity=gravity, threads=threads,
         progress=progress, **known,
     )  # fmt: skip
     return BodyAssessment(
-        body=flat, motions=tuple(moving), records=records, models=found, refused=refused,
-        friction=coefficient, sliding=sliding, lifts=lifts,
-        capacities={name: each.capacity(sides, shaking)[place, 0] for name, each in CODE_METHODS.items()},
+        body=flat, motions=tuple(moving), records=records, models=margins, refused=refused,
+        friction=coefficient, sliding=sliding, uplift_factors=uplift_factors,
+        capacities={name: item.capacity(sides, shaking)[unique_index, 0] for name, item in CODE_METHODS.items()},
         prediction=prediction,
         remedies=remedies(
-            flat, different, margin, gravity, {name: chosen[name] for name in worst}, falls=falls <= margin
+            flat, unique_motions, margin, gravity, {name: chosen[name] for name in ranked},
+            falls=overturning_factor <= margin,
         ),
         gravity=gravity, standing=standing,
-        outside={name: each.outside(sides, shaking) for name, each in CODE_METHODS.items()},
+        outside={name: item.outside(sides, shaking) for name, item in CODE_METHODS.items()},
         vertical=int(shaking.vertical.sum()),
     )  # fmt: skip
 
 
 def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion], IntArray]:
-    """Return what moves a body in its plane, one component as it is, two turned into every direction, and of which."""
-    found: list[GroundMotion] = []
+    """Return the motions in the plane of a body, and the index of the input motion of each.
+
+    One component is unchanged; two components are rotated into all directions.
+    """
+    turned_motions: list[GroundMotion] = []
     records: list[int] = []
     for k in range(len(motions)):
         along, across, upright = parts(motions[k])
-        turned = {"": sampled(along)}
+        components = {"": sampled(along)}
         if across is not None:
             fixed = isinstance(azimuth, (int, float))
             angles = [float(azimuth)] if fixed else np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-            turned = {f", {np.degrees(a):.0f} deg": rotated(along, across, float(a))[0] for a in angles}
-        for words, each in turned.items():
-            name = f"{along.name}{words}"
-            vertical = each.vertical if upright is None else with_vertical(each, sampled(upright)).vertical
-            samples = each.acceleration if vertical is None else each.acceleration[: len(vertical)]
-            called = numbered(name, found)
-            found.append(GroundMotion(samples, each.time_step, vertical, called, each.metadata, each.provenance))
+            components = {f", {np.degrees(a):.0f} deg": rotated(along, across, float(a))[0] for a in angles}
+        for suffix, component in components.items():
+            name = f"{along.name}{suffix}"
+            vertical = component.vertical if upright is None else with_vertical(component, sampled(upright)).vertical
+            samples = component.acceleration if vertical is None else component.acceleration[: len(vertical)]
+            unique_name = numbered(name, turned_motions)
+            turned_motions.append(
+                GroundMotion(
+                    samples, component.time_step, vertical, unique_name, component.metadata, component.provenance
+                )
+            )
             records.append(k)
-    return found, np.array(records)
+    return turned_motions, np.array(records)
 
 
-def choices(body: Body, given: Sequence[Any] | None) -> Mapping[str, Any]:
+def choices(body: Body, restitutions: Sequence[Any] | None) -> Mapping[str, Any]:
     """Return the restitutions of histories by their names."""
-    named: dict[str, Any] = {}
-    usual = [CALIBRATED, *(name for name in models() if name not in {CALIBRATED, "fixed"})]
-    for each in usual if given is None else given:
-        if each == CALIBRATED:
-            named[CALIBRATED], drawn = model(each), restitution_distribution(body)
+    restitution_by_name: dict[str, Any] = {}
+    defaults = [CALIBRATED, *(name for name in models() if name not in {CALIBRATED, "fixed"})]
+    for choice in defaults if restitutions is None else restitutions:
+        if choice == CALIBRATED:
+            restitution_by_name[CALIBRATED], distribution = model(choice), restitution_distribution(body)
             for end, level in ENDS.items():
-                named[f"{CALIBRATED}, {end}"] = {foot: float(drawn.quantile(level, foot)) for foot in FEET}
-        elif isinstance(each, (int, float)):
-            named[f"r = {each:g}"] = float(each)
+                restitution_by_name[f"{CALIBRATED}, {end}"] = {
+                    foot: float(distribution.quantile(level, foot)) for foot in FEET
+                }
+        elif isinstance(choice, (int, float)):
+            restitution_by_name[f"r = {choice:g}"] = float(choice)
         else:
-            one = model(each)
-            named[one.label] = one
-    return named
+            chosen_model = model(choice)
+            restitution_by_name[chosen_model.label] = chosen_model
+    return restitution_by_name
 
 
-def _told(name: str, choice: Any) -> tuple[Any, float]:
-    """Return a restitution by its name as `predict` takes it of a solid, and the probability of its distribution."""
-    what, _, end = name.partition(", ")
-    if what == CALIBRATED:
+def _sampled_restitution(name: str, choice: Any) -> tuple[Any, float]:
+    """Return a restitution as for `predict` of a solid, and the probability in its distribution."""
+    label, _, end = name.partition(", ")
+    if label == CALIBRATED:
         return None, ENDS.get(end, 0.5)
-    return (choice if isinstance(choice, float) else what), 0.5
+    return (choice if isinstance(choice, float) else label), 0.5
 
 
 def _margins(
     body: Body, motions: MotionList, chosen: Mapping[str, Any], options: dict[str, Any],
-    space: SolidHistories | None, lifts: FloatArray,
+    space: SolidHistories | None, uplift_factors: FloatArray,
 ) -> tuple[dict[str, ModelMargin], dict[str, ModelMargin], dict[str, str]]:  # fmt: skip
-    """Return the margins, those of the plane body beside a solid, and what says nothing of it, by restitution."""
-    found, beside, refused = dict[str, ModelMargin](), dict[str, ModelMargin](), dict[str, str]()
+    """Return margins, margins of the plane body of a solid, and reasons of missing margins, by restitution."""
+    margins, plane_margins, refused = dict[str, ModelMargin](), dict[str, ModelMargin](), dict[str, str]()
     for name, choice in chosen.items():
         try:
             flat = _margin(body, motions, choice, options)
-            found[name] = flat if space is None else space.margin(flat, *_told(name, choice), lifts)
-            beside[name] = flat
+            margins[name] = (
+                flat if space is None else space.margin(flat, *_sampled_restitution(name, choice), uplift_factors)
+            )
+            plane_margins[name] = flat
         except RockingError as error:
             refused[name] = str(error)
-    if not found:
+    if not margins:
         raise InvalidValueError(
-            "no restitution says anything of this body: {reasons}", reasons="; ".join(refused.values())
+            "no restitution model applies to this body: {reasons}", reasons="; ".join(refused.values())
         )
-    return found, beside, refused
+    return margins, plane_margins, refused
 
 
 def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:
-    found = Margins.of(body, motions, restitution, "pga", None, options)
-    # a factor of 1 may lie in a stretch that the levels have missed
-    least = np.where(found.fell_each[:, :, 0] == 1.0, np.minimum(found.least_each, 1.0), found.least_each)
+    margins = Margins.of(body, motions, restitution, "pga", None, options)
+    # the factor 1 may be in an interval of overturning between two levels
+    min_factors = np.where(margins.fell_each[:, :, 0] == 1.0, np.minimum(margins.least_each, 1.0), margins.least_each)
     parameters = RockingParameters.of_body(body, restitution, options["gravity"])
-    return ModelMargin({foot: getattr(parameters, foot).coefficient for foot in FEET}, found.overturned[:, 0], least)
+    return ModelMargin(
+        {foot: getattr(parameters, foot).coefficient for foot in FEET}, margins.overturned[:, 0], min_factors
+    )

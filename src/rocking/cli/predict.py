@@ -222,7 +222,7 @@ class AssessmentAnswer:
             page.line("Code methods: of the plane body")
         page.rows(found.code_rows, (), most=len(found.capacities), dense=False)
         show_limits(page, (CODE_METHODS[name] for name in found.capacities), found)
-        for title, sentences in (("What governs", found.governs), ("What to do", found.to_do)):
+        for title, sentences in (("What governs", found.governing_factors), ("What to do", found.measures)):
             page.line()
             page.line(title, "bold")
             for words in sentences:

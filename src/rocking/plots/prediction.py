@@ -235,7 +235,7 @@ def assessment_picture(found: BodyAssessment) -> "Figure":
     """
     checks.of_kind("found", found, BodyAssessment, "a BodyAssessment")
     figure, axes = new_figure(DOUBLE, 3.2, columns=2)
-    least = np.array([np.fmin.reduce(each.least) for each in found.models.values()])
+    least = np.array([np.fmin.reduce(each.min_factors_by_polarity) for each in found.models.values()])
     least = np.where(np.isnan(least), np.inf, least)
     _margins(axes[0], found, least)
     _methods(axes[1], found, least.min(axis=0))
@@ -254,7 +254,7 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
     axes.axvline(1.0, color="black", linestyle=DASHED, linewidth=0.8)
     for row, k in enumerate(order.tolist()):
         values = least[:, k][np.isfinite(least[:, k])]
-        axes.plot(found.lifts[k], row, "|", color=GREY, markersize=6.0)
+        axes.plot(found.uplift_factors[k], row, "|", color=GREY, markersize=6.0)
         if values.size:
             axes.plot([values.min(), values.max()], [row, row], color=COLORS[0], linewidth=1.0)
             axes.plot(values.min(), row, "o", color=COLORS[0], markersize=3.0)
@@ -266,7 +266,7 @@ def _margins(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         axes.set_yticks(range(order.size), short)
     else:
         axes.set_yticks([])
-        axes.set_ylabel(f"{found.several}, the most dangerous first")
+        axes.set_ylabel(f"{found.motion_count}, the most dangerous first")
     plain_log(axes, "x")
 
 
@@ -278,7 +278,7 @@ def _methods(axes: "Axes", found: BodyAssessment, least: np.ndarray) -> None:
         ratio = ratio[np.isfinite(ratio) & (ratio > 0.0)]
         axes.plot(ratio, np.full(ratio.size, row), "o", color=COLORS[5], markersize=3.0)
         if not ratio.size:
-            reason = "no factor overturns" if np.isfinite(capacity).any() else found.outside_words(name)
+            reason = "no factor overturns" if np.isfinite(capacity).any() else found.exclusion(name)
             layout: dict[str, Any] = {"transform": axes.get_yaxis_transform(), "ha": "left", "va": "center"}
             box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.8}
             axes.text(0.02, row, reason, fontsize=6.5, color=INK, bbox=box, **layout)

@@ -131,10 +131,10 @@ def _governing_solid(assessment: BodyAssessment, solid: StandingSolid) -> Govern
     )
     motion_of_record = assessment.motions[motion]
     history = simulate(
-        solid.solid.turned(solid.turned), motion_of_record.parts, solid.restitution, friction=assessment.friction,
+        solid.solid.turned(solid.azimuth), motion_of_record.parts, solid.restitution, friction=assessment.friction,
         scale=scale, gravity=assessment.gravity, tolerance=1e-8,
     )  # fmt: skip
-    azimuth = f"{math.degrees(solid.turned) % 360.0:.0f}"
+    azimuth = f"{math.degrees(solid.azimuth) % 360.0:.0f}"
     return GoverningHistory(
         history,
         motion_of_record,
@@ -146,8 +146,8 @@ def assessment_document(
     assessment: BodyAssessment, name: str, signed: dict[str, str], governing: GoverningHistory
 ) -> Document:
     """Return the content of the report of an assessment."""
-    may_overturn = (assessment.fallen > 0.0).any() or assessment.lowest.factor < 1.0
-    mark = "bad" if (assessment.fallen == 1.0).any() else "fair" if may_overturn else "good"
+    may_overturn = (assessment.overturning_fraction > 0.0).any() or assessment.lowest.factor < 1.0
+    mark = "bad" if (assessment.overturning_fraction == 1.0).any() else "fair" if may_overturn else "good"
     margins = Picture(
         "margins", "Smallest overturning factor of each motion, and code methods relative to it (unsafe above 1)"
     )
@@ -165,8 +165,8 @@ def assessment_document(
     probability_blocks = [probability_picture] if assessment.prediction.chances["overturning"].value > 0.0 else []
     sections = [
         ReportSection("Overturning", [margins, _models(assessment), _motions(assessment)]),
-        ReportSection("Causes", [*map(Paragraph, assessment.governs)]),
-        ReportSection("Measures", [*map(_led, assessment.to_do)]),
+        ReportSection("Causes", [*map(Paragraph, assessment.governing_factors)]),
+        ReportSection("Measures", [*map(_led, assessment.measures)]),
         ReportSection("Probability", [*map(Paragraph, assessment.prediction.sentences), *probability_blocks]),
         ReportSection("Code methods", [_codes(assessment)]),
         ReportSection("The body", _about(assessment)),
@@ -183,13 +183,13 @@ def assessment_document(
         ReportSection("Signed", [table("", ["", ""], [(key, value or "_" * 30) for key, value in
                                                       (*signed.items(), ("signature", ""))])]),
     ]  # fmt: skip
-    motions_text = f"Under {assessment.several}"
+    motions_text = f"Under {assessment.motion_count}"
     subtitle = ". ".join(
         filter(None, (motions_text, signed["project"] if name else "", signed["author"], signed["date"]))
     )
     verdict = [
         Paragraph(assessment.verdict, "", mark),
-        *map(Paragraph, (assessment.margin_words, assessment.probability_words)),
+        *map(Paragraph, (assessment.margin_sentence, assessment.probability_sentence)),
     ]
     title = name or signed["project"] or "A body in an earthquake"
     return Document(title, subtitle, sections, verdict=verdict, footer=SOFTWARE)
@@ -211,16 +211,18 @@ def _models(assessment: BodyAssessment) -> ReportTable:
 
 
 def _motions(assessment: BodyAssessment) -> ReportTable:
-    min_factors = np.fmin.reduce([np.fmin.reduce(margin.least) for margin in assessment.models.values()])
+    margins = assessment.models.values()
+    min_factors = np.fmin.reduce([np.fmin.reduce(margin.min_factors_by_polarity) for margin in margins])
     worst_directions = [min(np.flatnonzero(assessment.records == k).tolist(),
                             key=lambda j: np.nan_to_num(min_factors[j], nan=np.inf))
              for k in np.unique(assessment.records)]  # fmt: skip
     count = len(assessment.models)
-    ranked = sorted(zip(worst_directions, assessment.fallen, strict=True), key=lambda pair: min_factors[pair[0]])
+    fractions = zip(worst_directions, assessment.overturning_fraction, strict=True)
+    ranked = sorted(fractions, key=lambda pair: min_factors[pair[0]])
     rows = [
         {
             "motion": assessment.motions[j].name, "pga": assessment.motions[j].peak, "pgv": _pgv(assessment.motions[j]),
-            "uplift_factors": assessment.lifts[j], "min_factor": min_factors[j],
+            "uplift_factors": assessment.uplift_factors[j], "min_factor": min_factors[j],
             "overturned": f"{fraction * count:.0f} of {count}",
         }
         for j, fraction in ranked
@@ -266,9 +268,9 @@ def _about(assessment: BodyAssessment) -> list[Block]:
             Pair(Picture("body", "The body on its feet O and O'"), body_table("", assessment.body, assessment.gravity))
         ]
     repairs = repairs_of(assessment.standing.solid)
-    title = f"The {_PLANE} of {math.degrees(assessment.standing.plane) % 360.0:.0f} deg"
+    title = f"The {_PLANE} of {math.degrees(assessment.standing.plane_azimuth) % 360.0:.0f} deg"
     return [
-        *map(Paragraph, assessment.standing.words),
+        *map(Paragraph, assessment.standing.sentences),
         Picture("body", "Energy barrier by direction; the support polygon; the body from its sides"),
         body_table(title, assessment.body, assessment.gravity),
         *repairs,

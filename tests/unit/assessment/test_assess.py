@@ -29,25 +29,25 @@ def record(peak, period=0.8, **more):
 def test_it_stands():
     """What does not lift needs nothing, and its margin is above one."""
     found = rk.assess(CABINET, record(2.0), ["ked", "housner"], count=16)
-    assert found.verdict.startswith("It does not lift: it overturns under none of 1 motion, with none of 2 rest")
-    assert found.lowest.factor > found.lifts[0] == pytest.approx(9.80665 * 0.28 / 0.9 / 2.0, rel=1e-3)
-    assert found.to_do == ("Nothing: it does not lift under this record.",)
+    assert found.verdict.startswith("No uplift and no overturning: 0 of 1 motion")
+    assert found.lowest.factor > found.uplift_factors[0] == pytest.approx(9.80665 * 0.28 / 0.9 / 2.0, rel=1e-3)
+    assert found.measures == ("None required: no uplift under this record.",)
     assert found.remedies.tension == {"left": 0.0, "right": 0.0}
-    assert f"{found.lowest.factor:.3g} times this record" in found.margin_words
+    assert f"{found.lowest.factor:.3g} times this record" in found.margin_sentence
 
 
 def test_it_overturns():
     """The margin is the least factor of all: a history just below stands with every model, just above one falls."""
     found = rk.assess(CABINET, record(9.0), ["ked", 0.85], count=16)
     factor, name, motion, mirrored = found.lowest
-    assert found.verdict == "It overturns under 1 of 1 motion, with all of 2 restitutions."
-    assert factor == min(each.lowest for each in found.models.values()) < 1.0
+    assert found.verdict == "The body overturns under 1 of 1 motion with all of 2 restitutions."
+    assert factor == min(each.min_factor for each in found.models.values()) < 1.0
     choice = choices(CABINET, ["ked", 0.85])[name]
     body = CABINET.mirrored() if mirrored else CABINET
     ends = [rk.simulate(body, found.motions[motion], choice, scale=k * factor).outcome for k in (0.998, 1.002)]
     assert ends[1] is rk.Outcome.OVERTURNED
     assert ends[0] is not rk.Outcome.OVERTURNED
-    assert [words.partition(" ")[0] for words in found.to_do] == ["Anchors", "Base", "Centre", "Isolators"]
+    assert [words.partition(" ")[0] for words in found.measures] == ["Anchors", "Base", "Centre", "Isolators"]
     assert found.sentences == tuple(str(found).splitlines())
 
 
@@ -85,15 +85,15 @@ def test_a_body_of_another_shape_keeps_its_coefficients():
     peak = 6.0 * 1.002 * rk.assess(tee, record(6.0), "ked", count=8).lowest.factor
     found = rk.assess(tee, record(peak), "ked", count=8)
     assert "overturns under 1 of 1 motion" in found.verdict
-    assert "no history overturns any more" in found.to_do[1]
-    assert "stands without" not in str(found)
+    assert "no history overturns" in found.measures[1]
+    assert "unchanged body" not in str(found)
 
 
 def test_what_is_demanded_is_never_rounded_down():
     """Every force, length and period in words holds at least what is computed, and less than a hundredth more."""
     for peak in (6.0, 6.3, 6.6, 6.9):
         found = rk.assess(CABINET, record(peak), [0.85], count=8)
-        asked, said = found.remedies, [re.findall(r"[\d.]+(?= (?:kN|mm|s)\b)", words) for words in found.to_do]
+        asked, said = found.remedies, [re.findall(r"[\d.]+(?= (?:kN|mm|s)\b)", words) for words in found.measures]
         anchors = [*asked.tension.values(), asked.shear]
         exact = [force / 1e3 for force in anchors]
         exact += [1e3 * getattr(each, name) for each in (asked.wider, asked.lower) for name in ("stands", "lifts_not")]
@@ -132,9 +132,9 @@ def test_records_are_counted_not_their_directions():
     """Of one pair and one component two motions are counted, in verdict, models and code methods."""
     pair = {"x": record(9.0), "y": record(0.5)}
     found = rk.assess(CABINET, [pair, record(2.0)], ["ked", 0.85], count=8)
-    assert found.verdict == "It overturns under 1 of 2 motions (in 13 directions), with all of 2 restitutions."
-    assert found.fallen.tolist() == [1.0, 0.0]
-    assert [found.falls(each) for each in found.models.values()] == [1, 1]
+    assert found.verdict == "The body overturns under 1 of 2 motions (in 13 directions) with all of 2 restitutions."
+    assert found.overturning_fraction.tolist() == [1.0, 0.0]
+    assert [found.count_overturned(each) for each in found.models.values()] == [1, 1]
     fell = np.array([each.overturned for each in found.models.values()]).max(axis=0)
     assert 1 < fell.sum() < DIRECTIONS  # negative control: directions are more, and some stand
     counted = [row for row in found.code_rows if row["overturned"] is not None]
@@ -175,9 +175,9 @@ def test_no_history_with_a_result(monkeypatch):
     unknown.overturned = unknown.fell_each[0]
     monkeypatch.setattr(Margins, "of", lambda *_: unknown)
     found = rk.assess(CABINET, record(6.0), [0.9], count=8)
-    assert found.verdict == "No history has a result: it cannot be said whether it stands."
-    assert found.margin_words == "Margin to overturning: not known."
-    assert not any("stands" in words or "overturns" in words for words in (*found.to_do, *found.governs))
+    assert found.verdict == "No history has a result; overturning cannot be assessed."
+    assert found.margin_sentence == "Margin to overturning: not available."
+    assert not any("overturns" in words for words in (*found.measures, *found.governing_factors))
 
 
 def test_what_makes_no_sense_is_refused():
@@ -200,15 +200,15 @@ def test_what_governs_agrees_with_its_figures():
     level, up = 6.0 * np.sin(2.0 * math.pi * time / 0.8), np.full(time.size, -2.0)
     found = rk.assess(CABINET, rk.GroundMotion(level, 0.01, up, name="both"), ["ked", "housner"], count=16)
     lifts = 0.28 * g / (0.9 * 6.0 + 0.28 * 2.0)  # k 6 h = (g - k 2) b, the weaker side
-    assert found.lifts[0] == pytest.approx(lifts, rel=2e-3)  # the largest sample is below 6 m/s2
-    assert f"Without vertical acceleration it lifts from {0.28 / 0.9:.3g} g; with that of both at " in found.governs[0]
+    assert found.uplift_factors[0] == pytest.approx(lifts, rel=2e-3)  # the largest sample is below 6 m/s2
+    assert f"Without vertical acceleration, uplift begins at {0.28 / 0.9:.3g} g" in found.governing_factors[0]
     along = rk.assess(CABINET, rk.GroundMotion(level, 0.01, name="both"), ["ked", "housner"], count=16)
-    assert f"It lifts from {0.28 / 0.9:.3g} g, at " in along.governs[0]
-    low, high = (f(each.lowest for each in along.models.values()) for f in (min, max))
-    assert (f"{low:.3g}" == f"{high:.3g}") == ("moves the margin" not in " ".join(along.governs))
+    assert f"Uplift begins at {0.28 / 0.9:.3g} g, at " in along.governing_factors[0]
+    low, high = (f(each.min_factor for each in along.models.values()) for f in (min, max))
+    assert (f"{low:.3g}" == f"{high:.3g}") == ("depending on" not in " ".join(along.governing_factors))
     shares = along.prediction.shares
     if any(share.total > 0.0 for share in shares.values()):
         most = max(shares.values(), key=lambda share: share.total)
         apart = most.total_low > max(each.total_high for each in shares.values() if each is not most)
-        assert ("decides most" in along.governs[-1]) == apart
-        assert ("distinguishable" in along.governs[-1]) != apart
+        assert ("Main uncertainty" in along.governing_factors[-1]) == apart
+        assert ("distinguishable" in along.governing_factors[-1]) != apart

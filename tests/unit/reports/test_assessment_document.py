@@ -31,7 +31,7 @@ def test_a_history_that_overturns_is_plotted(motions, falls):
     found = rk.assess(CABINET, motions, [0.85, 0.92], count=8)
     governing = governing_history(found)
     assert governing.history.outcome is rk.Outcome.OVERTURNED
-    fell = bool((found.fallen > 0.0).any())
+    fell = bool((found.overturning_fraction > 0.0).any())
     assert fell is falls
     assert governing.description.startswith(
         f"The body{' mirrored,' if 'mirrored' in governing.description else ''} under {governing.motion.name}"
