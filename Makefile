@@ -78,10 +78,10 @@ $(ENGINE): $(VENV)/demo CMakeLists.txt $(wildcard engine/*.cpp engine/*.hpp engi
 	@touch $@
 
 demo: $(VENV)/demo $(ENGINE)
-	@$(BIN)/rocking paper --out $(OUT)
-	@$(BIN)/rocking cor --width 1 --height 4 --out $(OUT)/body.png
+	@$(BIN)/rocking reproduce --output $(OUT)
+	@$(BIN)/rocking restitution --width 1 --height 4 --output $(OUT)/body.png
 	@$(BIN)/rocking simulate --width 0.5 --height 2 --motion "sine:amplitude=3.2,period=0.8" --restitution ked \
-		--out $(OUT)/response.png --out $(OUT)/response.html
+		--output $(OUT)/response.png --output $(OUT)/response.html
 
 # What the calibrated default and the intervals of models are read from; a test asks whether it is what would be computed.
 calibration: $(VENV)/dev

@@ -41,7 +41,7 @@ with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):
 _MAP = (
     "map --width 1 --height 4 --motion sine:amplitude=3,period=0.8 --x frequency_ratio=2:8:6 --y amplitude_ratio=1:8:6"
 )
-_RUN, _EXPORT = "campaign run job.toml --out c --workers 1", "campaign export c --out result.nc"
+_RUN, _EXPORT = "campaign run job.toml --output c --workers 1", "campaign export c --output result.nc"
 _JOB = """
 [campaign]
 name = "map"

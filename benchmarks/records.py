@@ -35,7 +35,7 @@ def seconds(*words: str) -> float:
     """Wall seconds of a command."""
     begun = time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-m", "rocking", "motions", *words], check=True, capture_output=True, text=True
+        [sys.executable, "-m", "rocking", "record", "batch", *words], check=True, capture_output=True, text=True
     )
     spent = time.perf_counter() - begun
     print("\n".join((done.stdout + done.stderr).strip().splitlines()[-4:]))
@@ -48,12 +48,12 @@ def main() -> None:
         records = Path(place) / "records"
         records.mkdir()
         folder(records)
-        flat = seconds(str(records), "--out", str(Path(place) / "flatfile.csv"))
+        flat = seconds(str(records), "--output", str(Path(place) / "flatfile.csv"))
         print(
             f"{FILES} files, 30 periods of RotD: {flat:.1f} s (mark {MARK:.0f} s): {'met' if flat < MARK else 'missed'}"
         )
         chosen = seconds(
-            str(records), "--set", "motion.target=eurocode8:ag=0.35g,ground=C", "--set", "motion.count=40", "--out",
+            str(records), "--set", "motion.target=eurocode8:ag=0.35g,ground=C", "--set", "motion.count=40", "--output",
             str(Path(place) / "chosen.csv"),
         )  # fmt: skip
         print(f"40 of {FILES} chosen and scaled: {chosen:.1f} s")

@@ -11,12 +11,12 @@ BLOCK = ("--width", "0.6", "--height", "1.8")
 SHAKEN = (*BLOCK, "--motion", "sine:amplitude=3,period=1.2")
 COMMANDS = {  # arguments, goal [s], repeats
     "--help": ((), 0.3, 5),
-    "cor": (BLOCK, 0.6, 5),
+    "restitution": (BLOCK, 0.6, 5),
     "simulate": (SHAKEN, 0.6, 5),
     "map": (SHAKEN, 0.6, 5),
     "assess": (SHAKEN, 2.0, 5),
     "predict": (SHAKEN, 2.0, 5),
-    "paper": ((), 12.0, 1),
+    "reproduce": ((), 12.0, 1),
 }
 
 
@@ -40,7 +40,7 @@ def starts() -> list[tuple[str, float, float]]:
     found = [("import rocking", scaled("-c", "import rocking"), 0.1)]
     for name, (options, goal, repeats) in COMMANDS.items():
         with tempfile.TemporaryDirectory() as folder:
-            out = ("--out", folder) if name == "paper" else ()
+            out = ("--output", folder) if name == "reproduce" else ()
             spent = scaled("-m", "rocking", name, *options, *out, repeats=repeats)
         found.append((f"rocking {name}", spent, goal))
     return found

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 COMMANDS = (
-    "cor --width 1 --height 4",
-    "simulate --width 0.5 --height 2 --motion sine:amplitude=3,period=0.8 --restitution ked --out r.png",
-    "example statue",
+    "restitution --width 1 --height 4",
+    "simulate --width 0.5 --height 2 --motion sine:amplitude=3,period=0.8 --restitution ked --output r.png",
+    "examples statue",
 )
 _TOLD = re.compile(r"\s*(?:(\d\.\d+):|\"(.+)\"$)")  # a number or a text at the beginning of a comment is the answer
 

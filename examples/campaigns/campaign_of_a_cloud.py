@@ -12,7 +12,7 @@ from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_com
 from rocking.plots import cloud_picture, write
 
 # %%
-# The job, as a file would hold it: `rocking campaign run cabinet.toml --out CAMPAIGN` runs the same.
+# The job, as a file would hold it: `rocking campaign run cabinet.toml --output CAMPAIGN` runs the same.
 
 job = Job.of_text("""
 [campaign]
@@ -42,7 +42,7 @@ with TemporaryDirectory() as home:
     campaign.run()
     (found,) = analyses(campaign).values()
     ranked = measure_comparison(campaign)
-    # from the shell: rocking campaign export CAMPAIGN --out measures=cabinet_measures.csv
+    # from the shell: rocking campaign export CAMPAIGN --output measures=cabinet_measures.csv
     table = export(campaign, "cabinet_measures.csv", "measures")
 
 # %%

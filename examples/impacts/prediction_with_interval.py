@@ -27,7 +27,7 @@ assert "extrapolation" in outside_evidence(flat)
 
 # %%
 # All models for both feet, each with the interval that its errors at the measurements give it, and where this body
-# lies among them. The command `rocking cor statue.toml --out statue.png` draws the same.
+# lies among them. The command `rocking restitution statue.toml --output statue.png` draws the same.
 
 tables = {foot: rk.evidence.coefficient_table(statue, onto=foot) for foot in ("left", "right")}
 write(coefficient_picture(statue, tables), "prediction_with_interval.png")

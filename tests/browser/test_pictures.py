@@ -209,7 +209,7 @@ def test_figures_of_studies_are_saved_as_they_are_seen(open_page: Callable[..., 
 def test_a_body_in_space_is_saved_as_it_is_seen(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """So are a body in WebGL and its marks, turned as it is; the SVG has them as an image, with their legend."""
     page, section = opened_light(open_page, "space")
-    asked_in_space(page, "cor", scan(tmp_path))
+    asked_in_space(page, "restitution", scan(tmp_path))
     page.get_by_test_id("space-stage").focus()
     for _ in range(3):
         page.keyboard.press("ArrowLeft")

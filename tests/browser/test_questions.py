@@ -131,7 +131,7 @@ def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
     """One button recomputes the paper; its report can be taken away, and the command that makes it is told."""
     page = open_page(link())
     page.locator("#tab-measure").click()
-    page.locator("#view-measure").get_by_label("Analysis").select_option("paper")
+    page.locator("#view-measure").get_by_label("Analysis").select_option("reproduce")
     outcome = asked(page, "measure")
     expect(outcome.get_by_test_id("verdict")).to_contain_text("claims confirmed")
     assert outcome.get_by_role("table", name="Models").locator("tbody tr").count() > 10
@@ -139,7 +139,7 @@ def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
         outcome.get_by_role("button", name="Report (PDF)").click()
     told.value.save_as(tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
-    expect(outcome.locator("pre")).to_have_text("rocking paper --out paper")
+    expect(outcome.locator("pre")).to_have_text("rocking reproduce --output paper")
 
 
 def test_records_are_sent_together(open_page: Callable[..., Any], tmp_path: Path) -> None:

@@ -287,7 +287,7 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     page = open_page(link("sine:amplitude=3.2,period=0.8"))
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    section.get_by_label("Analysis").select_option("minimum")
+    section.get_by_label("Analysis").select_option("overturning-pga")
     section.get_by_label("points").fill("60")
     section.get_by_label("levels").fill("1")
     section.get_by_label("highest").fill("20")

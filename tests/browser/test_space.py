@@ -73,7 +73,7 @@ def test_a_scan_stands_and_settles(
 def test_its_edges(open_page: Callable[..., Any], shot: Callable[..., Any], tmp_path: Path) -> None:
     """Every edge has its row with every model; the body can be turned by keys."""
     page = open_page(view="space")
-    outcome = asked(page, "cor", scan(tmp_path))
+    outcome = asked(page, "restitution", scan(tmp_path))
     table = outcome.get_by_role("table", name="Edges and corners")
     assert table.locator("tbody tr").count() == 4
     assert "ked-3d" in table.locator("thead").inner_text()
@@ -132,7 +132,11 @@ def test_the_body_of_the_project_is_asked_in_space(
     expect(body.locator("option:checked")).to_have_text("leaning-block.stl")
     body.select_option(label="the body of this project")
     expect(section.get_by_label("Unit of the file")).to_have_count(0)
-    said = {"equilibria": "stable pose", "cor": "Coefficient of restitution of each base edge", "simulate": "impact"}
+    said = {
+        "equilibria": "stable pose",
+        "restitution": "Coefficient of restitution of each base edge",
+        "simulate": "impact",
+    }
     for what, verdict in said.items():
         outcome = asked(page, what)
         expect(outcome.get_by_test_id("verdict")).to_contain_text(verdict)

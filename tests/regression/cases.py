@@ -247,17 +247,17 @@ RECORD = "".join(f"{value:.6f}\n" for value in 0.4 * np.sin(0.06 * np.arange(800
 SHORT = {"SIZE": "--width 0.5 --height 2", "PULSE": PULSE}
 ASKED = {
     "help": "--help",
-    "cor": "cor SIZE",
-    "cor json": "cor SIZE --json",
-    "cor statue": "cor statue.toml --json --out csv=o.csv --out picture=o.png",
-    "cor one side": "cor statue.toml --onto left --restitution ked --restitution 0.98*ked --identities",
-    "cor solid": "cor solid.toml --json",
-    "cor solid page": "cor solid.toml --restitution ked-3d",
-    "cor refused": "cor --width -1 --height 2",
-    "cor refused model": "cor SIZE --restitution kedd",
+    "cor": "restitution SIZE",
+    "cor json": "restitution SIZE --json",
+    "cor statue": "restitution statue.toml --json --output csv=o.csv --output picture=o.png",
+    "cor one side": "restitution statue.toml --onto left --restitution ked --restitution 0.98*ked --identities",
+    "cor solid": "restitution solid.toml --json",
+    "cor solid page": "restitution solid.toml --restitution ked-3d",
+    "cor refused": "restitution --width -1 --height 2",
+    "cor refused model": "restitution SIZE --restitution kedd",
     "simulate": "simulate SIZE PULSE",
     "simulate json": "simulate SIZE PULSE --json",
-    "simulate files": "simulate statue.toml PULSE --restitution housner --out csv=o.csv --out picture=o.png --json",
+    "simulate files": "simulate statue.toml PULSE --restitution housner -o csv=o.csv -o picture=o.png --json",
     "simulate record": "simulate statue.toml record.txt --units cm,g --set motion.time_step=0.01 --scale 3",
     "simulate record json": "simulate SIZE record.txt --units m,g --set motion.time_step=0.01 --scale 4 --json",
     "simulate free": "simulate statue.toml --free 0.5",
@@ -273,38 +273,38 @@ ASKED = {
     "simulate refused units": "simulate SIZE record.txt --set motion.time_step=0.01",
     "simulate doubted": "simulate --width 500 --height 2000 sine:amplitude=300,period=0.8",
     "map": "map SIZE PULSE --x frequency_ratio=0.5:7:14 --y amplitude_ratio=1:9:12",
-    "map files": "map statue.toml PULSE --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json --out csv=o.csv --out netcdf="
-    "o.nc --out picture=o.png",
+    "map files": "map statue.toml PULSE --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json -o csv=o.csv -o netcdf=o.nc "
+    "-o picture=o.png",
     "map two": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --restitution ked "
     "--restitution housner",
     "map refined": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --refine 2 --json "
-    "--out netcdf=o.nc --out csv=o.csv",
+    "--output netcdf=o.nc --output csv=o.csv",
     "map refused": "map SIZE PULSE --x nonsense=1:2:3",
-    "minimum": "minimum SIZE sine:amplitude=1,period=0.8 --points 60",
-    "minimum files": "minimum statue.toml sine:amplitude=1,period=0.8 --points 60 --json",
+    "minimum": "overturning-pga SIZE sine:amplitude=1,period=0.8 --points 60",
+    "minimum files": "overturning-pga statue.toml sine:amplitude=1,period=0.8 --points 60 --json",
     "spectrum": "spectrum PULSE --slenderness 4,6 --periods 1:6:6",
-    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --out csv=o.csv",
+    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --output csv=o.csv",
     "fragility": "fragility SIZE --synthetic point-source --count 20",
     "fragility json": "fragility SIZE --synthetic pulse-like --count 15 --seed 2 --json",
     "inventory": "inventory inventory.csv --pga 0.3g --count 30",
-    "inventory files": "inventory inventory.csv --pga 0.3g --count 20 --json --out made",
+    "inventory files": "inventory inventory.csv --pga 0.3g --count 20 --json --output made",
     "models": "models",
     "models json": "models --json",
     "models one": "models ked-3d",
     "models refused": "models Hausner",
-    "motion": "motion PULSE",
-    "motion json": "motion record.txt --units g --set motion.time_step=0.01 --json",
-    "motion files": "motion PULSE --out csv=o.csv --out picture=o.png",
-    "formats": "formats",
-    "formats json": "formats --json",
-    "paper": "paper --json",
+    "motion": "record show PULSE",
+    "motion json": "record show record.txt --units g --set motion.time_step=0.01 --json",
+    "motion files": "record show PULSE --output csv=o.csv --output picture=o.png",
+    "formats": "record formats",
+    "formats json": "record formats --json",
+    "paper": "reproduce --json",
     "version": "--version",
     "unknown": "simulat",
     **{
         f"help {name}": f"{name} --help"
         for name in (
-            "cor", "simulate", "map", "minimum", "spectrum", "fragility", "inventory", "paper", "models", "motion",
-            "formats", "serve", "campaign", "campaign run", "campaign export",
+            "restitution", "simulate", "map", "overturning-pga", "spectrum", "fragility", "inventory", "reproduce",
+            "models", "record show", "record formats", "serve", "campaign", "campaign run", "campaign export",
         )
     },
 }  # fmt: skip
@@ -424,8 +424,8 @@ def campaigns() -> dict[str, Case]:
             if "--json" in words:
                 answered["out"] = json.loads(answered["out"])
 
-        ask("run", "run", "job.toml", "--out", "c", "--workers", "1")
-        ask("again", "run", "job.toml", "--out", "c")
+        ask("run", "run", "job.toml", "--output", "c", "--workers", "1")
+        ask("again", "run", "job.toml", "--output", "c")
         ask("status", "status", "c", "--json")
         ask("verify", "verify", "c", "--json")
         kept = trees.of_files(folder / "c")
@@ -434,7 +434,7 @@ def campaigns() -> dict[str, Case]:
         for what in whats:
             for ending in ENDINGS:
                 target = f"o-{what}.{ending}"
-                ask(f"export {what} {ending}", "export", "c", "--out", f"{what}={target}" if what else target)
+                ask(f"export {what} {ending}", "export", "c", "--output", f"{what}={target}" if what else target)
         files = {
             path.name: trees.of_file(path.name, path.read_bytes())
             for path in sorted(folder.glob("o-*"))

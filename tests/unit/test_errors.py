@@ -199,9 +199,9 @@ BLOCKED = "import sys; sys.modules[sys.argv[1]] = None; from rocking.cli import 
 @pytest.mark.parametrize(
     ("missing", "command", "wanted"),
     [
-        ("xarray", f"{MAP} --out map.nc", "xarray"),
-        ("matplotlib", f"{MAP} --out map.png", "matplotlib"),
-        ("h5netcdf", f"{MAP} --out map.nc", '"rocking[netcdf]"'),
+        ("xarray", f"{MAP} --output map.nc", "xarray"),
+        ("matplotlib", f"{MAP} --output map.png", "matplotlib"),
+        ("h5netcdf", f"{MAP} --output map.nc", '"rocking[netcdf]"'),
         ("uvicorn", "serve --no-browser", '"rocking[web]"'),
     ],
 )

@@ -77,7 +77,7 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, printed, tmp_path
     assert json.loads(printed(*pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
     file = tmp_path / "curves.xml"
     words = ("fragility", "--width", "0.4", "--height", "1.6", "--synthetic", "point-source", "--count", "30")
-    more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--out", str(file), "--crossing", "common-dispersion")
+    more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--output", str(file), "--crossing", "common-dispersion")
     assert "rms" in printed(*words, *more)
     assert 'imt="RMS"' in file.read_text("utf-8")
     assert axis_label("rms") == "root mean square of the acceleration [m/s$^2$]"

@@ -156,10 +156,10 @@ def test_assumed_density_is_said(tmp_path):
 
 def test_command_line_says_it(run):
     """`cor` and `simulate` print doubts and what was assumed; the same stands in the JSON."""
-    _, out, err = run("cor", "--width", "500", "--height", "2000")
+    _, out, err = run("restitution", "--width", "500", "--height", "2000")
     assert "rocking: note: check the input: the centre of mass is 1000 m" in err
     assert "density 2400 kg/m3 assumed" in out
-    facts = json.loads(run("cor", "--width", "500", "--height", "2000", "--json")[1])["body"]
+    facts = json.loads(run("restitution", "--width", "500", "--height", "2000", "--json")[1])["body"]
     assert "1000 m" in facts["warnings"][0]
     assert "assumed" in facts["assumed"][0]
     command = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3000,period=0.8")
@@ -169,14 +169,14 @@ def test_command_line_says_it(run):
     facts = json.loads(run(*command, "--json")[1])
     assert facts["body"]["warnings"] == []
     assert "3000 m/s2" in facts["motion"]["warnings"][0]
-    _, told, err = run("cor", "--width", "0.5", "--height", "2", "--density", "500")
+    _, told, err = run("restitution", "--width", "0.5", "--height", "2", "--density", "500")
     assert err == ""
     assert "assumed" not in told
 
 
 ASKED = {
     "map": ("map", "sine:amplitude=3,period=.5", "--x", "scale=1:2:2", "--y", "restitution=.8:.9:2"),
-    "minimum": ("minimum", "sine:amplitude=3,period=.5", "--highest", "6"),
+    "minimum": ("overturning-pga", "sine:amplitude=3,period=.5", "--highest", "6"),
     "fragility": ("fragility", "--motion", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
 }
 

@@ -85,21 +85,21 @@ def test_the_walk(tmp_path, monkeypatch, printed):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lean.toml").write_text(BODY)
     (tmp_path / "mymodel.py").write_text(MODEL)
-    assert "Which model to use" in printed("cor", "lean.toml", "--recommend")
+    assert "Which model to use" in printed("restitution", "lean.toml", "--recommend")
     assert "a student's idea" in printed("models", "mymodel.py:SpreadImpulse")
     own = ("--restitution", "mymodel.py:SpreadImpulse")
-    text = printed("cor", "lean.toml", *own, "--restitution", "ked")
+    text = printed("restitution", "lean.toml", *own, "--restitution", "ked")
     left, right = map(float, re.findall(r"spread-impulse\S*\s+(0\.\d+)", text))
     assert left == pytest.approx(expected("left"), abs=2e-6)  # six digits are printed
     assert right == pytest.approx(expected("right"), abs=2e-6)
     assert left != pytest.approx(expected("right"), abs=1e-3)  # the feet are not confused
 
-    both = printed("map", "lean.toml", *MAP.split(), *own, "--restitution", "housner", "--out", "map.png")
+    both = printed("map", "lean.toml", *MAP.split(), *own, "--restitution", "housner", "--output", "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     flipped, cells = map(int, re.search(r"in (\d+) of ([\d,]+) cells", both).groups())
     outcomes = []
     for model in (own[1], "housner"):
-        printed("map", "lean.toml", *MAP.split(), "--restitution", model, "--out", "one.nc")
+        printed("map", "lean.toml", *MAP.split(), "--restitution", model, "--output", "one.nc")
         with xarray.open_dataset(tmp_path / "one.nc") as table:
             outcomes.append(table["overturned"].values.copy())
     assert cells == outcomes[0].size == 900

@@ -188,7 +188,7 @@ def test_commands(tmp_path, answered):
     (tmp_path / "body.toml").write_text(text)
     out = [f"picture={tmp_path / 'a.png'}", f"csv={tmp_path / 'a.csv'}", tmp_path / "a.html"]
     words = ["simulate", tmp_path / "body.toml", "sine:amplitude=3,period=0.5", "--friction", "0.2"]
-    told = answered(*words, *(word for file in out for word in ("--out", file)))
+    told = answered(*words, *(word for file in out for word in ("--output", file)))
     one = rk.simulate(SHORT, PULSE, friction=0.2)
     assert told["outcome"] == "slid"
     assert told["sliding_distance"] == pytest.approx(one.sliding_distance, rel=1e-9)
@@ -361,12 +361,12 @@ def test_commands_of_studies(tmp_path, answered):
     (tmp_path / "body.toml").write_text(f'units = "m"\n{body}')
     tall = Solid(Part(box(0.5, 0.6, 1.2), 2000.0))
     words = [tmp_path / "body.toml", "sine:amplitude=3,period=0.5", "--friction", "0.6"]
-    out = ["--out", f"picture={tmp_path / 'map.png'}"]
+    out = ["--output", f"picture={tmp_path / 'map.png'}"]
     told = answered("map", *words, "--x", "scale=1:4:4", "--y", "period=0.4:0.8:3", *out)
     grid = overturning_map(tall, PULSE, ("scale", [1, 2, 3, 4]), ("period", [0.4, 0.6, 0.8]), friction=0.6)
     assert told["mode"] == grid["mode"].values.tolist()
     assert (tmp_path / "map.png").stat().st_size > 1000
-    least = answered("minimum", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
+    least = answered("overturning-pga", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
     python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
     assert least == pytest.approx(python, rel=1e-9)
 
@@ -452,7 +452,7 @@ def test_components_that_are_refused(records, run, motions, says):
     folder, _ = records
     job = "[body]\nfile = 'statue.toml'\n[settings]\nfriction = 0.7\n[minimum]\n[[motions]]\n"
     (folder / "job.toml").write_text(job + motions)
-    code, _, err = run("minimum", folder / "job.toml")
+    code, _, err = run("overturning-pga", folder / "job.toml")
     assert code == 2
     assert re.search(says, err)
 

@@ -256,10 +256,10 @@ def test_a_real_server_gives_the_same_answers(served, inside, record):
         assert application(served, document) == application(inside, document)
 
 
-@pytest.mark.verifies(against="the application and `rocking cor`")
+@pytest.mark.verifies(against="the application and `rocking restitution`")
 def test_coefficients_are_those_of_the_command(inside):
-    """POST /api/impact and `rocking cor --json` say the same of a block."""
-    words = [sys.executable, "-m", "rocking", "cor", "--width", "0.5", "--height", "2", "--json"]
+    """POST /api/impact and `rocking restitution --json` say the same of a block."""
+    words = [sys.executable, "-m", "rocking", "restitution", "--width", "0.5", "--height", "2", "--json"]
     printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=HANG).stdout)
     answer = inside.post("/api/impact", json={"body": {"units": "m", "width": 0.5, "height": 2}}).json()
     assert printed.pop("units").items() <= answer["units"].items()
@@ -267,10 +267,10 @@ def test_coefficients_are_those_of_the_command(inside):
     assert {key: answer["body"][key] for key in printed["body"]} == printed["body"]
 
 
-@pytest.mark.verifies(against="the application and `rocking motion`")
+@pytest.mark.verifies(against="the application and `rocking record show`")
 def test_motion_is_that_of_the_command(inside, record):
-    """POST /api/motion and `rocking motion --json` say the same of a scaled record, but for its spectrum."""
-    words = [sys.executable, "-m", "rocking", "motion", str(record), "--scale", "1.3", "--json"]
+    """POST /api/motion and `rocking record show --json` say the same of a scaled record, but for its spectrum."""
+    words = [sys.executable, "-m", "rocking", "record", "show", str(record), "--scale", "1.3", "--json"]
     printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True, timeout=HANG).stdout)
     document = document_of("cabinet, record", inside, record)
     answer = inside.post("/api/motion", json={"motion": document["motion"]}).json()

@@ -95,7 +95,7 @@ def test_no_word_opens_a_file(client, secret, reader, place):
 def test_secret_would_be_opened_elsewhere(secret, tmp_path):
     """Negative control: on the command line, which is the user's own, the same words open files."""
     from rocking.bodies.formats import read_body
-    from rocking.cli.cor import _model
+    from rocking.cli.restitution import _model
 
     drawing = secret.with_name("body.wkt")
     drawing.write_text("POLYGON ((0 0, 1 0, 1 4, 0 4, 0 0))")

@@ -111,7 +111,7 @@ def document_file(
     """Return the file with everything, TOML with [body] or another table; beside: options that go with it."""
     if word is None or not {*tables, "body"} & set(tables_in(Path(word)) or ()):
         return None
-    taken = {"body", "objects", "motions", "threads", "out", "as_json", "sets", "details", *beside}
+    taken = {"body", "objects", "motions", "threads", "output", "as_json", "sets", "details", *beside}
     if stated := typed(context, *(name for name in context.params if name not in taken)):
         raise InvalidValueError(
             "{file} {content}says everything itself, so it takes no {options}", file=word, content=has,
@@ -330,11 +330,11 @@ def hinted(body: str | None, word: str | None, upright: str = "") -> Iterator[No
         yield
     except BodyFileError as error:
         if body is not None and not is_body(body) and is_file(body):
-            error.add_hint(f"perhaps a record: see rocking motion {body}")
+            error.add_hint(f"perhaps a record: see rocking record show {body}")
         raise
     except RecordError as error:
         if word is not None and is_file(word) and is_body(word):
-            error.add_hint(f"perhaps a body: see rocking cor {word}")
+            error.add_hint(f"perhaps a body: see rocking restitution {word}")
         raise
     except InvalidValueError as error:
         if word is not None and (components := error.facts.get("components")):

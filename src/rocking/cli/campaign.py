@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from rocking.cli import options
+
 _CODES = (
     "Exit codes: 0 done; 2 bad input, or nothing to export yet; 3 interrupted, what is finished is safe; "
     "4 the disk is full or cannot be written; 5 another process runs this campaign; "
@@ -35,7 +37,7 @@ Inputs = Annotated[Path | None, typer.Option(help="Where the files of the job ar
 @campaign.command(epilog=_CODES)
 def check(
     job: JobFile,
-    out: Annotated[Path | None, typer.Option(help="Where it would be kept, to see if the disk has room.")] = None,
+    output: Annotated[Path | None, options.output("Folder of the campaign, to check the free disk space.")] = None,
     workers: Annotated[int, typer.Option(min=1, max=4096, help="Cores that would compute.")] = 1,
     as_json: AsJson = False,
 ) -> None:
@@ -43,13 +45,13 @@ def check(
     from rocking.cli import campaign_output
 
     with campaign_output.codes():
-        campaign_output.show_forecast(job, workers, out, as_json)
+        campaign_output.show_forecast(job, workers, output, as_json)
 
 
 @campaign.command(epilog=_CODES)
 def run(
     job: JobFile,
-    out: Annotated[Path, typer.Option(help="New folder of the campaign.")],
+    output: Annotated[Path, options.output("New folder of the campaign.")],
     workers: Workers = None,
     executor: Executor = "serial",
     address: Address = None,
@@ -59,9 +61,9 @@ def run(
     from rocking.campaigns.jobs import Job, JobFolder
     from rocking.cli import campaign_output
 
-    with campaign_output.codes(out):
+    with campaign_output.codes(output):
         who = campaign_output.executor_of(executor, workers, address)
-        campaign_output.compute(JobFolder.create(out, Job.read(job)), who, as_json)
+        campaign_output.compute(JobFolder.create(output, Job.read(job)), who, as_json)
 
 
 @campaign.command(epilog=_CODES)
@@ -103,10 +105,10 @@ def verify(folder: Folder, as_json: AsJson = False) -> None:
 @campaign.command(epilog=_CODES)
 def export(
     folder: Folder,
-    out: Annotated[
+    output: Annotated[
         list[str],
-        typer.Option(
-            help="File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; .png, .svg or .pdf for a "
+        options.output(
+            "File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; .png, .svg or .pdf for a "
             "picture; of an inventory .html, .pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the "
             "kind; WHAT=FILE says which: histories; picture; of fragility campaigns fragility, fragility-points, "
             "fema-p58 (.csv); of refined maps refined, boundary; of minimum accelerations crossings, minima; of "
@@ -130,4 +132,4 @@ def export(
     from rocking.cli.campaign_export import write
 
     with campaign_output.codes(folder):
-        write(folder, out, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)
+        write(folder, output, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)

@@ -30,7 +30,7 @@ def write(
     paths = [path.resolve() for path, _ in targets]
     if twice := next((path for path in paths if paths.count(path) > 1), None):
         raise InvalidValueError(
-            "{parameter} names {file} twice: the second would replace the first", parameter="--out", file=twice.name
+            "{parameter} names {file} twice: the second would replace the first", parameter="--output", file=twice.name
         )
     for path, what in targets:
         _check(opened, path, what, restitution, crossing)

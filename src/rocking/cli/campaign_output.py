@@ -87,7 +87,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
     for sentence in (*done.set_aside, *done.retries):
         print(f"note: {sentence}")
     target = "report.html" if folder.job.study.assess is not None else "result.nc"
-    print(f"next: rocking campaign export {shlex.quote(str(folder.path))} --out {target}")
+    print(f"next: rocking campaign export {shlex.quote(str(folder.path))} --output {target}")
 
 
 def show_status(folder: Path, as_json: bool) -> None:

@@ -1,4 +1,4 @@
-"""`rocking models` and `rocking formats`: what there is to choose from."""
+"""`rocking models` and `rocking record formats`: what there is to choose from."""
 
 import textwrap
 from dataclasses import dataclass
@@ -60,8 +60,8 @@ class _Models:
             page.line()
 
 
-def formats(as_json: AsJson = False) -> None:
-    """Run `rocking formats`."""
+def record_formats(as_json: AsJson = False) -> None:
+    """Run `rocking record formats`."""
     deliver(_Formats(), as_json=as_json)
 
 

@@ -13,9 +13,9 @@ from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
 from rocking.cli import options
 from rocking.cli.arguments import Arguments
-from rocking.cli.cor import named_body
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.page import Page, deliver
+from rocking.cli.restitution import named_body
 from rocking.cli.solids import show_body
 from rocking.errors import InvalidValueError
 
@@ -40,11 +40,11 @@ def equilibria(
         float | None, typer.Option(help="Poses that a smaller rise of the centre leaves, in m, do not count.")
     ] = None,
     sets: options.Set = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking equilibria`."""
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "body")
     subject, _ = named_body(arguments, quiet=as_json)
     if isinstance(subject, (Block, Section)):

@@ -1,4 +1,4 @@
-"""`--out FILE`: what is written, by the ending of the file; `--out NAME=FILE` where an ending has several meanings."""
+"""`--output FILE`: the extension selects the kind of file; `--output NAME=FILE` names it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,11 +28,11 @@ class Exports:
 
     @classmethod
     def of(cls, texts: Sequence[str] | None, kinds: dict[str, Export]) -> "Exports":
-        """Return what `--out` says, refusing what could not be written before anything is computed."""
+        """Return what `--output` says, refusing what could not be written before anything is computed."""
         files = tuple(_file(text, kinds) for text in texts or ())
         paths = [path for _, path in files]
         if twice := next((path for path in paths if paths.count(path) > 1), None):
-            raise InvalidValueError("{parameter} {file} is given twice", parameter="--out", file=twice)
+            raise InvalidValueError("{parameter} {file} is given twice", parameter="--output", file=twice)
         for name, path in files:
             if not path.parent.is_dir():
                 raise InvalidValueError(
@@ -55,7 +55,7 @@ class Exports:
         read = {Path(part).resolve() for name in names for part in (name, name.rpartition("#")[0]) if part}
         if over := next((path for _, path in self.files if path.resolve() in read), None):
             raise InvalidValueError(
-                "{parameter} {file} is what is read, and would be written over", parameter="--out", file=over,
+                "{parameter} {file} is what is read, and would be written over", parameter="--output", file=over,
                 hint="take another name",
             )  # fmt: skip
 
@@ -85,7 +85,7 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     chosen = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
     if chosen is None:
         raise InvalidValueError(
-            "{parameter} {file!r:.60}: by its ending a file is {contents}", parameter="--out", file=path.name,
+            "{parameter} {file!r:.60}: by its ending a file is {contents}", parameter="--output", file=path.name,
             contents=_possible(kinds),
         )  # fmt: skip
     return chosen, path
@@ -102,7 +102,7 @@ def _possible(kinds: dict[str, Export]) -> str:
 
 
 def described(kinds: dict[str, Export]) -> str:
-    """Return the kinds of files, for the help of `--out`."""
+    """Return the kinds of files, for the help of `--output`."""
     return f"Write a file, again for more; its ending says what: {_possible(kinds)}."
 
 

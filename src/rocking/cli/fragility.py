@@ -102,7 +102,7 @@ def fragility(
             rich_help_panel=options.OUTPUT,
         ),
     ] = ExportTable.model_fields["crossing"].default,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
     """Run `rocking fragility`."""
@@ -113,7 +113,7 @@ def fragility(
     from rocking.cli.study import TABLES, histories_in, problem_in
     from rocking.studies.fragility.curves import Crossing
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     checks.one_of("--crossing", crossing, get_args(Crossing))
     length, written = None, ""
     if problem := problem_in(context, body, "fragility", "name", "crossing"):
@@ -220,7 +220,7 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     several = len(problem.restitutions)
     if (curves := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
         raise InvalidValueError(
-            "{parameter} {files} holds the curves of one --restitution", parameter="--out", files=", ".join(curves),
+            "{parameter} {files} holds the curves of one --restitution", parameter="--output", files=", ".join(curves),
             hint="csv=FILE holds several",
         )  # fmt: skip
     if "picture" in exports.names and several > MOST_IN_PICTURE:

@@ -46,7 +46,7 @@ def command_of(kind: str) -> Callable[..., None]:
 
     @options.takes(options.keys(table, *names), *([_BODY] * has_body), _MOTIONS, before="restitution")
     @options.takes(options.SIZES if has_body else {"units": (options.RecordUnits, None)})
-    @options.takes({"out": (Annotated[list[str] | None, options.out(exports)], None)}, before="as_json")
+    @options.takes({"output": (Annotated[list[str] | None, options.output(exports)], None)}, before="as_json")
     def command(
         context: typer.Context,
         restitution: options.Restitutions = None,
@@ -58,7 +58,7 @@ def command_of(kind: str) -> Callable[..., None]:
         from rocking.cli.arguments import Arguments
         from rocking.cli.study import TABLES, histories_in, motions_of, of_body, problem_in, problem_of
 
-        files, length = Exports.of(context.params["out"], exports), None
+        files, length = Exports.of(context.params["output"], exports), None
         first = context.params["body"] if has_body else next(iter(context.params["record"] or ()), None)
         if (problem := problem_in(context, first, own)) is None:
             arguments = Arguments(context, *TABLES, own)

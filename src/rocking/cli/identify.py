@@ -55,13 +55,13 @@ def identify(
     ] = None,
     sets: options.Set = None,
     workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Processes, for a folder.")] = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking identify`."""
     from rocking.spec.identification import IdentificationProblem
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     problem = IdentificationProblem.of(*_question(context, [each for each in (body, record) if each is not None]))
     exports.spare(*(problem.trials if problem.path.is_dir() else [problem.path]), *(motion or ()))
     if problem.path.is_dir():

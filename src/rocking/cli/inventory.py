@@ -61,19 +61,16 @@ def inventory(
     friction: options.Friction = None,
     units: options.RecordUnits = None,
     sets: options.Set = None,
-    out: Annotated[
+    output: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Folder for the report in all forms, or a file: .html, .pdf, .xlsx, .csv, .json; again for more.",
-            rich_help_panel=options.OUTPUT,
-        ),
+        options.output("Folder for the report in all forms, or a file: .html, .pdf, .xlsx, .csv, .json; repeatable."),
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking inventory`."""
     from rocking.cli.study import problem_in
 
-    targets = [Path(text) for text in out or ()]
+    targets = [Path(text) for text in output or ()]
     _check(targets)
     problem = problem_in(context, str(objects), "inventory") or _problem(context)
     with bar("motions", quiet=as_json) as progress:

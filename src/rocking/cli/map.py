@@ -60,14 +60,14 @@ def map(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(DATASET)] = None,
+    output: Annotated[list[str] | None, options.output(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking map`."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
-    exports = Exports.of(out, DATASET)
+    exports = Exports.of(output, DATASET)
     written: dict[str, str] = {}
     length = None
     if (problem := problem_in(context, body, "map")) is None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Options = dict[str, tuple[Any, Any]]  # annotation and default of options by name
 NONE: Mapping[str, Any] = {}
-SIZE, SHAKING, HOW, OUTPUT = "Size, in place of a body file", "What shakes it", "How it is computed", "Output"
+SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
 
 
 ROW = ": FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C"
@@ -185,11 +185,12 @@ def count(usual: int, panel: str = SHAKING) -> Any:
     return typer.Option(help=f"How many synthetic motions, {usual} if not given.", rich_help_panel=panel)
 
 
-def out(kinds: dict[str, Any]) -> Any:
-    """Return the option `--out` of a command that writes files of some kinds."""
+def output(kinds: dict[str, Any] | str) -> Any:
+    """Return the option `--output` of a command that writes files of some kinds, or its help in full."""
     from rocking.cli.exports import described
 
-    return typer.Option(help=described(kinds), rich_help_panel=OUTPUT)
+    text = kinds if isinstance(kinds, str) else described(kinds)
+    return typer.Option("-o", "--output", help=text, rich_help_panel=OUTPUT)
 
 
 def key_of(option: str) -> str:

@@ -10,7 +10,7 @@ import typer
 
 from rocking.answers import Answer, Display
 from rocking.cli import options
-from rocking.cli.codes import show_limits
+from rocking.cli.code_checks import show_limits
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import Page, bar, deliver
@@ -49,7 +49,7 @@ def predict(
     friction: options.FrictionOfRange = None,
     sets: options.Set = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking predict`."""
@@ -57,7 +57,7 @@ def predict(
     from rocking.spec.documents.prediction import PredictionDocument
     from rocking.spec.prediction import PredictionProblem
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     if file := document_file(context, body, ("predict",)):
         document, inputs = in_file(file, sets, PredictionDocument)
     else:
@@ -162,7 +162,7 @@ def assess(
     friction: options.FrictionOfRange = None,
     sets: options.Set = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(REPORTED)] = None,
+    output: Annotated[list[str] | None, options.output(REPORTED)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking assess`."""
@@ -170,7 +170,7 @@ def assess(
     from rocking.spec.documents.prediction import AssessmentDocument
     from rocking.spec.prediction import PredictionProblem
 
-    exports = Exports.of(out, REPORTED)
+    exports = Exports.of(output, REPORTED)
     if file := document_file(context, body, ("assess",)):
         document, inputs = in_file(file, sets, AssessmentDocument, (*TABLES, "assess"))
     else:
@@ -231,5 +231,5 @@ class AssessmentAnswer:
         page.facts(source_lines(found.prediction.motions))
         page.line(scale_words())
         assumed = "; ".join(found.prediction.assumptions)
-        page.line(f"Assumed: {assumed}. Reasons and all references: --out report.pdf, or --json.")
+        page.line(f"Assumed: {assumed}. Reasons and all references: --output report.pdf, or --json.")
         page.warn(found.prediction.repairs)

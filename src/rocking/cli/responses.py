@@ -127,7 +127,7 @@ class ResponseAnswer:
         page.facts(_sources(self._components.values()), 8)
         page.warn(answer["body"].values.get("repairs", ()))
         if not self.details:
-            page.line("Impacts and energy: --details    Files: --out response.csv, --out response.html")
+            page.line("Impacts and energy: --details    Files: --output response.csv, --output response.html")
 
     def _show_tables(self, page: Page, answer: Answer) -> None:
         for name, (title, columns) in _TABLES.items() if self.details else ():

@@ -89,14 +89,14 @@ def simulate(
     motion: options.Motion = None,
     restitution: options.Restitution = "ked",
     sets: options.Set = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking simulate`."""
     from rocking.cli.responses import answer_of
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
     display = Display(acceleration="g")
     if file := document_file(context, body, ("response",), has="has a table [body] and "):
@@ -107,9 +107,9 @@ def simulate(
         arguments = Arguments(context, *_TABLES)
         display = Display(arguments.length or "m", arguments.acceleration or "g")
         if words := arguments.several:
-            if out:
+            if output:
                 raise InvalidValueError(
-                    "{parameter} is of one record, and {set} is of several: --json has them all", parameter="--out",
+                    "{parameter} is of one record, and {set} is of several: --json has them all", parameter="--output",
                     set=words[0][:100],
                 )  # fmt: skip
             deliver(_each(arguments, words, display, quiet=as_json), as_json=as_json)

@@ -1,4 +1,4 @@
-"""`rocking cor` of solids: every edge of the base, and what follows when the body falls back from it."""
+"""`rocking restitution` of solids: every edge of the base, and what follows when the body falls back from it."""
 
 import math
 from collections.abc import Mapping

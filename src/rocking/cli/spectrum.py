@@ -42,14 +42,14 @@ def spectrum(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(DATASET)] = None,
+    output: Annotated[list[str] | None, options.output(DATASET)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking spectrum`."""
     from rocking.cli.arguments import NO_MOTION, Arguments, hinted, is_body, is_file
     from rocking.cli.study import in_lists, problem_in, problem_of
 
-    exports = Exports.of(out, DATASET)
+    exports = Exports.of(output, DATASET)
     named = [*(motions or ()), *(motion or ())]
     if (problem := problem_in(context, named[0] if len(named) == 1 else None, "spectrum")) is None:
         arguments = Arguments(context, "motion", "settings", "spectrum")

@@ -316,7 +316,7 @@ def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recomm
     rows.sort(key=lambda each: each.standing is Standing.EXCLUDED)
     notes.append(
         f"The coefficients are those of a fall back onto {place} from edge {start}, over which it overturns most "
-        "easily; rocking cor lists every edge."
+        "easily; rocking restitution lists every edge."
     )
     return _picked(solid, rows, None, outside, tuple(notes))
 

@@ -90,7 +90,9 @@ def selected(words: Sequence[str] = ()) -> DataSet:
             sets.append(all_measurements())
         elif word == OWN:
             if not (kept := [each for _, each in own_sets()]):
-                raise InvalidValueError("{folder} has no evidence yet: rocking evidence add FILE", folder=str(store()))
+                raise InvalidValueError(
+                    "{folder} has no measurements. Add them: rocking measurements add FILE", folder=str(store())
+                )
             sets.append(kept[0] if len(kept) == 1 else joined(kept, OWN, "measurements of files"))
         elif word in known:
             sets.append(known[word])

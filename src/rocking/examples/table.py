@@ -131,7 +131,7 @@ class Example:
     def outputs(self) -> tuple[str, ...]:
         """Files and folders that the commands write."""
         words = [word for command in self.commands for word in shlex.split(command)]
-        return tuple(after for word, after in pairwise(words) if word == "--out")
+        return tuple(after for word, after in pairwise(words) if word == "--output")
 
 
 def _body(
@@ -140,31 +140,31 @@ def _body(
     """Return a body; shaking: what stands behind it in `rocking simulate`."""
     file, options = f"{name}.{ending}", options or {}
     stated = "".join(f" --{key} {value}" for key, value in options.items())
-    commands = f"rocking cor {file}{stated}", f"rocking simulate {file} {shaking}{stated} --out {name}.png"
+    commands = f"rocking restitution {file}{stated}", f"rocking simulate {file} {shaking}{stated} --output {name}.png"
     records = tuple(each for each in _MOTIONS if f"{each}.csv" in shaking)
     return Example(name, "body", title, commands, (f"bodies/{file}",), records, options)
 
 
 def _motion(name: str, make: Callable[..., Any], model: str, title: str, seed: int | None = 1) -> Example:
-    commands = (f"rocking motion {name}.csv --out {name}.png",)
+    commands = (f"rocking record show {name}.csv --output {name}.png",)
     return Example(name, "motion", title, commands, records=(name,), make=make, model=model, seed=seed)
 
 
 def _question(name: str, title: str) -> Example:
     return Example(
-        name, "question", title, (f"rocking simulate {name}.toml --out {name}.png",), (f"questions/{name}.toml",)
+        name, "question", title, (f"rocking simulate {name}.toml --output {name}.png",), (f"questions/{name}.toml",)
     )
 
 
 def _job(name: str, command: str, title: str) -> Example:
-    return Example(name, "job", title, (f"rocking {command} {name}.toml --out {name}.png",), (f"jobs/{name}.toml",))
+    return Example(name, "job", title, (f"rocking {command} {name}.toml --output {name}.png",), (f"jobs/{name}.toml",))
 
 
 def _campaign(name: str, ending: str, title: str) -> Example:
     """Return a job of several bodies or restitutions, which takes a folder of its own; ending: of what is exported."""
     commands = (
-        f"rocking campaign run {name}.toml --out {name}",
-        f"rocking campaign export {name} --out {name}.{ending}",
+        f"rocking campaign run {name}.toml --output {name}",
+        f"rocking campaign export {name} --output {name}.{ending}",
     )
     return Example(name, "job", title, commands, (f"jobs/{name}.toml",))
 
@@ -197,8 +197,8 @@ _MOTIONS = {
             "motion",
             "motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards",
             (
-                "rocking motion x=three-components.csv#x z=three-components.csv#z --out three-components.png",
-                "rocking motion three-components.csv#y",
+                "rocking record show x=three-components.csv#x z=three-components.csv#z --output three-components.png",
+                "rocking record show three-components.csv#y",
             ),
             records=("three-components",),
             make=three_components,
@@ -247,14 +247,14 @@ _ALL = (
         "objects",
         "list",
         "ten objects of a museum, in centimetres and kilograms",
-        ("rocking inventory objects.csv --pga 0.3g --count 80 --out objects.html",),
+        ("rocking inventory objects.csv --pga 0.3g --count 80 --output objects.html",),
         ("jobs/objects.csv",),
     ),
     Example(
         "liste",
         "list",
         "a list to fill in, in German; any spreadsheet opens it",
-        ("rocking inventory liste.csv --pga 0.3g --count 80 --out liste.html",),
+        ("rocking inventory liste.csv --pga 0.3g --count 80 --output liste.html",),
         ("jobs/liste.csv",),
     ),
     _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
@@ -263,7 +263,7 @@ _ALL = (
         "block-heard",
         "question",
         "when a block that was let go was heard, and what that says of its coefficient",
-        ("rocking identify block-heard.toml --out block-heard.png",),
+        ("rocking identify block-heard.toml --output block-heard.png",),
         ("questions/block-heard.toml", "questions/block-heard.csv"),
     ),
     _job("overturning-map", "map", "which sine pulses overturn a block, and how: 60 x 60 pulses"),
@@ -277,7 +277,7 @@ _ALL = (
         "inventory",
         "job",
         "which objects of a list stay standing in eighty motions of 0.3 g",
-        ("rocking inventory inventory.toml --out inventory.html",),
+        ("rocking inventory inventory.toml --output inventory.html",),
         ("jobs/inventory.toml", "jobs/objects.csv"),
     ),
     _campaign("histories", "csv", "two blocks, two pulses, fifty scales, coefficients drawn anew at every impact"),

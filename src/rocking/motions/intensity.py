@@ -1,7 +1,7 @@
 """Intensity measures of motions, by the usual definitions.
 
 Energies and areas use the trapezoidal rule over the samples; velocities and spectra use straight lines between them,
-as in simulations. An entry in `MEASURES` is sufficient to add a measure to `rocking motion`, fragility, scaling,
+as in simulations. An entry in `MEASURES` is sufficient to add a measure to `rocking record show`, fragility, scaling,
 plots and the files of OpenQuake.
 """
 

@@ -1,4 +1,4 @@
-"""A body on its ground, and its coefficient beside the published measurements: the pictures of `rocking cor`."""
+"""Pictures of `rocking restitution`: the body, and its coefficient compared with published measurements."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Every figure of `rocking paper`: those of Mao et al. (2024), redrawn from what is printed, and our own."""
+"""Every figure of `rocking reproduce`: those of Mao et al. (2024), redrawn from what is printed, and our own."""
 
 import math
 from collections.abc import Callable
@@ -29,7 +29,7 @@ _MARKER = {"housner": "s", "ked": "o"}
 
 
 def paper_figure(name: str) -> "Figure":
-    """Draw a figure of `rocking paper`.
+    """Draw a figure of `rocking reproduce`.
 
     Parameters
     ----------

@@ -73,7 +73,7 @@ class GltfFile:
         }  # fmt: skip
 
     def edges(self, edges: list[dict[str, Any]]) -> None:
-        """Add edges of the base, as `rocking cor` numbers them."""
+        """Add edges of the base, as `rocking restitution` numbers them."""
         from_centre = np.array([*self.solid.centre[:2], 0.0])
         height = -self.extras["height"]
 

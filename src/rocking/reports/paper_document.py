@@ -1,4 +1,4 @@
-"""The report of `rocking paper`: recomputed results, and the content of the report by section."""
+"""The report of `rocking reproduce`: recomputed results, and the content of the report by section."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass

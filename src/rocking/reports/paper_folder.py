@@ -1,4 +1,4 @@
-"""The output folder of `rocking paper`: report, tables, figures, numbers."""
+"""The output folder of `rocking reproduce`: report, tables, figures, numbers."""
 
 import csv
 import json

@@ -224,7 +224,7 @@ def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw:
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
                 "{folder} is a folder, and one record is wanted", folder=table.record,
-                hint="assess, codes, fragility, inventory, motions, predict and simulate take sets",
+                hint="assess, code-checks, fragility, inventory, record batch, predict and simulate take sets",
             )  # fmt: skip
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0

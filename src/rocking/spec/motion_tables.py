@@ -14,7 +14,7 @@ OF_FILES = {"format", "units", "time_step", "skip", "component", "vertical", "ve
 class FileKeys(JobTable):
     """Options of a record file: its format, unit and time step, and lines to skip."""
 
-    format: Text | None = key("format of the record file, if not found by content: see rocking formats")
+    format: Text | None = key("format of the record file, if not found by content: see rocking record formats")
     units: Text | None = key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
     time_step: Positive | None = key("step between samples where the file does not state it [s]")
     skip: int | None = key("lines at the top of a text file that are passed over", None, ge=0, le=100_000)

@@ -132,7 +132,7 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
     left_out += [(name, "no horizontal component") for name in table.records or () if none and not alone]
     plausibility.warn(f"left out: {name}: {why}" for name, why in left_out[:MOST_NAMED])
     if (more := len(left_out) - MOST_NAMED) > 0:
-        plausibility.warn([f"{more} more files were left out; rocking motions lists them"])
+        plausibility.warn([f"{more} more files were left out; rocking record batch lists them"])
     if not motions and alone:
         still = any(why == STILL for _, why in left_out)
         raise InvalidValueError(

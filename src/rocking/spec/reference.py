@@ -27,13 +27,13 @@ from rocking.studies.inventory import Thresholds
 
 _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (ResponseTable, "`rocking simulate`"),
-    "motion": (ComponentsTable, "`rocking simulate`, `rocking motion`"),
+    "motion": (ComponentsTable, "`rocking simulate`, `rocking record show`"),
     "[motions]": (MotionTable, "all studies"),
     'motions.files."NAME"': (FileKeys, "all studies"),
     "restitution": (RestitutionTable, "all commands"),
     "restitution.distribution": (RandomTable, "all commands except `rocking inventory`"),
     "settings": (StudySettingsTable, "all commands"),
-    "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate`"),
+    "predict": (PredictTable, "`rocking predict`, `rocking assess` and `rocking validate-predictions`"),
     "assess": (AssessTable, "`rocking assess`"),
     "measurement": (MeasurementTable, "`rocking identify`"),
     "identify": (IdentifyTable, "`rocking identify`"),

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -98,8 +99,8 @@ def test_the_paper_takes_nothing(desk):
     """What is recomputed from published measurements alone takes neither tables nor files, and can be stopped."""
     for tables, files in ((TABLES, {}), ({}, {"list.csv": desk.store.add(LIST.encode(), "list.csv").record})):
         with pytest.raises(Refused, match="takes no tables and no files"):
-            desk.ask("paper", tables, files)
-    asked = desk.ask("paper", {}, {})
+            desk.ask("reproduce", tables, files)
+    asked = desk.ask("reproduce", {}, {})
     assert (desk.tables(asked.id).strip(), desk.stop(asked.id).state) == ("", "stopped")
 
 
@@ -248,7 +249,7 @@ def test_a_record_is_corrected(desk, tmp_path):
     sha = desk.store.add(SHAKEN.encode(), "hall.txt").record
     chain = ["mean", "bandpass:low=0.5,high=20", "taper"]
     tables = {"motion": {"record": "hall.txt", "process": chain}}
-    found = ended(desk, desk.ask("convert", tables, {"hall.txt": sha}, format="smc-usgs").id)
+    found = ended(desk, desk.ask("record convert", tables, {"hall.txt": sha}, format="smc-usgs").id)
     assert found.files == ["picture.svg", "record.csv", "provenance.json", "record.smc"], found.message
     (tmp_path / "hall.txt").write_text(SHAKEN)
     expected = processed(read_motion(tmp_path / "hall.txt"), chain)
@@ -265,10 +266,10 @@ def test_a_record_is_corrected(desk, tmp_path):
     for process, why in ((["mean", "bandpass:low=1,high=80"], "step bandpass: high must be in (1, 50) Hz, got 80"),
                          (["response:stations=no.xml"], "no.xml")):  # fmt: skip
         tables = {"motion": {"record": "hall.txt", "process": process}}
-        wrong = ended(desk, desk.ask("convert", tables, {"hall.txt": sha}).id)
+        wrong = ended(desk, desk.ask("record convert", tables, {"hall.txt": sha}).id)
         assert wrong.state == "refused"
         assert why in wrong.message
-    for command, form in (("convert", "word"), ("motions", "peer")):
+    for command, form in (("record convert", "word"), ("record batch", "peer")):
         with pytest.raises(Refused, match="format is that of a record"):
             desk.ask(command, tables, {}, format=form)
 
@@ -276,16 +277,16 @@ def test_a_record_is_corrected(desk, tmp_path):
 def test_no_record_at_all(desk):
     """A text that is no record is refused in words, alone and among others."""
     prose = desk.store.add(b"Dear all, please find no record here.\n", "letter.txt").record
-    alone = ended(desk, desk.ask("convert", {"motion": {"record": "letter.txt"}}, {"letter.txt": prose}).id)
+    alone = ended(desk, desk.ask("record convert", {"motion": {"record": "letter.txt"}}, {"letter.txt": prose}).id)
     assert (alone.state, "not recognised as any of" in alone.message) == ("refused", True)
     sent = {"records/letter.txt": prose, "records/hall.txt": desk.store.add(SHAKEN.encode(), "hall.txt").record}
-    found = ended(desk, desk.ask("motions", {"motions": [{"records": ["records"]}]}, sent).id)
+    found = ended(desk, desk.ask("record batch", {"motions": [{"records": ["records"]}]}, sent).id)
     answer = json.loads(desk.answer(found.id))
     assert [Path(each["file"]).name for each in answer["left_out"]] == ["letter.txt"]
     assert [each["samples"] for each in answer["records"]] == [1200]
     for name in ("records", "records/../x.txt", "records/a/b.txt", "record.csv", "record.xyz"):
         with pytest.raises(Refused):
-            desk.ask("motions", {}, {name: prose})
+            desk.ask("record batch", {}, {name: prose})
 
 
 def test_a_list_of_records_names_none_of_this_computer(desk, tmp_path):
@@ -293,7 +294,7 @@ def test_a_list_of_records_names_none_of_this_computer(desk, tmp_path):
     (tmp_path / "secret.txt").write_text(SHAKEN)
     for name in (f"{tmp_path}/secret.txt", "../../../secret.txt"):
         sha = desk.store.add(f"motion\n{name}\n".encode(), "list.csv").record
-        asked = desk.ask("motions", {"motions": [{"records": ["records/list.csv"]}]}, {"records/list.csv": sha})
+        asked = desk.ask("record batch", {"motions": [{"records": ["records/list.csv"]}]}, {"records/list.csv": sha})
         found = ended(desk, asked.id)
         assert found.state == "refused"
         assert "1200" not in found.message
@@ -306,7 +307,7 @@ def test_crossings(desk):
         "campaign": {"name": "crossings", "kind": "minimum-acceleration"}, "body": body,
         "motions": [{"pulse": ["sine:amplitude=3,period=0.8"]}], "minimum": {"points": 40, "levels": 1},
     }  # fmt: skip
-    found = ended(desk, desk.ask("minimum", tables, {}).id)
+    found = ended(desk, desk.ask("overturning-pga", tables, {}).id)
     answer = json.loads(desk.answer(found.id))
     assert found.files == ["picture.svg", "table.csv"]
     assert answer["minimum_acceleration"] == answer["crossings"][0]["peak_ground_acceleration"]
@@ -358,6 +359,28 @@ def test_stopped_deleted_and_gone_on_with(tmp_path):
         again.get(third.id)
     assert [each.id for each in again.all()] == [second.id, first.id]
     again.close()
+
+
+def test_questions_of_schema_1_open(tmp_path):
+    """Notes with the command names of schema 1 have those of today; one of a later schema is left as it is."""
+    kept = Path(__file__).parent / "kept_questions"
+    shutil.copytree(kept, tmp_path / "questions")
+    later = tmp_path / "questions/later"
+    later.mkdir()
+    (later / "state.json").write_text('{"schema": 99, "id": "later"}')
+    desk = QuestionDesk(tmp_path, (RecordStore(tmp_path, Limits(), "files"),), Limits())
+    opened = {question.name: (question.command, question.state) for question in desk.all()}
+    assert opened == {
+        "My cor": ("restitution", "done"), "My minimum": ("overturning-pga", "done"),
+        "My convert": ("record convert", "done"), "My motions": ("record batch", "done"),
+        "My paper": ("reproduce", "stopped"),
+    }  # fmt: skip
+    (crossings,) = (question for question in desk.all() if question.command == "overturning-pga")
+    assert json.loads(desk.answer(crossings.id))["minimum_acceleration"] > 0.0
+    desk._become(crossings)
+    assert json.loads((desk.folder / crossings.id / "state.json").read_bytes())["schema"] == 2
+    assert later.exists()
+    desk.close()
 
 
 def test_what_brings_the_server_down_is_not_asked_for_ever(tmp_path):
@@ -431,10 +454,10 @@ def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
     )
     pulses = [{"pulse": ["sine:amplitude=3,period=0.8"]}]
     tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"points": 40}}
-    asked = desk.ask("minimum", tables, {})
+    asked = desk.ask("overturning-pga", tables, {})
     assert "no restitution model named 'own'" in ended(desk, asked.id).message
     monkeypatch.setenv("ROCKING_MODELS", str(tmp_path / "own.py"))
-    asked = desk.ask("minimum", tables, {})
+    asked = desk.ask("overturning-pga", tables, {})
     assert ended(desk, asked.id).state == "done", desk.get(asked.id).message
 
 
@@ -487,7 +510,7 @@ def test_a_question_about_a_record_is_quick(desk):
     waits(desk._ahead[0])
     begun = time.monotonic()
     tables = {"motion": {"record": "hall.txt", "process": ["mean", "taper"]}}
-    assert ended(desk, desk.ask("convert", tables, {"hall.txt": sha}).id).state == "done"
+    assert ended(desk, desk.ask("record convert", tables, {"hall.txt": sha}).id).state == "done"
     assert time.monotonic() - begun < allowed(1.5)
 
 
@@ -500,7 +523,7 @@ def test_records_of_mixed_units(desk):
     table = {"records": ["records"], "time_step": 0.01, "units": "cm/s2"}
 
     def asked(options):
-        return ended(desk, desk.ask("motions", {"motions": [{**table, "files": options}]}, files).id)
+        return ended(desk, desk.ask("record batch", {"motions": [{**table, "files": options}]}, files).id)
 
     found = asked({"a.txt": {"units": "g"}})
     assert found.state == "done", found.message

@@ -50,7 +50,7 @@ def test_a_report_is_signed(printed, tmp_path):
         f"assess.{name}={words}" for name, words in (("project", "Archive"), ("author", "A. E."), ("date", "1 May"))
     ]
     printed(*BODY, *QUICK, PULSE, *(word for each in signed for word in ("--set", each)),
-            "--out", html, "--out", pdf)  # fmt: skip
+            "--output", html, "--output", pdf)  # fmt: skip
     text = html.read_text(encoding="utf-8")
     for words in ("Archive", "A. E.", "1 May", "signature", "no safety factor", "Housner 1963", "Measures", "<svg"):
         assert words in text

@@ -41,7 +41,7 @@ def job(file):
 def test_check(run, printed, job, tmp_path):
     """A job without a mistake: how many histories, chunks, time, memory, disk, also as JSON; nothing is written."""
     path = job()
-    code, out, err = run("check", path, "--out", tmp_path / "c")
+    code, out, err = run("check", path, "--output", tmp_path / "c")
     assert (code, err) == (0, "")
     assert "600 = 20 amplitude_ratio x 30 frequency_ratio, in 6 chunks of 100" in out
     for word in ("time", "memory", "disk", "free"):
@@ -63,7 +63,7 @@ RUN = ["computed_chunks", "resumed_chunks", "adopted_chunks", "set_aside", "retr
 def test_run_status_resume_export(run, job, tmp_path):
     """The whole way in words, and again in JSON with keys that stay these."""
     folder = tmp_path / "c"
-    code, out, err = run("run", job(), "--out", folder)
+    code, out, err = run("run", job(), "--output", folder)
     assert (code, err) == (0, "")
     assert f"sines: all 600 histories (6 chunks) are safe in {folder}" in out
     assert "next: rocking campaign export" in out
@@ -75,10 +75,10 @@ def test_run_status_resume_export(run, job, tmp_path):
     assert (told["complete"], told["computed_chunks"], told["resumed_chunks"]) == (True, 0, 6)
     code, out, _ = run("status", folder, "--json")
     assert (code, list(json.loads(out))) == (0, [*STATUS, "units"])
-    code, out, _ = run("export", folder, "--out", tmp_path / "r.csv", "--json")
+    code, out, _ = run("export", folder, "--output", tmp_path / "r.csv", "--json")
     assert (code, list(json.loads(out))) == (0, ["file", "what", "histories", "bytes", "sha256", "units"])
     assert len((tmp_path / "r.csv").read_text().splitlines()) == 601
-    code, out, _ = run("export", folder, "--out", tmp_path / "r.mat")
+    code, out, _ = run("export", folder, "--output", tmp_path / "r.mat")
     assert (code, "wrote" in out) == (0, True)
 
 
@@ -86,7 +86,7 @@ def test_run_status_resume_export(run, job, tmp_path):
 def test_mistakes_in_the_job(run, job, tmp_path, more):
     """A mistake in the job: check and run say the same sentence and leave with 2."""
     path = job(more=more)
-    said = [run("check", path), run("run", path, "--out", tmp_path / "new")]
+    said = [run("check", path), run("run", path, "--output", tmp_path / "new")]
     assert said[0] == said[1]
     assert said[0][0] == 2
     assert said[0][2].startswith("rocking: job.toml: ")
@@ -118,7 +118,7 @@ def test_half_done(run, printed, job, tmp_path):
     out = printed("status", folder)
     assert "100 of 600 histories (1 of 6 chunks)" in out
     assert "rocking campaign resume" in out
-    code, _, err = run("export", folder, "--out", tmp_path / "r.nc")
+    code, _, err = run("export", folder, "--output", tmp_path / "r.nc")
     assert code == 2
     assert err.startswith("rocking: nothing to export because 1 of 6 chunks")
     code, out, _ = run("resume", folder, "--json")
@@ -166,7 +166,7 @@ HARMS = {"flip": "has changed", "cut": "cut short", "lose": "is missing", "swap"
 def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     """A flipped bit, a file cut short, lost, or of other histories: named, not counted, exit code 6; resume mends."""
     folder = tmp_path / "c"
-    assert run("run", job(), "--out", folder)[0] == 0
+    assert run("run", job(), "--output", folder)[0] == 0
     code, out, _ = run("verify", folder)
     assert (code, "600 of 600 histories were read and are what was written, in 6 chunks" in out) == (0, True)
     one, other = sorted((folder / "histories" / "shards").glob("*.shard"))[:2]
@@ -193,13 +193,13 @@ def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
 def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     """Verify, status and export say that the ledger is damaged, with exit code 6; resume mends it, as verify says."""
     folder = tmp_path / "c"
-    assert run("run", job(), "--out", folder)[0] == 0
+    assert run("run", job(), "--output", folder)[0] == 0
     (folder / "histories" / "ledger.sqlite").write_bytes(b"xx")
     code, out, err = run("verify", folder)
     assert (code, "ledger.sqlite is damaged" in out, err) == (6, True, "")
     assert out.endswith(f"go on with: rocking campaign resume {folder}\n")
     assert json.loads(run("verify", folder, "--json")[1])["whole"] is False
-    for words in (("status", folder), ("export", folder, "--out", tmp_path / "r.csv")):
+    for words in (("status", folder), ("export", folder, "--output", tmp_path / "r.csv")):
         code, _, err = run(*words)
         assert (code, "run the campaign again: its shards make it anew" in err, len(err.splitlines())) == (6, True, 1)
     code, out, _ = run("resume", folder)
@@ -210,7 +210,7 @@ def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
 def test_changed_job_is_told_alike(run, job, tmp_path):
     """Verify, status and resume refuse a job that was edited with the same sentence, and none sends to another one."""
     folder = tmp_path / "c"
-    assert run("run", job(), "--out", folder)[0] == 0
+    assert run("run", job(), "--output", folder)[0] == 0
     (folder / "job.toml").write_text((folder / "job.toml").read_text() + "# mine\n")
     told = {run(word, folder) for word in ("verify", "status", "resume")}
     (((code, out, err)),) = told
@@ -220,7 +220,7 @@ def test_changed_job_is_told_alike(run, job, tmp_path):
 def test_verify_reads_every_round(run, job, tmp_path):
     """A refined map, whose rounds are campaigns of their own: one bit of the last one is noticed."""
     folder = tmp_path / "c"
-    assert run("run", job(columns=8, more="refine = 1\n"), "--out", folder)[0] == 0
+    assert run("run", job(columns=8, more="refine = 1\n"), "--output", folder)[0] == 0
     assert run("verify", folder)[0] == 0
     shard = next(iter(sorted(folder.glob("round-*"))[-1].glob("shards/*.shard")))
     data = bytearray(shard.read_bytes())
@@ -249,7 +249,7 @@ def test_check_of_a_small_disk(run, job, tmp_path, monkeypatch):
     """A disk without room: what it would take, then exit code 4."""
     usage = type("Usage", (), {"free": 1000})
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
-    code, out, err = run("check", job(), "--out", tmp_path / "c")
+    code, out, err = run("check", job(), "--output", tmp_path / "c")
     assert (code, "0 MB are free" in out) == (4, True)
     assert err.startswith(f"rocking: {tmp_path / 'c'}: 0 MB are needed")
 
@@ -260,11 +260,11 @@ def test_run_on_a_cluster(run, job, tmp_path):
     path = job()
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         there = ("--executor", "dask", "--address", cluster.scheduler_address)
-        assert run("run", path, "--out", tmp_path / "a", *there)[0] == 0
+        assert run("run", path, "--output", tmp_path / "a", *there)[0] == 0
     assert executor_of("dask", None, there[-1])[0].address == there[-1]
-    assert run("run", path, "--out", tmp_path / "b")[0] == 0
+    assert run("run", path, "--output", tmp_path / "b")[0] == 0
     for name in "ab":
-        assert run("export", tmp_path / name, "--out", tmp_path / f"{name}.csv")[0] == 0
+        assert run("export", tmp_path / name, "--output", tmp_path / f"{name}.csv")[0] == 0
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -302,10 +302,10 @@ def wait_for(folder, chunks):
 def test_kill_resume_export(run, job, tmp_path):
     """SIGKILL in the middle, resume, then SIGINT, resume: the file is byte for byte that of an undisturbed run."""
     path = job(columns=3000, chunk=250)
-    assert run("run", path, "--out", tmp_path / "whole")[0] == 0
-    assert run("export", tmp_path / "whole", "--out", tmp_path / "whole.nc")[0] == 0
+    assert run("run", path, "--output", tmp_path / "whole")[0] == 0
+    assert run("export", tmp_path / "whole", "--output", tmp_path / "whole.nc")[0] == 0
     folder = tmp_path / "c"
-    process = started(tmp_path, "run", path, "--out", folder, "--workers", 1)
+    process = started(tmp_path, "run", path, "--output", folder, "--workers", 1)
     wait_for(folder, 3)
     os.killpg(process.pid, signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
@@ -321,7 +321,7 @@ def test_kill_resume_export(run, job, tmp_path):
     assert len(err.strip().splitlines()) == 1
     code, out, _ = run("resume", folder, "--json")
     assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)
-    assert run("export", folder, "--out", tmp_path / "r.nc")[0] == 0
+    assert run("export", folder, "--output", tmp_path / "r.nc")[0] == 0
     assert (tmp_path / "r.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
 
 

@@ -40,7 +40,7 @@ def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
     checked = json.loads(run("campaign", "check", "map.toml", "--json")[1])
     assert checked["first_round_only"] is True
     assert f"usually {checked['later'][0]} to {checked['later'][1]} more histories" in out
-    code, out, err = run("campaign", "run", "map.toml", "--out", "c")
+    code, out, err = run("campaign", "run", "map.toml", "--output", "c")
     assert (code, err) == (0, "")
     rounds = len(list((tmp_path / "c").glob("round-*")))
     assert f"({rounds} rounds, {rounds} chunks) are safe in c" in out
@@ -49,20 +49,20 @@ def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
     assert told["histories"] == json.loads((tmp_path / "c" / "finished.json").read_text())["histories"]
     (tmp_path / "c" / "finished.json").unlink()
     assert f"round {rounds} has begun, how many follow is not known" in run("campaign", "status", "c")[1]
-    refuses(("campaign", "export", "c", "--out", "boundary=r.csv"), "go on with: rocking campaign resume c")
+    refuses(("campaign", "export", "c", "--output", "boundary=r.csv"), "go on with: rocking campaign resume c")
     assert run("campaign", "resume", "c", "--workers", "1")[0] == 0
-    out = printed("campaign", "export", "c", "--out", "boundary=r.csv")
+    out = printed("campaign", "export", "c", "--output", "boundary=r.csv")
     assert f"boundary of {told['histories']} histories in {rounds} rounds" in out
     provenance = json.loads((tmp_path / "r.csv.provenance.json").read_text())
     assert (provenance["rounds"], provenance["all_histories"]) == (rounds, told["histories"])
-    code, out, _ = run("campaign", "export", "c", "--out", "histories=h.csv")
+    code, out, _ = run("campaign", "export", "c", "--output", "histories=h.csv")
     lines = (tmp_path / "h.csv").read_text().splitlines()
     assert f"9 histories of the first round, of {told['histories']} in all rounds" in out
-    found = json.loads(run("campaign", "export", "c", "--out", "histories=h.csv", "--json")[1])
+    found = json.loads(run("campaign", "export", "c", "--output", "histories=h.csv", "--json")[1])
     assert found["histories"] == len(lines) - 1 == 9
     assert (found["rounds"], found["all_histories"]) == (rounds, told["histories"])
-    code, _, err = run("campaign", "export", "c", "--out", "refined=r.nc")
-    assert (code, "--out histories=FILE.nc) holds points and polylines" in err.replace("\n", " ")) == (2, True)
+    code, _, err = run("campaign", "export", "c", "--output", "refined=r.nc")
+    assert (code, "--output histories=FILE.nc) holds points and polylines" in err.replace("\n", " ")) == (2, True)
 
 
 def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
@@ -73,7 +73,7 @@ def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Job, "read", stopped)
-    for words in (("check", "map.toml"), ("run", "map.toml", "--out", "c")):
+    for words in (("check", "map.toml"), ("run", "map.toml", "--output", "c")):
         assert run("campaign", *words) == (3, "", "rocking: stopped; nothing was begun\n")
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
@@ -87,7 +87,7 @@ def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
     """A write that fails half way: exit code 4 with the path, no report under its name, no half of one beside it."""
     if target.endswith("xlsx"):
         pytest.importorskip("openpyxl")
-    assert run("campaign", "run", "inventory.toml", "--out", "c")[0] == 0
+    assert run("campaign", "run", "inventory.toml", "--output", "c")[0] == 0
     real = {name: getattr(pathlib.Path, name) for name in ("write_text", "write_bytes")}
 
     def full(name):
@@ -100,7 +100,7 @@ def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
     before = set(tmp_path.iterdir())
     for name in real:
         monkeypatch.setattr(pathlib.Path, name, full(name))
-    code, out, err = run("campaign", "export", "c", "--out", target)
+    code, out, err = run("campaign", "export", "c", "--output", target)
     words = err.replace("\n", " ")
     assert (code, out) == (4, "")
     assert f"cannot write {target}" in words
@@ -122,15 +122,15 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
     """The same table and the same numbers as `rocking inventory`, in every form; provenance beside it."""
     pytest.importorskip("openpyxl")
     shaking = ("--synthetic", "firm-ground", "--count", 8, "--seed", 1, "--pga", "0.3g")
-    assert run("inventory", "objects.csv", *shaking, "--out", "wanted")[0] == 0
-    assert run("campaign", "run", "inventory.toml", "--out", "c")[0] == 0
+    assert run("inventory", "objects.csv", *shaking, "--output", "wanted")[0] == 0
+    assert run("campaign", "run", "inventory.toml", "--output", "c")[0] == 0
     for suffix in (".csv", ".json", ".html"):
-        code, out, _ = run("campaign", "export", "c", "--out", f"found{suffix}")
+        code, out, _ = run("campaign", "export", "c", "--output", f"found{suffix}")
         assert (code, "report of" in out) == (0, True)
         assert (tmp_path / f"found{suffix}").read_bytes() == (tmp_path / "wanted" / f"inventory{suffix}").read_bytes()
         told = json.loads((tmp_path / f"found{suffix}.provenance.json").read_text())
         assert [each["path"] for each in told["inputs"]] == ["objects.csv"]
-    told = json.loads(run("campaign", "export", "c", "--out", "all", "--json")[1])
+    told = json.loads(run("campaign", "export", "c", "--output", "all", "--json")[1])
     assert [each["what"] for each in told] == ["report"] * len(told)
     names = {path.name for path in (tmp_path / "wanted").iterdir()}
     assert {path.name for path in (tmp_path / "all").iterdir()} == names | {"inventory.provenance.json"}
@@ -139,15 +139,15 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (("--out", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json, got '.txt'"),
-        (("--out", "boundary=r.csv"), 'a campaign of kind "inventory" has no boundary'),
-        (("--out", "r.html", "--crossing", "refuse"), "without restitution and crossing"),
-        (("--out", "missing/r.html"), "cannot write missing/r.html"),
+        (("--output", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json, got '.txt'"),
+        (("--output", "boundary=r.csv"), 'a campaign of kind "inventory" has no boundary'),
+        (("--output", "r.html", "--crossing", "refuse"), "without restitution and crossing"),
+        (("--output", "missing/r.html"), "cannot write missing/r.html"),
     ],
 )
 def test_refusals_of_export(run, tmp_path, words, wanted):
     """What cannot be written is refused in a sentence, and nothing is left behind."""
-    assert run("campaign", "run", "inventory.toml", "--out", "c")[0] == 0
+    assert run("campaign", "run", "inventory.toml", "--output", "c")[0] == 0
     before = set(tmp_path.iterdir())
     code, _, err = run("campaign", "export", "c", *words)
     assert code == 2

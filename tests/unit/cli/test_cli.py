@@ -31,7 +31,7 @@ def test_cor_json_and_csv(run, tmp_path):
     """JSON and CSV hold the same numbers as each other, for both feet of an asymmetric body."""
     path = tmp_path / "cor.csv"
     statue = rk.examples.path("statue")
-    code, out, _ = run("cor", statue, "--json", "--out", path)
+    code, out, _ = run("restitution", statue, "--json", "--output", path)
     answer = json.loads(out)
     assert code == 0
     assert set(answer["coefficients"]) == {"left", "right"}
@@ -44,9 +44,9 @@ def test_cor_json_and_csv(run, tmp_path):
 def test_cor_options(run, own, tmp_path):
     """Unit, angle, one foot, chosen models, interface factor, identities, own model and picture all do their work."""
     picture = tmp_path / "body.svg"
-    words = ["--restitution", f"{own}:Mine", "--restitution", "0.9*ked", "--identities", "--out", picture]
-    words += ["--out", f"stages={tmp_path / 'stages.png'}"]
-    code, out, err = run("cor", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
+    words = ["--restitution", f"{own}:Mine", "--restitution", "0.9*ked", "--identities", "--output", picture]
+    words += ["--output", f"stages={tmp_path / 'stages.png'}"]
+    code, out, err = run("restitution", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
     assert (code, err) == (0, "")
     assert "0.500000" in out
     assert f"{0.9 * 0.9473668350323697:.6f}" in out
@@ -55,7 +55,7 @@ def test_cor_options(run, own, tmp_path):
     assert (tmp_path / "stages.png").stat().st_size > 10_000
     assert picture.read_text(encoding="utf-8").startswith("<?xml")
     angle = ("--set", "body.slenderness_angle=0.2449786631", "--set", "body.semi_diagonal=2")
-    out = run("cor", *angle, "--restitution", "housner", "--json")[1]
+    out = run("restitution", *angle, "--restitution", "housner", "--json")[1]
     assert json.loads(out)["body"]["sides"]["left"]["slenderness_ratio"] == pytest.approx(4.0)
 
 
@@ -75,14 +75,14 @@ def reproduction():
 
 @pytest.fixture
 def paper(run, reproduction, monkeypatch):
-    """Return what runs `rocking paper WORDS` in a narrow terminal."""
+    """Return what runs `rocking reproduce WORDS` in a narrow terminal."""
     monkeypatch.setattr("rocking.reports.paper_document.reproduce", lambda: reproduction)
     monkeypatch.setenv("COLUMNS", "80")
-    return lambda *words: run("paper", *words)
+    return lambda *words: run("reproduce", *words)
 
 
 def test_paper_summary_and_json(paper):
-    """`rocking paper` prints tables, claims, league and verdict, no number cut off; --json holds them as numbers."""
+    """`rocking reproduce` prints tables, claims, league and verdict, no number cut off; --json has numbers."""
     code, out, _ = paper()
     assert code == 0
     for words in ("Table 3: 54 of 54", "errata found: 10 of 10", "does not hold", "eta*ked", "Verdict"):
@@ -95,8 +95,8 @@ def test_paper_summary_and_json(paper):
 
 
 def test_paper_folder(paper, tmp_path):
-    """`rocking paper --out` writes report, figures and tables, opens with what to look at, and needs nothing else."""
-    code, out, _ = paper("--out", tmp_path / "report")
+    """`rocking reproduce --output` writes report, figures and tables, and first names what to look at."""
+    code, out, _ = paper("--output", tmp_path / "report")
     assert code == 0
     assert out.startswith("What to look at")
     html = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
@@ -113,7 +113,7 @@ def test_paper_folder(paper, tmp_path):
 def test_paper_into_a_file_is_refused(paper, refuses, tmp_path):
     """A folder that cannot be made is one sentence and exit code 2."""
     (tmp_path / "file").write_text("", encoding="utf-8")
-    refuses(("paper", "--out", tmp_path / "file"), "cannot write to")
+    refuses(("reproduce", "--output", tmp_path / "file"), "cannot write to")
 
 
 def test_help_is_quick():
@@ -129,7 +129,7 @@ def test_help_is_quick():
 
 def test_cor_says_which_model_to_use(run):
     """With --recommend page and JSON say what Python says; without it neither does."""
-    words = ("cor", "--width", 2, "--height", 16, "--units", "cm")
+    words = ("restitution", "--width", 2, "--height", 16, "--units", "cm")
     found = rk.evidence.recommend(rk.Block(width=0.02, height=0.16))
     code, out, err = run(*words, "--recommend")
     assert (code, err) == (0, "")
@@ -144,20 +144,20 @@ def test_cor_says_which_model_to_use(run):
 
 def test_with_json_a_refusal_is_data(run):
     """Scripts read parameter, limits and place of an error, in the same form as from the API; without, a sentence."""
-    code, out, err = run("cor", "--width", -1, "--height", 4, "--json")
+    code, out, err = run("restitution", "--width", -1, "--height", 4, "--json")
     error = json.loads(err)["error"]
     assert (code, out, error["parameter"]) == (2, "", "body.block.width")
     assert error["message"] == "--width must be a number > 0 m, got -1"
     assert (error["value"], error["allowed"]["low"], error["allowed"]["high"], error["unit"]) == (-1, 0.0, None, "m")
-    unknown = json.loads(run("cor", "--wide", 1, "--json")[2])["error"]
+    unknown = json.loads(run("restitution", "--wide", 1, "--json")[2])["error"]
     assert (unknown["parameter"], unknown["message"].split(":")[0]) == ("--wide", "No such option")
-    code, out, err = run("cor", "--width", -1, "--height", 4)
+    code, out, err = run("restitution", "--width", -1, "--height", 4)
     assert (code, out, err) == (2, "", f"rocking: {error['message']}\n")
 
 
 def test_table_names_every_format(run):
     """Every format stands in the table with its endings; only columns leave both unit and step to the user."""
-    code, out, err = run("formats")
+    code, out, err = run("record", "formats")
     assert (code, err) == (0, "")
     rows = {line.split()[0]: line for line in out.splitlines() if line[:1].strip()}
     assert set(formats()) <= set(rows)
@@ -170,7 +170,7 @@ def test_table_names_every_format(run):
 
 def test_json_is_what_the_formats_say(run):
     """JSON holds title, endings, unit, step and notes of each format, in the order in which they are tried."""
-    code, out, _ = run("formats", "--json")
+    code, out, _ = run("record", "formats", "--json")
     answer = json.loads(out)
     assert code == 0
     assert list(answer) == list(formats())

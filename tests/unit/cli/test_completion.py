@@ -33,12 +33,13 @@ def offered(line, shell="bash"):
 @pytest.mark.parametrize(
     ("line", "some", "other"),
     [
-        ("rocking ", {"cor", "simulate", "campaign"}, "ked"),
-        ("rocking m", {"map", "minimum", "models", "motion"}, "cor"),
+        ("rocking ", {"restitution", "simulate", "campaign"}, "ked"),
+        ("rocking m", {"map", "models", "measurements"}, "restitution"),
+        ("rocking record ", {"show", "batch", "convert", "formats"}, "map"),
         ("rocking simulate --re", {"--restitution"}, "--friction"),
         ("rocking simulate --restitution h", {"housner", "horizontal-momentum"}, "ked"),
-        ("rocking cor --restitution ked", {"ked", "ked-3d"}, "housner"),
-        ("rocking example st", {"statue", "stele", "stripes"}, "pier"),
+        ("rocking restitution --restitution ked", {"ked", "ked-3d"}, "housner"),
+        ("rocking examples st", {"statue", "stele", "stripes"}, "pier"),
         ("rocking models ked", {"ked", "ked-3d", "ked-3d-point"}, "housner"),
         ("rocking simulate b.toml ric", {"ricker:"}, "sine:"),
         ("rocking map --set settings.o", {"settings.order="}, "settings.gravity="),
@@ -72,7 +73,11 @@ def test_zsh_is_answered_too():
 COMMANDS = typer.main.get_command(application()).commands
 LENGTH = "[m, or --units]"
 SIZES = {**dict.fromkeys(("--width", "--height", "--depth"), LENGTH), "--density": "[kg/m3]"}
-UNITS = {"cor": SIZES, "simulate": {**SIZES, "--friction": "[-]", "--scale": "[-]"}, "motion": {"--periods": "[s]"}}
+UNITS = {
+    "restitution": SIZES,
+    "simulate": {**SIZES, "--friction": "[-]", "--scale": "[-]"},
+    "record show": {"--periods": "[s]"},
+}
 
 
 def shown(capsys, monkeypatch, command):
@@ -80,7 +85,7 @@ def shown(capsys, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "300")
     monkeypatch.setenv("TERM", "dumb")
     with pytest.raises(SystemExit) as stop:
-        main([command, "--help"])
+        main([*command.split(), "--help"])
     assert not stop.value.code
     return re.sub(r"[ \t]+", " ", capsys.readouterr().out)
 

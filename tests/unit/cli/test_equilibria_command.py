@@ -43,7 +43,7 @@ def test_the_page_says_it_in_words(printed, file):
 def test_files(run, file, tmp_path):
     """A picture, and a table of the poses."""
     picture, table = tmp_path / "poses.png", tmp_path / "poses.csv"
-    assert run(file(PRISM), "--out", picture, "--out", table)[0] == 0
+    assert run(file(PRISM), "--output", picture, "--output", table)[0] == 0
     with Image.open(picture) as image:
         assert min(image.size) > 500
     assert len(list(csv.DictReader(table.read_text("utf-8").splitlines()))) == 6

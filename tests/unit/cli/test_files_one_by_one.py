@@ -62,7 +62,7 @@ def test_named_files_are_one_record_in_python(triplet):
 @pytest.mark.parametrize(
     "command",
     [
-        "simulate", "fragility --levels 0.2,0.4", "codes --levels 0.3", "assess --restitution ked",
+        "simulate", "fragility --levels 0.2,0.4", "code-checks --levels 0.3", "assess --restitution ked",
         "predict --set predict.count=16", "spectrum --periods 1:4:3",
     ],
 )  # fmt: skip

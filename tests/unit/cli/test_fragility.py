@@ -146,7 +146,7 @@ def test_cloud(run, answered, motions):
 def test_comparison(run, answered, tmp_path):
     """Several restitutions give a result each, flips counted by hand, one table of counts."""
     path = tmp_path / "counts.csv"
-    words = (*SIZE, *FAMILY, *LEVELS, "--restitution", "0.95", "--restitution", "0.7", "--out", path)
+    words = (*SIZE, *FAMILY, *LEVELS, "--restitution", "0.95", "--restitution", "0.7", "--output", path)
     answer = answered(*words)
     first, second = (np.array(one["reached"]["overturned"]) for one in answer["results"])
     base, other = answer["comparison"]["choices"]
@@ -221,7 +221,7 @@ def test_every_file(run, tmp_path):
     paths = {kind: tmp_path / f"f.{end}" for kind, end in (
         ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("pelicun", "pelicun.csv"), ("nrml", "xml"),
         ("excel", "xlsx"), ("mat", "mat"), ("netcdf", "nc"))}  # fmt: skip
-    words = [part for kind, path in paths.items() for part in ("--out", f"{kind}={path}")]
+    words = [part for kind, path in paths.items() for part in ("--output", f"{kind}={path}")]
     words += ["--name", "vase & stand", "--crossing", "common-dispersion"]
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, *words)
     assert (code, err) == (0, "")
@@ -263,7 +263,7 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
     assert (worst["method"], worst["median_95"]) == ("common-dispersion", [None, None])
     reason = answer["crossing"]["adjusted"]
     assert reason.startswith("Fitted alone, curves cross: at ")
-    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--out", f"p58={tmp_path / 'p.csv'}")
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--output", f"p58={tmp_path / 'p.csv'}")
     assert (code, err) == (0, "")
     words = " ".join(out.split())
     assert reason in words
@@ -282,12 +282,12 @@ def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
     curves = answered(*refuse)["results"][0]["curves"]
     assert curves["overturned"]["dispersion"] > 1.2 * curves["rotation > 0.5 alpha"]["dispersion"]
     assert curves["overturned"]["alone"] is None
-    code, _, err = run(*refuse, "--out", tmp_path / "n.xml")
+    code, _, err = run(*refuse, "--output", tmp_path / "n.xml")
     assert code == 2
     assert err.startswith("rocking: curves must not cross")
     assert "--crossing keep-uplift fits one for all states but rocking" in err
     assert list(tmp_path.iterdir()) == []
-    assert run(*refuse, "--out", tmp_path / "m.mat")[0] == 0
+    assert run(*refuse, "--output", tmp_path / "m.mat")[0] == 0
 
 
 def test_states_are_chosen(run, answered, tmp_path):
@@ -298,13 +298,13 @@ def test_states_are_chosen(run, answered, tmp_path):
     assert part["results"][0]["curves"]["overturned"]["median"] == alone["median"]
     assert part["crossing"]["adjusted"] == ""
     file = tmp_path / "p.csv"
-    code, out, _ = run(*SIZE, *FAMILY, *LEVELS, "--states", "overturning", "--out", f"p58={file}")
+    code, out, _ = run(*SIZE, *FAMILY, *LEVELS, "--states", "overturning", "--output", f"p58={file}")
     assert code == 0
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
     assert [row["Damage State Description"] for row in rows] == ["overturned"]
     assert "rotation > 0.5" not in out
     # the outcomes of the lesser state form a step, which no common dispersion describes
-    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,overturning", "--out", f"p58={file}")
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,overturning", "--output", f"p58={file}")
     assert code == 2
     assert "They are kept, since no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
     assert "leave one out with --states" in err
@@ -317,7 +317,7 @@ def test_states_are_chosen(run, answered, tmp_path):
 def test_counts_as_csv(answered, tmp_path):
     """Counts at each level and the fitted probability, the lognormal distribution of median and dispersion."""
     path = tmp_path / "c.csv"
-    answer = answered(*SIZE, *FAMILY, *LEVELS, "--out", path)
+    answer = answered(*SIZE, *FAMILY, *LEVELS, "--output", path)
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     assert [float(row["pga [m/s2]"]) for row in rows] == answer["levels"]
     curve = answer["results"][0]["curves"]["overturned"]
@@ -339,14 +339,14 @@ def test_pictures(run, tmp_path, analysis):
         "cloud": ("--analysis", "cloud", "--factor", "4"),
         "comparison": (*LEVELS, "--restitution", "ked", "--restitution", "0.8"),
     }[analysis]
-    assert run(*SIZE, *FAMILY, *words, "--out", path)[0] == 0
+    assert run(*SIZE, *FAMILY, *words, "--output", path)[0] == 0
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
 def test_nothing_to_export(run, tmp_path):
     """Where there is no curve the numbers are printed, then one sentence says why there is no file."""
     path = tmp_path / "n.xml"
-    code, out, err = run(*SIZE, *FAMILY, "--levels", "0.05g,0.1g", "--out", path)
+    code, out, err = run(*SIZE, *FAMILY, "--levels", "0.05g,0.1g", "--output", path)
     assert code == 2
     assert "Nothing failed" in out
     assert err.startswith("rocking: nothing to export: no state")

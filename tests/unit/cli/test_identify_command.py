@@ -54,7 +54,7 @@ def times_file(path, times, jitter=1e-4, seed=1):
 def test_a_student_with_a_phone(printed, phone, rocked, tmp_path, monkeypatch):
     """One command, one picture, one number whose interval has the coefficient with which the block rocked."""
     monkeypatch.chdir(tmp_path)
-    page = printed(phone, *SIZE, "--out", "phone.png")
+    page = printed(phone, *SIZE, "--output", "phone.png")
     said = page.splitlines()[0]
     assert said.startswith("The coefficient of restitution is 0.91")
     low, high = (float(word) for word in said.partition("(")[2].partition(")")[0].split(" to "))
@@ -87,7 +87,7 @@ def test_every_file_says_the_same(run, rocked, tmp_path):
     """Tables, pictures and reports, of times of impacts; the report names models and doubts."""
     path = times_file(tmp_path / "times.csv", rocked[0])
     files = [tmp_path / f"found.{ending}" for ending in ("csv", "nc", "xlsx", "png", "html")]
-    code, out, err = run(path, *SIZE, *(f"--out={file}" for file in files))
+    code, out, err = run(path, *SIZE, *(f"--output={file}" for file in files))
     assert (code, err) == (0, "")
     with files[0].open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -121,7 +121,7 @@ def test_rotations_need_what_they_say(printed, refuses, tmp_path):
     refuses((path, *SIZE, *column), "or give --set measurement.unit=")
     unit = (*column, "--set", "measurement.unit=mm")
     refuses((path, *SIZE, *unit), "give --set measurement.height= of the sensor [m]")
-    page = printed(path, *SIZE, *unit, "--set", "measurement.height=0.3", "--out", tmp_path / "laser.png")
+    page = printed(path, *SIZE, *unit, "--set", "measurement.height=0.3", "--output", tmp_path / "laser.png")
     low, high = (float(word) for word in page.partition("(")[2].partition(")")[0].split(" to "))
     assert low < 0.9 < high < low + 0.02
     assert (tmp_path / "laser.png").stat().st_size > 10_000
@@ -195,22 +195,22 @@ def test_a_folder_is_resumed(run, printed, folder, tmp_path, monkeypatch):
         return answer(problem, path)
 
     monkeypatch.setattr(identification.IdentificationProblem, "answer", interrupted)
-    assert run(folder, "--out", table)[0] == 130
+    assert run(folder, "--output", table)[0] == 130
     assert len(table.read_text("utf-8").splitlines()) == 5  # a header, two good trials, two refused
-    out = printed(folder, "--out", table)
+    out = printed(folder, "--output", table)
     assert done[5:] == ["clapping.wav", "damaged.wav", "times_1.csv", "times_2.csv"]
     assert "2 of 6 were there already" in out
     whole = table.read_bytes()
     done.clear()
     table.write_bytes(whole[:-20])  # cut off in the last line
-    run(folder, "--out", table)
+    run(folder, "--output", table)
     assert done == ["clapping.wav", "damaged.wav", "times_2.csv"]
     assert table.read_bytes() == whole
     done.clear()
-    run(folder, "--out", table, "--set", "identify.tilt=0")
+    run(folder, "--output", table, "--set", "identify.tilt=0")
     assert len(done) == 6
     for what in (folder, folder / "times_0.csv"):
-        assert "is what is read, and would be written over" in run(what, *SIZE, "--out", folder / "times_0.csv")[2]
+        assert "is what is read, and would be written over" in run(what, *SIZE, "--output", folder / "times_0.csv")[2]
     (folder / "all.csv").write_bytes(whole)  # a table of trials is no trial
     assert "4 of 6 trials" in run(folder)[1]
 
@@ -261,7 +261,7 @@ def test_other_files_are_passed_over(printed, answered, refuses, rocked, tmp_pat
         "Passed over 4 files that are no recordings: more (a folder); notes.csv, readme.txt (no row of numbers); "
         "photo.jpg (another kind of file)."
     )
-    page = " ".join(printed(tmp_path, *SIZE, "--out", tmp_path / "all.html").split())
+    page = " ".join(printed(tmp_path, *SIZE, "--output", tmp_path / "all.html").split())
     assert said in page
     assert "the mean of 2 of 4 trials" in page
     assert said in (tmp_path / "all.html").read_text("utf-8")
@@ -278,7 +278,7 @@ def test_two_files_of_one_event_are_told(printed, answered, rocked, tmp_path):
     times_file(tmp_path / "again.csv", rocked[0])
     again = "1.csv and again.csv say the same: perhaps they are of one event, which counts 2 times."
     assert answered(tmp_path, *SIZE)["doubts"] == [again]
-    assert f"! {again}" in printed(tmp_path, *SIZE, "--out", tmp_path / "all.html")
+    assert f"! {again}" in printed(tmp_path, *SIZE, "--output", tmp_path / "all.html")
     assert again in (tmp_path / "all.html").read_text("utf-8")
 
 
@@ -307,7 +307,7 @@ def test_what_is_no_rocking_gives_no_number(run, tmp_path):
     """A metronome: exit code 2, why, and if asked for a picture of what was measured."""
     path, picture = tmp_path / "metronome.csv", tmp_path / "metronome.png"
     path.write_text("\n".join(["time [s]", *(f"{0.5 * k:.4f}" for k in range(1, 15))]), "utf-8")
-    code, out, err = run(path, *SIZE, "--out", picture)
+    code, out, err = run(path, *SIZE, "--output", picture)
     assert (code, out) == (2, "")
     assert "No coefficient of restitution" in err
     assert str(picture) in err
@@ -338,6 +338,6 @@ def test_200_trials_take_a_minute(answered, rocked, tmp_path):
     for k in range(200):
         times_file(tmp_path / f"{k:03d}.csv", rocked[0], seed=k)
     begun, spent = time.perf_counter(), sum(os.times()[:4])
-    assert len(answered(tmp_path, *SIZE, "--out", tmp_path / "all.csv")["trials"]) == 200
+    assert len(answered(tmp_path, *SIZE, "--output", tmp_path / "all.csv")["trials"]) == 200
     assert time.perf_counter() - begun < allowed(60.0)
     assert sum(os.times()[:4]) - spent < allowed(60.0)

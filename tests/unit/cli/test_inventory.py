@@ -59,7 +59,7 @@ def test_records_as_recorded_and_scaled(answered, objects, record):
 
 def test_report_is_written(printed, objects, tmp_path):
     """Files are written and named; a coefficient serves as restitution."""
-    out = printed(objects, "--pga", "0.3g", *FEW, "--restitution", "0.9", "--out", tmp_path / "out")
+    out = printed(objects, "--pga", "0.3g", *FEW, "--restitution", "0.9", "--output", tmp_path / "out")
     for kind in ("html", "pdf", "csv", "json"):
         assert (tmp_path / "out" / f"inventory.{kind}").stat().st_size > 500
         assert f"inventory.{kind}" in out
@@ -103,7 +103,7 @@ def test_no_object_assessed_is_a_failure(run, tmp_path):
     path = tmp_path / "list.csv"
     path.write_text("name,width_cm,depth_cm,height_cm\n" + "".join(f"x{k},?,1,1\n" for k in range(7)), "utf-8")
     out = tmp_path / "out"
-    for words in (("--out", out), ("--out", tmp_path / "x.pdf"), ("--json",)):
+    for words in (("--output", out), ("--output", tmp_path / "x.pdf"), ("--json",)):
         code, told, error = run(path, "--pga", "0.3g", *FEW, *words)
         assert (code, told) == (1, "")
         assert error.startswith("rocking: list.csv: no object could be assessed")
@@ -117,7 +117,7 @@ def test_a_row_that_cannot_be_assessed_is_no_failure(printed, tmp_path):
     """The control: with one object beside them the status is 0 and the report is there."""
     path = tmp_path / "list.csv"
     path.write_text("name,width_cm,depth_cm,height_cm\nx,?,1,1\nvase,20,20,60\n", "utf-8")
-    printed(path, "--pga", "0.3g", *FEW, "--out", tmp_path / "x.csv")
+    printed(path, "--pga", "0.3g", *FEW, "--output", tmp_path / "x.csv")
     assert (tmp_path / "x.csv").exists()
 
 

@@ -103,7 +103,7 @@ def test_several_restitutions(run, printed, tmp_path):
         assert one["count"] == int((falls[0] != falls[1]).sum())
         assert one["share"] == one["count"] / (13 * 19)
     assert pairs["ked", "0.8"]["count"] > 0
-    out = printed(*words, "--out", tmp_path / "a.csv", "--out", tmp_path / "a.nc")
+    out = printed(*words, "--output", tmp_path / "a.csv", "--output", tmp_path / "a.nc")
     assert "The choice between ked and housner changes the verdict" in out
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -118,7 +118,7 @@ def test_several_restitutions(run, printed, tmp_path):
 def test_files(printed, tmp_path):
     """Picture, table and netCDF are written and named; the table holds all digits."""
     files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]
-    options = [word for name, path in zip(("--out", "--out", "--out"), files, strict=True)
+    options = [word for name, path in zip(("--output", "--output", "--output"), files, strict=True)
                for word in (name, path)]  # fmt: skip
     out = printed(*SIZE, PULSE, *AXES, "--refine", 2, *options)
     assert all(f"wrote {path}" in out and path.stat().st_size > 2000 for path in files)

@@ -62,7 +62,7 @@ def test_a_file_says_everything(printed, tmp_path):
 def test_what_is_printed_and_written(printed, tmp_path):
     picture, table = tmp_path / "found.png", tmp_path / "found.csv"
     out = printed(
-        *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--out", str(picture), "--out", str(table)
+        *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--output", str(picture), "--output", str(table)
     )
     assert out.startswith("Overturning is ")
     assert "not sampled:  placement" in out
@@ -108,7 +108,7 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
 def test_reports_say_what_was_said(printed, tmp_path):
     """The page has the verdict, what was assumed and the numbers; an ending that is none is refused."""
     page = tmp_path / "found.html"
-    out = printed(*SIZE, PULSE, *FEW, "--out", str(page))
+    out = printed(*SIZE, PULSE, *FEW, "--output", str(page))
     text = page.read_text("utf-8")
     assert out.splitlines()[0] in text
     assert "placement" in text

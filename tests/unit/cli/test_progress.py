@@ -74,7 +74,7 @@ def test_campaigns_have_lines(capsys):
 @pytest.mark.parametrize(
     ("place", "words", "line"),
     [
-        ("rocking.reports.paper_document.reproduce", ("paper",), "recomputing tables and claims"),
+        ("rocking.reports.paper_document.reproduce", ("reproduce",), "recomputing tables and claims"),
         ("rocking.spec.prediction.PredictionProblem.of", ("predict", *BLOCK), "reading body and motions"),
         ("rocking.spec.prediction.PredictionProblem.answer", ("predict", *BLOCK), "motions: 0 of 1"),
         ("rocking.spec.prediction.PredictionProblem.of", ("assess", *BLOCK), "reading body and motions"),

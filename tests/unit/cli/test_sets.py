@@ -37,19 +37,19 @@ ALONG = "simulate prism.toml x=record.txt --motion y=other.txt --units m/s2 --se
 
 SAME = {
     "a pulse is scaled": (f"simulate {SIZE} {PULSE} --set motion.scale=2", f"simulate {SIZE} {PULSE} --scale 2"),
-    "a pulse that is shown": (f"motion {PULSE} --set motion.scale=2", f"motion {PULSE} --scale 2"),
+    "a pulse that is shown": (f"record show {PULSE} --set motion.scale=2", f"record show {PULSE} --scale 2"),
     "a solid": (f"simulate prism.toml {PULSE} --set motion.scale=2", f"simulate prism.toml {PULSE} --scale 2"),
     "a value for the usual model": (
         f"simulate {SIZE} {PULSE} --set restitution.value=0.9", f"simulate {SIZE} {PULSE} --restitution 0.9",
     ),
-    "sizes": ("cor --set body.width=0.5 --set body.height=2", f"cor {SIZE}"),
+    "sizes": ("restitution --set body.width=0.5 --set body.height=2", f"restitution {SIZE}"),
     "let go": (f"simulate {SIZE} --set response.free=0.5", f"simulate {SIZE} --free 0.5"),
     "seed of a family": (
         f"fragility {SIZE} {FAMILY} --levels 1,4 --set motion.seed=3",
         f"fragility {SIZE} {FAMILY} --levels 1,4 --seed 3",
     ),
     "gravity of a body in a file": (
-        f"cor {SIZE} --density 1000", "cor free.toml --set body.density=1000",
+        f"restitution {SIZE} --density 1000", "restitution free.toml --set body.density=1000",
     ),
 }  # fmt: skip
 
@@ -80,16 +80,16 @@ def test_a_file_says_how_curves_that_cross_are_written(refuses, run, monkeypatch
     export = '[export]\ncrossing = "common-dispersion"\n'
     Path("stripes.toml").write_text(STRIPES + export)
     for more in ("", " --crossing refuse --name vase"):
-        run(*f"fragility stripes.toml --out p58=curves.csv{more}".split())
+        run(*f"fragility stripes.toml --output p58=curves.csv{more}".split())
     assert seen == [("common-dispersion", None), ("refuse", "vase")]
     Path("stripes.toml").write_text(f"{STRIPES}{export}bootstrap = 99\n")
     refuses(("fragility", "stripes.toml"), "export.bootstrap is for files of rocking campaign")
 
 
 def test_numbers_are_whole_in_a_narrow_terminal(run, monkeypatch):
-    """`rocking motion` folds words, never a value."""
+    """`rocking record show` folds words, never a value."""
     monkeypatch.setenv("COLUMNS", "46")
-    rows = run(*f"motion {PULSE}".split())[1].splitlines()
+    rows = run(*f"record show {PULSE}".split())[1].splitlines()
     assert next(row for row in rows if row.startswith("  Peak ground velocity")).split()[-2:] == ["0.81487", "m/s"]
     assert [len(row.split()) for row in rows[-6:]] == [5] * 6
 
@@ -97,7 +97,7 @@ def test_numbers_are_whole_in_a_narrow_terminal(run, monkeypatch):
 JOBS = examples.path("overturning-map").parent
 KINDS = {
     "map": ["overturning-map", "refined-map"],
-    "minimum": ["minimum-acceleration"],
+    "overturning-pga": ["minimum-acceleration"],
     "spectrum": ["rocking-spectrum"],
     "fragility": ["stripes", "cloud", "incremental"],
     "inventory": ["inventory"],
@@ -139,6 +139,6 @@ def test_a_scale_that_is_set_is_that_of_the_option(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("record.txt").write_text("".join(f"{0.01 * k:.2f} {(-1) ** k * 0.5}\n" for k in range(200)))
     ways = (["--set", "motion.scale=2"], ["--scale", "2"])
-    first, second = (run("motion", "record.txt", "--units", "m/s2", *way) for way in ways)
+    first, second = (run("record", "show", "record.txt", "--units", "m/s2", *way) for way in ways)
     assert first == second
     assert first[0] == 0

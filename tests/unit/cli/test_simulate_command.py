@@ -197,7 +197,7 @@ def test_a_model_that_does_not_fit_says_why(capsys):
 def test_files(run, printed, tmp_path):
     """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
     paths = {ending: tmp_path / f"a.{ending}" for ending in ("svg", "html", "csv", "mat")}
-    out = printed(*SIZE, PULSE, *(word for path in paths.values() for word in ("--out", path)))
+    out = printed(*SIZE, PULSE, *(word for path in paths.values() for word in ("--output", path)))
     assert out.splitlines()[-4:] == [f"wrote {path}" for path in paths.values()]
     expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
     with paths["csv"].open(encoding="utf-8") as file:
@@ -208,7 +208,7 @@ def test_files(run, printed, tmp_path):
     assert "angular" in paths["svg"].read_text(encoding="utf-8")
     assert paths["mat"].stat().st_size > 1000
     gif = tmp_path / "a.GIF"
-    assert run(*SIZE, "--free", "0.1", "--restitution", "0.1", "--out", gif)[0] == 0
+    assert run(*SIZE, "--free", "0.1", "--restitution", "0.1", "--output", gif)[0] == 0
     with Image.open(gif) as film:
         assert film.format == "GIF"
 
@@ -219,7 +219,7 @@ def test_netcdf(run, tmp_path):
     import xarray
 
     path = tmp_path / "a.nc"
-    assert run(*SIZE, PULSE, "--out", path)[0] == 0
+    assert run(*SIZE, PULSE, "--output", path)[0] == 0
     with xarray.open_dataset(path, engine="h5netcdf") as found:
         np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)
 
@@ -242,7 +242,7 @@ def test_a_library_that_is_missing_below_is_told(run, tmp_path, monkeypatch):
         raise ImportError("no backend for this")
 
     monkeypatch.setattr(rk.Response, "to_netcdf", broken)
-    code, out, err = run(*SIZE, PULSE, "--out", tmp_path / "a.nc")
+    code, out, err = run(*SIZE, PULSE, "--output", tmp_path / "a.nc")
     assert (code, out) == (2, "")
     assert err.endswith("no backend for this\n")
 

@@ -47,7 +47,7 @@ def test_complementarity_is_housner(answered):
 def test_page_and_files(run, tmp_path):
     """Modes in words, impacts, what slid and what was lost are on the page; every file is written and opens."""
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc")}
-    words = ("--out", files["png"], "--out", files["csv"], "--out", files["mat"], "--out", files["nc"])
+    words = ("--output", files["png"], "--output", files["csv"], "--output", files["mat"], "--output", files["nc"])
     slides = ("--width", "1.2", "--height", "2", "sine:amplitude=9,period=0.9", "--friction", "0.62", "--details")
     code, out, err = run(*slides, *words)
     assert (code, err) == (0, "")

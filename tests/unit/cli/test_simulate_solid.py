@@ -82,7 +82,7 @@ def test_three_components_of_one_file(answered, body, record):
 def test_page_and_files(printed, body, tmp_path):
     """Body, motions, outcome, contacts and impacts are on the page; every file is written and opens."""
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc", "html")}
-    words = (word for path in files.values() for word in ("--out", path))
+    words = (word for path in files.values() for word in ("--output", path))
     out = printed(body, SINE, "--motion", "y=sine:amplitude=2.9,period=0.6", "--details", *words)
     for said in ("prism, 0.5 x 0.5 x 2 m, 1200 kg", "ked-3d", "turning about a vertex", "Peak tilt"):
         assert said in out

@@ -15,9 +15,9 @@ COMMANDS = {
     "simulate": SIZE,
     "predict": (*SIZE, "--set", "predict.count=4", "--set", "predict.shares=false"),
     "assess": (*SIZE, "--restitution", "0.9", "--set", "predict.count=4", "--set", "predict.shares=false"),
-    "codes": SIZE,
+    "code-checks": SIZE,
     "map": (*SIZE, "--x", "pga=1,2", "--y", "width=0.4,0.5"),
-    "minimum": (*SIZE, "--points", "8"),
+    "overturning-pga": (*SIZE, "--points", "8"),
     "fragility": (*SIZE, "--levels", "1,2"),
     "inventory": (),
 }
@@ -57,7 +57,7 @@ def test_the_floor_is_in_the_report(run, record, tmp_path, command):
     """Reports contain the floor and all steps; the report of the ground motion does not contain the floor."""
     pytest.importorskip("jinja2")
     page, sha = tmp_path / "report.html", hashlib.sha256(record.read_bytes()).hexdigest()
-    code, _, err = run(*words_of(command, record, tmp_path), "--out", page)
+    code, _, err = run(*words_of(command, record, tmp_path), "--output", page)
     assert code == 0, err
     text = page.read_text("utf-8")
     assert all(each in text for each in (*SAID, sha))
@@ -66,7 +66,7 @@ def test_the_floor_is_in_the_report(run, record, tmp_path, command):
         assert "PFA" in text
         assert "motion of the ground" not in text
         # negative control: of the record itself nothing speaks of a floor
-        code, _, _ = run(*words_of(command, record, tmp_path)[:-2], "--out", page)
+        code, _, _ = run(*words_of(command, record, tmp_path)[:-2], "--output", page)
         assert "PFA" not in page.read_text("utf-8")
 
 
@@ -99,11 +99,11 @@ def test_curves_of_a_floor_are_not_of_the_ground(run, tmp_path):
              "--levels", "0.15g:1.2g:9", "--states", "overturning")  # fmt: skip
     table, nrml = tmp_path / "pelicun.csv", tmp_path / "nrml.xml"
     for process, demand in (((), "Peak Ground Acceleration"), (("--set", FLOOR), "Peak Floor Acceleration")):
-        code, page, err = run(*words, *process, "--out", f"pelicun={table}")
+        code, page, err = run(*words, *process, "--output", f"pelicun={table}")
         assert code == 0, err
         assert f",{demand},g,0,1," in table.read_text("utf-8")
         assert ("peak floor acceleration, floor 3 of 5" in page) == bool(process)
-        code, _, err = run(*words, *process, "--out", nrml)
+        code, _, err = run(*words, *process, "--output", nrml)
         assert (code == 0) == nrml.exists() == (not process), err
         nrml.unlink(missing_ok=True)
     assert "these motions are of floor 3 of 5" in err

@@ -37,7 +37,7 @@ def test_json_is_the_python_call(answered):
 def test_page_and_files(printed, tmp_path):
     """A heading for every motion, a line for every slenderness; files are named and hold all digits."""
     files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc")]
-    options = [word for pair in zip(("--out", "--out", "--out"), files, strict=True) for word in pair]
+    options = [word for pair in zip(("--output", "--output", "--output"), files, strict=True) for word in pair]
     out = printed(SINE, COSINE, *FEW, *options)
     lines = out.splitlines()
     for name in ("sine pulse, 3 m/s2, 0.8 s", "cosine pulse, 3 m/s2, 0.8 s"):

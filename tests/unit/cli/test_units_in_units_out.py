@@ -29,7 +29,7 @@ def numbers(axis):
 def test_map_in_g_and_degrees(printed, drawn, tmp_path):
     """A map over PGA in g and alpha in degrees has those units on its axes and in its sentences."""
     axes = ("--x", "pga=0.1g:1.5g:8", "--y", "slenderness_angle=5deg:20deg:6")
-    out = printed("map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
+    out = printed("map", *SIZE, PULSE, *axes, "--output", str(tmp_path / "map.png"))
     assert "pga, 0.1 to 1.5 g" in out
     assert "slenderness_angle, 5 to 20 deg" in out
     assert "m/s2" not in out.replace("3 m/s2", "")
@@ -48,7 +48,7 @@ def test_fragility_in_g(printed, analysis, drawn, tmp_path):
     """Levels in g give medians in g, and axes in g."""
     motions = ("--synthetic", "pulse-like", "--count", "12", "--seed", "1", "--levels", "0.1g:1.5g:6")
     where = str(tmp_path / "curves.png")
-    out = printed("fragility", *SIZE, *motions, "--analysis", analysis, "--out", where)
+    out = printed("fragility", *SIZE, *motions, "--analysis", analysis, "--output", where)
     assert "median [g]" in out
     (figure,) = drawn
     labels = [axes.get_xlabel() for axes in figure.axes] + [axes.get_ylabel() for axes in figure.axes]
@@ -59,7 +59,7 @@ def test_fragility_in_g(printed, analysis, drawn, tmp_path):
 def test_without_a_unit_nothing_changes(printed, drawn, tmp_path):
     """Negative control: numbers without a unit are in m/s2, and so is the picture."""
     axes = ("--x", "pga=1:15:8", "--y", "slenderness_angle=0.1:0.3:6")
-    out = printed("map", *SIZE, PULSE, *axes, "--out", str(tmp_path / "map.png"))
+    out = printed("map", *SIZE, PULSE, *axes, "--output", str(tmp_path / "map.png"))
     assert "pga, 1 to 15 m/s2" in out
     assert drawn[0].axes[0].get_xlabel() == "peak ground acceleration [m/s$^2$]"
 
@@ -104,7 +104,7 @@ RADIUS = "slenderness angle 14.04 deg, R 1030.8 mm, p 2.6712 rad/s"  # R = sqrt(
     [
         ("simulate", ()),
         ("map", ("--x", "scale=1:2:3", "--y", "slenderness_angle=5deg:20deg:3")),
-        ("minimum", ("--points", "12", "--levels", "1")),
+        ("overturning-pga", ("--points", "12", "--levels", "1")),
         ("fragility", ("--levels", "0.2g,0.4g")),
     ],
 )
@@ -119,7 +119,7 @@ def test_block_in_mm_is_told_in_mm(printed, command, more, record):
 
 def test_centre_of_a_block_in_mm(printed):
     """Half of 500 and of 2000 mm."""
-    out = printed("cor", *IN_MM[:-1], "mm")
+    out = printed("restitution", *IN_MM[:-1], "mm")
     assert "centre of mass 250, 1000 mm" in out
     assert RADIUS in out
 
@@ -134,7 +134,7 @@ def test_slip_in_mm(printed, record):
     assert slid[1] == pytest.approx(1000.0 * slid[0], rel=1e-3)
 
 
-@pytest.mark.parametrize("command", ["cor", "simulate"])
+@pytest.mark.parametrize("command", ["restitution", "simulate"])
 def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     """A mesh of 500 x 600 x 2000 mm: its size, centre, base and edges in mm."""
     shape = box(500.0, 600.0, 2000.0)
@@ -144,20 +144,20 @@ def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     ground = (record, "--units", "mm,g") if command == "simulate" else ("--units", "mm")
     out = printed(command, str(path), *ground)
     assert "500 x 600 x 2000 mm" in out
-    if command == "cor":
+    if command == "restitution":
         assert "centre of mass 0, 0, 1000 mm" in out
         assert "(-250, -300)" in out
-    if command == "cor":
+    if command == "restitution":
         assert "R [mm]" in out
         assert "1030.8" in out  # sqrt(250^2 + 1000^2)
 
 
 def test_accelerations_stand_in_the_unit_of_the_record_beside_g(printed, record):
     """A record in gal: its peak, its spectrum, and what lifts and overturns a block are in gal; one in g, in m/s2."""
-    out = printed("motion", record, "--units", "gal")
+    out = printed("record", "show", record, "--units", "gal")
     assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
     assert "0.33 gal (0.00033651 g)" in out
-    assert "PSA [m/s2]" in printed("motion", record, "--units", "g")
-    out = printed("minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
+    assert "PSA [m/s2]" in printed("record", "show", record, "--units", "g")
+    out = printed("overturning-pga", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
     assert "lifts it:     245.166 gal (0.25 g)" in out  # g tan(alpha) = 980.665 / 4
     assert "m/s2" not in out

@@ -1,4 +1,4 @@
-"""`--motion x=FILE --motion z=FILE` and `rocking motion x=FILE z=FILE`: the vertical component in a file of its own."""
+"""`--motion x=FILE --motion z=FILE` and `rocking record show x=FILE z=FILE`: a vertical component in its own file."""
 
 import numpy as np
 import pytest
@@ -32,16 +32,16 @@ def test_both_files_reach_the_engine(answered, files):
 
 
 def test_motion_tells_both(run, answered, files, tmp_path):
-    """`rocking motion` tells the peak and the name of the vertical part, both files, and writes its samples."""
+    """`rocking record show` tells the peak and the name of the vertical part, both files, and writes its samples."""
     along, up = files
-    answer = answered("motion", along, f"z={up}", "--out", tmp_path / "out.csv")
+    answer = answered("record", "show", along, f"z={up}", "--output", tmp_path / "out.csv")
     assert answer["intensity"]["pga"] == pytest.approx(np.abs(ALONG).max(), rel=1e-6)
     assert answer["peak_vertical_acceleration"] == pytest.approx(2.0, rel=1e-6)
     assert answer["vertical_component"] == "UP"
     assert [name in line for name, line in zip(("90.at2", "UP.at2"), answer["provenance"], strict=True)] == [True] * 2
     assert "vertical_acceleration [m/s2]" in (tmp_path / "out.csv").read_text(encoding="utf-8")
-    assert "Peak vertical acceleration" in run("motion", along, f"z={up}")[1]
-    assert answered("motion", along)["peak_vertical_acceleration"] is None
+    assert "Peak vertical acceleration" in run("record", "show", along, f"z={up}")[1]
+    assert answered("record", "show", along)["peak_vertical_acceleration"] is None
 
 
 def test_a_file_of_several_components(refuses, answered, files, tmp_path):
@@ -49,8 +49,11 @@ def test_a_file_of_several_components(refuses, answered, files, tmp_path):
     table = tmp_path / "table.txt"
     table.write_text("\n".join(f"{t:.2f} {a:.7f} {b:.7f}" for t, a, b in zip(TIME, ALONG, UP, strict=True)))
     units = ("--units", "m/s2")
-    both = answered("motion", f"{table}#column 2", f"z={table}#column 3", *units)
+    both = answered("record", "show", f"{table}#column 2", f"z={table}#column 3", *units)
     assert both["peak_vertical_acceleration"] == pytest.approx(2.0, rel=1e-6)
-    refuses(("motion", table, f"z={table}#column 3", *units), f"say which one: '{table}#column 2'")
+    refuses(("record", "show", table, f"z={table}#column 3", *units), f"say which one: '{table}#column 2'")
     components = "the file has the components column 2, column 3; "
-    refuses(("motion", f"{table}#column 2", f"z={table}", *units), f"{components}say which one: '{table}#column 2' or")
+    refuses(
+        ("record", "show", f"{table}#column 2", f"z={table}", *units),
+        f"{components}say which one: '{table}#column 2' or",
+    )

@@ -298,7 +298,7 @@ def test_an_empty_store(monkeypatch, tmp_path):
     """Without a store the published rows alone are selected; own ones are asked for; a file in its place is told."""
     monkeypatch.setattr(store, "data_folder", lambda: tmp_path / "data")
     assert store.selected() is all_measurements()
-    with pytest.raises(InvalidValueError, match="rocking evidence add"):
+    with pytest.raises(InvalidValueError, match="rocking measurements add"):
         store.selected(["own"])
     (tmp_path / "data").write_text("a file")
     (tmp_path / "oak.toml").write_text(TOML, "utf-8")

@@ -481,7 +481,7 @@ def test_many_numbers_a_line_go_on_row_after_row() -> None:
 
 
 def test_our_own_tables_read_back_without_options(made_up) -> None:
-    """Columns that are written state their unit; so do the tables of `rocking motion`, which hold velocities beside."""
+    """Columns that are written state their unit; so do the tables of `rocking record show`, with velocities."""
     record = made_up("N-S", "a [odd], name", unit="g")
     again = COLUMNS.read(_source(COLUMNS.write(record).decode()))
     assert [(part.name, part.unit) for part in again.components] == [("N-S", "g"), ("a odd name", "g")]

@@ -87,7 +87,7 @@ def test_a_folder_as_data_centres_deliver_it(tmp_path, printed):
         for part in taken_out.parts:
             assert part.acceleration == pytest.approx(burst(), abs=3e-3 * 3.0)  # 900 counts/(m/s2) round to 0.1 %
     step = f"motion.process=response:stations={tmp_path},low=0.2,high=30"
-    assert "by XX.DEF.xml, SHA-256 " in printed("motion", tmp_path / "XX.DEF..HNE.mseed", "--set", step)
+    assert "by XX.DEF.xml, SHA-256 " in printed("record", "show", tmp_path / "XX.DEF..HNE.mseed", "--set", step)
 
 
 def test_a_sensor_that_stands_upside_down(tmp_path):

@@ -75,7 +75,7 @@ def test_pdf_takes_any_words(folder):
     ],
 )
 def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, monkeypatch):
-    """Without an optional package the folder of `rocking paper` has everything else, and says what it has not."""
+    """Without an optional package the folder of `rocking reproduce` has everything else, and says what it has not."""
     monkeypatch.setattr(paper_folder, "paper_document", lambda _: document())
     monkeypatch.setattr(paper_folder, "write_html", lambda content, _, path: write_html(content, folder, path))
     monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
@@ -95,7 +95,7 @@ def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, mon
 
 
 def test_claims_need_no_labelled_arrays(monkeypatch):
-    """Without xarray every claim is judged: `rocking paper` loses nothing, not even the claim on large bodies."""
+    """Without xarray every claim is judged: `rocking reproduce` loses nothing, not even the claim on large bodies."""
     from rocking.evidence import claims
 
     with monkeypatch.context() as without:

@@ -64,7 +64,7 @@ BodyInFile: Any = shape(
 
 @router.post("/body", summary="What a body is", responses=answered(DescribedBody, "The body."))
 async def body(request: Request, inputs: BodyRequest) -> JsonAnswer:
-    """Answer with the keys of `body` of `rocking cor --json`, the polygons that draw it, and its warnings."""
+    """Answer with the keys of `body` of `rocking restitution --json`, the polygons that draw it, and its warnings."""
     gravity = inputs.settings.gravity or g
     described_body = await sized(
         request, size_of(inputs.body), lambda: described(body_from(inputs.body), gravity, inputs.body.name)

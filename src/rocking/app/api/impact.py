@@ -77,7 +77,7 @@ ImpactAnswered: Any = shape(
     body=DrawnBody,
     ked_energy_shares=dict[Foot, Shares],
     coefficients=(dict[Foot, list[CoefficientFacts]], "every model, the calibrated default first"),
-    identities=(dict[str, dict[str, bool]], "empty here; `rocking cor --identities --json` fills it"),
+    identities=(dict[str, dict[str, bool]], "empty here; `rocking restitution --identities --json` fills it"),
     titles=(dict[str, str], "name of a model to its title"),
     measured=Measured,
     curves=list[ModelCurve],
@@ -93,7 +93,7 @@ ImpactAnswered: Any = shape(
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
 async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
-    """Answer with the keys of `rocking cor --json`, and what its pictures are drawn from.
+    """Answer with the keys of `rocking restitution --json`, and what its pictures are drawn from.
 
     `measured` and `curves` are for the picture; `stages` by foot has velocities at points of the body for the three
     stages of KED; `warnings` are in plain words, each with the models that it concerns.

@@ -71,7 +71,7 @@ MotionAnswered: Any = shape(
 
 @router.post("/motion", summary="What a motion is", responses=answered(MotionAnswered, "The motion."))
 async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
-    """Answer with the keys of `rocking motion --json` but its spectrum.
+    """Answer with the keys of `rocking record show --json` but its spectrum.
 
     `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
     given; `spectrum` at 100 periods for 5 % damping; `measures` as a list.

@@ -65,7 +65,7 @@ def _words(evaluation: Evaluation, record: str | None) -> str:
             "",
             *(f"  {plain_line(command, 4000)}" for command in typed),
             "",
-            "Add --json for all numbers, --out response.svg for the picture, --out response.csv for the samples.",
+            "Add --json for all numbers, --output response.svg for the picture, --output response.csv for the samples.",
             "",
             f"{evaluation.about['software']}; SHA-256 of the inputs: {fingerprint(evaluation.inputs)}",
             "",

@@ -30,25 +30,25 @@ from rocking.motions.formats import formats
 from rocking.restitution.from_file import file_of
 
 Command = Literal[
-    "assess", "predict", "identify", "inventory", "convert", "motions", "minimum", "equilibria", "cor", "simulate",
-    "paper",
+    "assess", "predict", "identify", "inventory", "record convert", "record batch", "overturning-pga", "equilibria",
+    "restitution", "simulate", "reproduce",
 ]  # fmt: skip
 OUTPUTS: dict[str, tuple[str, ...]] = {
     "assess": ("picture.svg", "report.pdf", "report.html"),
     "predict": ("picture.svg", "report.pdf", "table.csv"),
     "identify": ("picture.svg", "report.pdf", "table.xlsx"),
     "equilibria": ("picture.svg", "space.glb", "table.csv"),
-    "cor": ("picture.svg", "space.glb", "table.csv"),
+    "restitution": ("picture.svg", "space.glb", "table.csv"),
     "simulate": ("picture.svg", "space.glb", "table.csv"),
     "inventory": ("inventory.html", "inventory.pdf", "inventory.xlsx", "inventory.csv"),
-    "convert": ("picture.svg", "record.csv", "provenance.json"),
-    "motions": ("picture.svg", "table.csv", "table.xlsx"),
-    "minimum": ("picture.svg", "table.csv"),
-    "paper": ("report.html", "report.pdf", "results.json"),
+    "record convert": ("picture.svg", "record.csv", "provenance.json"),
+    "record batch": ("picture.svg", "table.csv", "table.xlsx"),
+    "overturning-pga": ("picture.svg", "table.csv"),
+    "reproduce": ("report.html", "report.pdf", "results.json"),
 }
 """Commands, and the files that they write beside their answer."""
 
-WITHOUT_FILE = "paper"  # the command that takes none, and writes a folder
+WITHOUT_FILE = "reproduce"  # the command that takes none, and writes a folder
 FOLDER = "records"  # of a question, in which the files of a set are
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
 _SECONDS = 1800.0  # longest time of a question [s]
@@ -79,6 +79,12 @@ class HostedQuestion:
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
+SCHEMA = 2  # of the notes on the disk; without a number it is 1
+_RENAMED = {
+    "cor": "restitution", "minimum": "overturning-pga", "convert": "record convert", "motions": "record batch",
+    "paper": "reproduce",
+}  # fmt: skip
+"""Commands of schema 1 that have another name since."""
 _LOG_OF_SERVER = logging.getLogger(__name__)
 
 
@@ -110,7 +116,7 @@ class QuestionDesk:
         """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
         if command not in OUTPUTS:
             raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
-        if format and (command != "convert" or format not in formats()):
+        if format and (command != "record convert" or format not in formats()):
             raise Refused(
                 "{parameter} is that of a record that convert writes, one of {names}", parameter="format",
                 names=", ".join(formats()),
@@ -215,7 +221,7 @@ class QuestionDesk:
         found = []
         for place in list(self.folder.iterdir()):
             try:
-                question = _QUESTION.validate_json((place / _NOTE).read_bytes())
+                question = _QUESTION.validate_python(_migrated(json.loads((place / _NOTE).read_bytes())))
             except FileNotFoundError:  # half written when that server ended
                 if not place.is_symlink():
                     shutil.rmtree(place, ignore_errors=True)
@@ -255,7 +261,7 @@ class QuestionDesk:
         with self._changed:
             self._questions[question.id] = question
         with suppress(OSError):  # a full disk: a restart asks once more
-            write_new(self.folder / question.id / _NOTE, json.dumps(asdict(question)).encode())
+            write_new(self.folder / question.id / _NOTE, json.dumps({"schema": SCHEMA, **asdict(question)}).encode())
 
     def _work(self) -> None:
         """Answer what is in line, one after the other."""
@@ -358,8 +364,16 @@ class QuestionDesk:
         return None if known is None else known.state
 
 
+def _migrated(note: dict[str, Any]) -> dict[str, Any]:
+    """Return the note of a question of any schema as one of the present schema."""
+    if not isinstance(note, dict) or (schema := note.pop("schema", 1)) not in range(1, SCHEMA + 1):
+        raise ValueError
+    command = note.get("command")
+    return note if schema == SCHEMA else note | {"command": _RENAMED.get(str(command), command)}
+
+
 def _written(question: HostedQuestion) -> list[str]:
-    """Return what a question writes, as --out says it."""
+    """Return what a question writes, as --output says it."""
     form = question.format
     return [*OUTPUTS[question.command], *([f"{form}=record{formats()[form].suffixes[0]}"] if form else [])]
 
@@ -367,9 +381,9 @@ def _written(question: HostedQuestion) -> list[str]:
 def _command(question: HostedQuestion) -> list[str]:
     """Return the words of the command line that answer a question."""
     if question.command == WITHOUT_FILE:
-        return [question.command, "--json", "--out", "."]
-    outputs = [word for name in _written(question) for word in ("--out", name)]
-    return [question.command, QUESTION, "--json", *outputs]
+        return [*question.command.split(), "--json", "--output", "."]
+    outputs = [word for name in _written(question) for word in ("--output", name)]
+    return [*question.command.split(), QUESTION, "--json", *outputs]
 
 
 def refuse_outside(tables: dict[str, Any]) -> None:

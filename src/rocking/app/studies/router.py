@@ -149,7 +149,7 @@ async def export_study(
     kind: Kind,
     what: Annotated[
         str | None,
-        Query(max_length=40, description="WHAT of `rocking campaign export --out WHAT=FILE`"),
+        Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
     ] = None,
     restitution: Annotated[Whole, Query(description="of curves, counted from 0")] = 0,
     crossing: Annotated[Crossing | None, Query(description="what to do with fragility curves that cross")] = None,

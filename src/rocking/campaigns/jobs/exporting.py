@@ -215,7 +215,7 @@ def checked(
     if suffix not in ENDINGS[what]:
         hint = ".xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
         if suffix == ".nc" and what in {"refined", "boundary"}:
-            hint = "the .nc of the histories (--out histories=FILE.nc) holds points and polylines too"
+            hint = "the .nc of the histories (--output histories=FILE.nc) holds points and polylines too"
         raise InvalidValueError(
             "{content} can be written as {endings}, got {ending!r}", content=what, endings=", ".join(ENDINGS[what]),
             ending=suffix or "no ending", hint=hint,

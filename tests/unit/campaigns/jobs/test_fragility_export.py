@@ -124,8 +124,8 @@ def test_command_line(tmp_path, printed, monkeypatch):
     """`rocking campaign export` writes what the job asks for."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "job.toml").write_text(ASKED, encoding="utf-8")
-    printed("campaign", "run", "job.toml", "--out", "c")
-    printed("campaign", "export", "c", "--out", "fragility=r.csv")
+    printed("campaign", "run", "job.toml", "--output", "c")
+    printed("campaign", "export", "c", "--output", "fragility=r.csv")
     assert (tmp_path / "r.csv").read_bytes() == to_csv(from_python(99, 6), tmp_path / "w.csv").read_bytes()
 
 

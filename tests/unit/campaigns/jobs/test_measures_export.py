@@ -237,8 +237,8 @@ def test_command_line(tmp_path, answered, monkeypatch):
     """`rocking campaign export` takes the restitution of which it is: another has another ranking; JSON says what."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "job.toml").write_text(text_of("housner", "ked"), encoding="utf-8")
-    answered("campaign", "run", "job.toml", "--out", "c")
+    answered("campaign", "run", "job.toml", "--output", "c")
     for name in ("housner", "ked"):
-        told = answered("campaign", "export", "c", "--out", f"measures={name}.csv", "--restitution", name)
+        told = answered("campaign", "export", "c", "--output", f"measures={name}.csv", "--restitution", name)
         assert told["what"] == "measures"
     assert (tmp_path / "housner.csv").read_bytes() != (tmp_path / "ked.csv").read_bytes()

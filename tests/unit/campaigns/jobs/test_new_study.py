@@ -97,7 +97,12 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     job = Job.read(added / "job.toml")
     assert job.study.dims == {"motion": 2, "scale": 2}
     assert (job.problem.answer()["outcome"] == 2).any()
-    for words in ("check job.toml", "run job.toml --out c", "status c", "export c --out a.nc --out a.csv --out a.png"):
+    for words in (
+        "check job.toml",
+        "run job.toml --output c",
+        "status c",
+        "export c -o a.nc -o a.csv -o a.png",
+    ):
         arguments = [str(added / word) if "." in word or word == "c" else word for word in words.split()]
         with pytest.raises(SystemExit, match="0"):
             cli.main(["campaign", *arguments, "--json"])
@@ -131,7 +136,7 @@ def test_one_file_is_a_command(added, run, refuses, monkeypatch):
         "sine:amplitude=4,period=0.5",
         "ricker:amplitude=6,period=0.9",
     ]
-    files = [word for name in ("a.png", "a.csv") for word in ("--out", added / name)]
+    files = [word for name in ("a.png", "a.csv") for word in ("--output", added / name)]
     code, out, err = run(*words, "--factor", 2, "--json", *files)
     assert (code, err) == (0, "")
     answer = json.loads(out)

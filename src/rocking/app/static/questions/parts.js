@@ -135,10 +135,10 @@ const Files = ({ questions, question }) => html`
       ${wordsOf(name)}<//>`)}
   </div>
   <details><summary>Command line</summary>
-    ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} --out ${question.command}</pre>` : html`
-    <p class="field-help">${question.command === "motions"
+    ${!question.toml.trim() ? html`<pre tabindex="0">rocking ${question.command} -o ${question.command}</pre>` : html`
+    <p class="field-help">${question.command === "record batch"
       ? "Save this text as question.toml. Put its files in the same folder and the records in a folder named records:" : "Save this text as question.toml. Put its files in the same folder:"}</p>
-    <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` --out ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
+    <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` -o ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
 /** The picture of an answer, if it has one. @param {{ question: Server.WholeQuestion, alt: string }} props */

@@ -18,7 +18,7 @@ const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date:
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "assess", "predict", "minimum");
+  const questions = createQuestions(app, "assess", "predict", "overturning-pga");
   render(html`<${Decide} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
@@ -33,7 +33,7 @@ const Decide = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    if (what.value === "minimum") {
+    if (what.value === "overturning-pga") {
       wrong.value = app.faults.sentence({ inputs: true }) || crossings(app, questions, range.value);
       return;
     }
@@ -62,8 +62,8 @@ const Decide = ({ app, questions }) => {
       lead="Margin to overturning for all restitution models and both polarities, overturning probability and retrofit measures.">
       <${Choice} label="Analysis" value=${what} options=${[["assess", "margin and retrofit measures"],
         ["predict", "overturning probability and main uncertainties"],
-        ["minimum", "PGA intervals with overturning"]]} />
-      ${what.value === "minimum" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
+        ["overturning-pga", "PGA intervals with overturning"]]} />
+      ${what.value === "overturning-pga" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
         <p class="field-help">Uses the scaled motion of this project and the first restitution model.</p>` : html`
       <${Choice} label="Ground motions" value=${shaken} options=${FAMILIES} />
@@ -118,7 +118,7 @@ const crossings = (app, questions, range) => {
     campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
     minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
   };
-  questions.ask(tables, known.files, t("Overturning accelerations of {name}", { name: userText(body.name || app.project.here.value.name) }), { command: "minimum" });
+  questions.ask(tables, known.files, t("Overturning accelerations of {name}", { name: userText(body.name || app.project.here.value.name) }), { command: "overturning-pga" });
   return "";
 };
 
@@ -126,7 +126,7 @@ const crossings = (app, questions, range) => {
 const Found = (given) => html`<${FOUND[given.question.command] ?? Verdict} ...${given} />`;
 
 /** @type {{ [command: string]: ((given: Given) => VNode) | undefined }} */
-const FOUND = { minimum: (given) => Crossings(given), predict: (given) => Forecast(given) };
+const FOUND = { "overturning-pga": (given) => Crossings(given), predict: (given) => Forecast(given) };
 
 const G = 9.80665;
 const MOST = 20; // crossings in the table

@@ -19,7 +19,7 @@ const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "identify", "paper");
+  const questions = createQuestions(app, "identify", "reproduce");
   render(html`<${Measure} app=${app} questions=${questions} />`, section);
   return { shown: () => questions.look() };
 };
@@ -47,9 +47,9 @@ const Measure = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    if (what.value === "paper") {
+    if (what.value === "reproduce") {
       wrong.value = "";
-      questions.ask({}, {}, "Published measurements", { command: "paper" });
+      questions.ask({}, {}, "Published measurements", { command: "reproduce" });
       return;
     }
     const inputs = app.inputs.get();
@@ -66,8 +66,8 @@ const Measure = ({ app, questions }) => {
       title="Identification"
       lead="Release the tilted body and record its impacts. The impacts give the coefficient of restitution.">
       <${Choice} label="Analysis" value=${what} options=${[["identify", "my recording"],
-        ["paper", "published measurements"]]} />
-      ${what.value === "paper" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
+        ["reproduce", "published measurements"]]} />
+      ${what.value === "reproduce" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
       <${Button} aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
@@ -81,7 +81,7 @@ const Measure = ({ app, questions }) => {
 };
 
 /** @param {Given} given */
-const Found = (given) => (given.question.command === "paper" ? html`<${Published} ...${given} />` : html`<${Recording} ...${given} />`);
+const Found = (given) => (given.question.command === "reproduce" ? html`<${Published} ...${given} />` : html`<${Recording} ...${given} />`);
 
 /** @type {Words} */
 const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };

@@ -17,7 +17,7 @@ const FIRST = { files: [], curve: [], steps: [], motion: {}, by_file: {}, set: {
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
-  const questions = createQuestions(app, "convert", "motions");
+  const questions = createQuestions(app, "record convert", "record batch");
   const All = () => html`<${Records} key=${app.project.here.value.id} app=${app} questions=${questions} />`;
   render(html`<${All} />`, section);
   return { shown: () => questions.reopen() };
@@ -50,7 +50,7 @@ const Records = ({ app, questions }) => {
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
     const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
-    questions.ask(asked.tables, asked.files, asked.name, { command: single ? "convert" : "motions", format: single ? form.value.format : "" });
+    questions.ask(asked.tables, asked.files, asked.name, { command: single ? "record convert" : "record batch", format: single ? form.value.format : "" });
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Answer}
@@ -212,7 +212,7 @@ const setOf = ({ files, curve, steps, motion, by_file: byFile, set, of, code, li
 const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
 
 /** @param {Given} given */
-const Answer = (given) => (given.question.command === "convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
+const Answer = (given) => (given.question.command === "record convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
 
 const HEAD = [["samples", "samples"], ["time_step", "step [s]"], ["peak_ground_acceleration", "PGA [m/s\u00b2]"], ["peak_ground_velocity", "PGV [m/s]"],
   ["peak_ground_displacement", "PGD [m]"], ["end_velocity", "final velocity [m/s]"]];

@@ -11,9 +11,9 @@ import { Standing } from "/space/standing.js";
 import { t, userText } from "/app/words.js";
 
 const SCANS = ".stl,.obj,.ply,.glb,.xyz,.toml";
-const ASKED = [["equilibria", "stable poses"], ["cor", "coefficient of restitution by edge"], ["simulate", "response to a motion"]];
+const ASKED = [["equilibria", "stable poses"], ["restitution", "coefficient of restitution by edge"], ["simulate", "response to a motion"]];
 /** @type {{ [command: string]: string }} */
-const TITLES = { equilibria: "Stable poses: {name}", cor: "Edges: {name}", simulate: "Response: {name}" };
+const TITLES = { equilibria: "Stable poses: {name}", restitution: "Edges: {name}", simulate: "Response: {name}" };
 const UNITS = [["", "as in the file"], ["mm", "mm"], ["cm", "cm"], ["m", "m"], ["in", "in"], ["ft", "ft"]];
 const UP = [["", "default (z; GLB: y)"], ["z", "z"], ["y", "y"], ["x", "x"], ["-z", "z, upside down"]];
 /** @type {{ [axis: string]: number[] | undefined }} */
@@ -171,7 +171,7 @@ const shakenBy = (app, shaken, records, units, times) => {
 const Answer = ({ answer, question, onPose }) => {
   const scan = html`<${Taken} body=${answer.body} repairs=${answer.body.repairs} own=${!/^file = /m.test(question.toml)} />`;
   if (question.command === "equilibria") return html`<${Standing} question=${question} answer=${answer} onPose=${onPose}>${scan}<//>`;
-  if (question.command === "cor") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
+  if (question.command === "restitution") return html`<${Edges} question=${question} answer=${answer}>${scan}<//>`;
   return html`
     <p class=${`verdict ${answer.outcome === "overturned" ? "bad" : "good"}`} data-testid="verdict">${sentence(answer.summary)}</p>
     <${MotionScene} question=${question} answer=${answer} />

@@ -1,4 +1,4 @@
-"""`rocking motion`: numbers against closed forms, files against what was typed, and refusals in one sentence."""
+"""`rocking record show`: numbers against closed forms, files against what was typed, and refusals in one sentence."""
 
 import csv
 import math
@@ -8,7 +8,7 @@ import pytest
 from rocking.cli.application import application
 from rocking.errors import InvalidValueError, RecordError, UnknownModelError
 
-COMMAND = "motion"
+COMMAND = "record show"
 
 G = 9.80665
 # 0, 1, 0 m/s2 at 0.5 s: a triangle, whose integrals are 0.5 m/s, 0.25 m and 1/3 m2/s3
@@ -95,7 +95,7 @@ def test_printed_page(run, tmp_path):
 def test_csv(printed, tmp_path, triangle):
     """The CSV holds time, acceleration, velocity, displacement at the samples: those of the triangle, by hand."""
     path = tmp_path / "out.csv"
-    out = printed(triangle, "--units", "m/s2", "--out", path)
+    out = printed(triangle, "--units", "m/s2", "--output", path)
     assert f"wrote {path}" in out
     with path.open(encoding="utf-8") as file:
         head, *rows = csv.reader(file)
@@ -107,7 +107,7 @@ def test_csv(printed, tmp_path, triangle):
 def test_csv_of_a_pulse_is_exact(run, tmp_path):
     """The CSV of a sine holds a sin(wt), its integrals, and ends with the pulse."""
     path = tmp_path / "out.csv"
-    assert run("sine:amplitude=3,period=0.8", "--out", path)[0] == 0
+    assert run("sine:amplitude=3,period=0.8", "--output", path)[0] == 0
     with path.open(encoding="utf-8") as file:
         rows = [[float(word) for word in row] for row in list(csv.reader(file))[1:]]
     w = 2.0 * math.pi / 0.8
@@ -120,7 +120,7 @@ def test_csv_of_a_pulse_is_exact(run, tmp_path):
 def test_picture(run, tmp_path, triangle):
     """--picture writes an SVG with the axes' units in it."""
     path = tmp_path / "motion.svg"
-    assert run(triangle, "--units", "g", "--out", path)[0] == 0
+    assert run(triangle, "--units", "g", "--output", path)[0] == 0
     text = path.read_text(encoding="utf-8")
     assert "time [s]" in text
     assert "PSA [g]" in text
@@ -139,7 +139,7 @@ def test_components(run, answered, tmp_path):
     assert f"{path}#column 3" in left
     assert f"{path}#column 4" not in left
     words = [f"{path}#column 3", f"z={path}#column 4", "--units", "m/s2"]
-    answer = answered(*words, "--out", tmp_path / "out.csv")
+    answer = answered(*words, "--output", tmp_path / "out.csv")
     assert (answer["component"], answer["vertical_component"]) == ("column 3", "column 4")
     assert answer["intensity"]["pga"] == 2.0
     assert answer["peak_vertical_acceleration"] == 0.3

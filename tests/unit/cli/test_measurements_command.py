@@ -1,4 +1,4 @@
-"""`rocking evidence`: a file is added, listed and counted in; `rocking paper` on a selection."""
+"""`rocking measurements`: a file is added, listed and counted in; `rocking reproduce` on a selection."""
 
 import pytest
 
@@ -23,17 +23,17 @@ def own(monkeypatch, tmp_path):
 @pytest.mark.verifies("behaviour")
 def test_add_list_calibrate(printed, answered, own):
     """A file is added once and listed; models and calibration are then of 41 measurements in ten groups."""
-    assert "added to your evidence" in printed("evidence", "add", own)
-    assert answered("evidence", "add", own)["new"] is False
-    assert "are in your evidence already" in printed("evidence", "add", own)
-    assert [each["measurements"] for each in answered("evidence", "list")["sets"]] == [12, 9, 9, 9, 2]
-    assert "Ceh" in (page := printed("evidence", "list"))
+    assert "added to your evidence" in printed("measurements", "add", own)
+    assert answered("measurements", "add", own)["new"] is False
+    assert "are in your evidence already" in printed("measurements", "add", own)
+    assert [each["measurements"] for each in answered("measurements", "list")["sets"]] == [12, 9, 9, 9, 2]
+    assert "Ceh" in (page := printed("measurements", "list"))
     assert f"\n{store.own_files()[0].name} " in page  # by its name; the folder is said once
-    found = answered("evidence", "calibrate")
+    found = answered("measurements", "calibrate")
     assert (found["measurements"], len(found["left_out_groups"])) == (41, 10)
     assert sum(found["shares"].values()) == pytest.approx(1.0)
-    assert answered("evidence", "calibrate", "published")["measurements"] == 39
-    page = printed("evidence", "calibrate", "S", "M", own)
+    assert answered("measurements", "calibrate", "published")["measurements"] == 39
+    page = printed("measurements", "calibrate", "S", "M", own)
     assert "20 measurements of r" in page
     assert "me: oak/steel" in page
 
@@ -41,11 +41,11 @@ def test_add_list_calibrate(printed, answered, own):
 @pytest.mark.verifies("behaviour")
 def test_paper_on_a_selection(answered, own):
     """League and calibration of the paper's report are of what is selected; tables, errata and claims stay."""
-    found = answered("paper", "published", own)
+    found = answered("reproduce", "published", own)
     assert "me" in found["league"][0]["by_group"]
     assert found["covered"]["one_by_one"][1] == 41
     assert len(found["hierarchy"]["left_out_groups"]) == 10
-    whole = answered("paper")
+    whole = answered("reproduce")
     assert found["claims"] == whole["claims"]
     assert found["league"] != whole["league"]
 
@@ -53,8 +53,8 @@ def test_paper_on_a_selection(answered, own):
 @pytest.mark.verifies("damage")
 def test_what_is_refused(refuses, own, tmp_path):
     """A word that is no selection, a file that is none, and too few blocks are refused in a sentence."""
-    refuses(["evidence", "calibrate", "T"], "no measurements named 'T'")
-    refuses(["evidence", "calibrate", "own"], "rocking evidence add FILE")
-    refuses(["evidence", "calibrate", own], "at least 5 blocks, got 2")
-    refuses(["evidence", "add", tmp_path / "none.csv"], "cannot be read")
+    refuses(["measurements", "calibrate", "T"], "no measurements named 'T'")
+    refuses(["measurements", "calibrate", "own"], "rocking measurements add FILE")
+    refuses(["measurements", "calibrate", own], "at least 5 blocks, got 2")
+    refuses(["measurements", "add", tmp_path / "none.csv"], "cannot be read")
     assert store.own_files() == []

@@ -1,4 +1,4 @@
-"""`rocking cor`: the coefficient of restitution of a body under every model."""
+"""`rocking restitution`: the coefficient of restitution of a body under every model."""
 
 import sys
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ EXPORTS = {
 
 
 @options.takes(options.SIZES, before="onto")
-def cor(
+def restitution(
     context: typer.Context,
     body: options.BodyFile = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
@@ -70,11 +70,11 @@ def cor(
         bool, typer.Option("--recommend", help="Also say which model to use for this body, and how sure that is.")
     ] = False,
     sets: options.Set = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking cor`."""
-    exports = Exports.of(out, EXPORTS)
+    """Run `rocking restitution`."""
+    exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(
@@ -92,7 +92,7 @@ def cor(
         from rocking.cli.solids import SolidAnswer
 
         plane = {"--onto": onto != "both", "--identities": identities}
-        plane["--out stages=FILE"] = "stages" in exports.names
+        plane["--output stages=FILE"] = "stages" in exports.names
         if stated := [name for name, there in plane.items() if there]:
             raise InvalidValueError(
                 "a body in space rocks about every edge of its base, so it takes no {options}",

@@ -1,4 +1,4 @@
-"""`rocking motion`: what a record or a pulse is, and how strong."""
+"""`rocking record show`: what a record or a pulse is, and how strong."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,7 +53,7 @@ def _write_csv(answer: "MotionPage", path: Path) -> None:
 EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 
-def motion(
+def record_show(
     context: typer.Context,
     record: Annotated[
         list[str],
@@ -69,10 +69,10 @@ def motion(
         str, typer.Option(help=r"Periods of the spectrum, with commas between \[s].")
     ] = "0.1,0.2,0.5,1,2,3",
     sets: options.Set = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking motion`."""
+    """Run `rocking record show`."""
     from rocking.cli.arguments import Arguments, hinted
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.labels import fine_samples
@@ -81,7 +81,7 @@ def motion(
     from rocking.spec.motion_tables import OneMotionTable
     from rocking.spec.reading import CommandFiles, checked
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "motion")
     if scale is not None:
         checks.number("scale", scale)

@@ -1,4 +1,4 @@
-"""`rocking minimum`: every acceleration at which a body begins or ceases to overturn under a motion."""
+"""`rocking overturning-pga`: every acceleration at which a body begins or ceases to overturn under a motion."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
@@ -51,7 +51,7 @@ EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
     options.keys(MinimumTable, "points", "levels", panel=options.HOW),
     options.SIZES,
 )
-def minimum(
+def overturning_pga(
     context: typer.Context,
     body: options.BodyFile = None,
     record: options.Record = None,
@@ -60,14 +60,14 @@ def minimum(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking minimum`."""
+    """Run `rocking overturning-pga`."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     length: str | None = None
     acceleration: str | None = None
     if (problem := problem_in(context, body, "minimum")) is None:

@@ -1,4 +1,4 @@
-"""`rocking validate`: invented trials of which something is hidden, the same shuffled, bad rows, scans, refusals."""
+"""`rocking validate-predictions`: invented trials, the same shuffled, bad rows, scans, refusals."""
 
 import csv
 import shutil
@@ -8,7 +8,7 @@ from outcome_folders import BODY, FEW, outcome_folder
 
 import rocking as rk
 
-COMMAND = "validate"
+COMMAND = "validate-predictions"
 pytestmark = pytest.mark.verifies(room="studies")
 
 
@@ -36,7 +36,7 @@ def copy(folder, tmp_path):
 def test_what_is_printed_and_written(run, folder, tmp_path):
     """Who knows what is hidden but for its distribution is better than plain curves; the same in every file."""
     files = [tmp_path / f"found.{ending}" for ending in ("png", "csv", "html")]
-    code, out, err = run(folder, *(f"--out={file}" for file in files))
+    code, out, err = run(folder, *(f"--output={file}" for file in files))
     assert (code, err) == (0, "")
     assert out.startswith("The prediction of overturning is better than the plain logistic in PGA and PGV")
     assert "The prediction of uplift" in out
@@ -136,7 +136,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
             "time_step, units, vertical here, got scale",
         ),
         (lambda at: None, ("--set", "predict.fricton=0.4"), "did you mean friction"),
-        (lambda at: None, ("--out", "found.xyz"), "by its ending a file is"),
+        (lambda at: None, ("--output", "found.xyz"), "by its ending a file is"),
         (shutil.rmtree, (), "no such folder"),
     ],
 )

@@ -1,4 +1,4 @@
-"""`rocking validate`: how good predictions are, where the outcomes are known."""
+"""`rocking validate-predictions`: how good predictions are, where the outcomes are known."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +26,7 @@ _SCORES = ("forecast", "brier", "logarithmic", "balanced_accuracy")
 EXPORTS = {**REPORTED, "csv": CSV}
 
 
-def validate(
+def validate_predictions(
     context: typer.Context,
     folder: Annotated[
         Path,
@@ -40,13 +40,13 @@ def validate(
     units: options.Units = None,
     sets: options.Set = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking validate`."""
+    """Run `rocking validate-predictions`."""
     from rocking.spec.validation import ValidationProblem, files_of
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     files = files_of(folder)
     document, inputs = _document(context, files[0])
     problem = ValidationProblem.of(document, files, inputs)

@@ -1,4 +1,4 @@
-"""`rocking codes`: what is printed and written, bodies in a grid, refusals."""
+"""`rocking code-checks`: what is printed and written, bodies in a grid, refusals."""
 
 import csv
 
@@ -7,7 +7,7 @@ import pytest
 
 from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
 
-COMMAND = "codes"
+COMMAND = "code-checks"
 FAMILY = ("--synthetic", "firm-ground", "--count", 6, "--restitution", "housner")
 GRID = ("--height", "60,400", "--slenderness", 5, "--units", "cm")
 
@@ -15,7 +15,7 @@ GRID = ("--height", "60,400", "--slenderness", 5, "--units", "cm")
 def test_a_grid_of_bodies(printed, answered, tmp_path):
     """Every method has a line, and every body one of shares; JSON and CSV say the same, sources and readings too."""
     file = tmp_path / "codes.csv"
-    page = printed(*GRID, *FAMILY, "--levels", "1.5,2", "--out", file)
+    page = printed(*GRID, *FAMILY, "--levels", "1.5,2", "--output", file)
     assert "bodies:       12 x 60 cm; 80 x 400 cm" in page
     assert "pga/(g tan alpha) = 1.5\n" in page
     found = answered(*GRID, *FAMILY, "--levels", "1.5,2")

@@ -1,4 +1,4 @@
-"""`rocking motions` and `rocking convert`, and what other commands make of a folder of records."""
+"""`rocking record batch` and `rocking record convert`, and what other commands make of a folder of records."""
 
 import csv
 import json
@@ -33,8 +33,8 @@ def folder(tmp_path):
 def test_a_folder_becomes_a_flatfile(run, folder, tmp_path):
     """One row a record in CSV, Excel and netCDF; the damaged file is named on the page, and in the workbook."""
     files = [tmp_path / f"flat{ending}" for ending in (".csv", ".xlsx", ".nc", ".png")]
-    options = [word for file in files for word in ("--out", str(file))]
-    code, out, err = run("motions", folder, "--periods", "0.2,1", "--workers", 1, *options)
+    options = [word for file in files for word in ("--output", str(file))]
+    code, out, err = run("record", "batch", folder, "--periods", "0.2,1", "--workers", 1, *options)
     assert (code, err) == (0, "")
     assert "left out" in out
     assert "damaged.at2" in out
@@ -57,7 +57,7 @@ def test_a_doubt_names_its_file_once(run, folder):
     """Whether the motion doubts it or the reader, who names it too."""
     rows = [f"{0.25 * k}, {60.0 * np.sin(k):.6f}" for k in range(60)]
     (folder / "odd.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
-    _, _, err = run("motions", folder / "odd.csv", "--workers", 1, "--periods", "1,2")
+    _, _, err = run("record", "batch", folder / "odd.csv", "--workers", 1, "--periods", "1,2")
     lines = [line for line in err.splitlines() if "odd.csv" in line]
     assert len(lines) >= 2
     assert all(line.count("odd.csv") == 1 for line in lines)
@@ -69,7 +69,7 @@ def test_many_doubts_are_counted(run, tmp_path):
     rows = [f"{0.25 * k}, {30.0 * np.sin(k):.6f}" for k in range(60)]
     for k in range(7):
         (tmp_path / f"odd{k}.csv").write_text("\n".join(["time [s], x [m/s2]", *rows]), "utf-8")
-    _, _, err = run("motions", tmp_path, "--workers", 1, "--periods", "1,2", "--out", tmp_path / "flat.csv")
+    _, _, err = run("record", "batch", tmp_path, "--workers", 1, "--periods", "1,2", "--output", tmp_path / "flat.csv")
     said = [line for line in err.splitlines() if "odd" in line or "doubts more" in line]
     assert len(said) == 6
     assert "doubts more" in said[-1]
@@ -80,12 +80,12 @@ def test_many_doubts_are_counted(run, tmp_path):
 def test_a_target_chooses_and_scales(run, folder):
     """Two of three records come with their factors and misfits, and the sentence of the set."""
     words = ["--set", "motion.target=eurocode8:ag=0.3g,ground=B", "--set", "motion.count=2", "--periods", "1"]
-    code, out, _ = run("motions", folder, *words, "--json")
+    code, out, _ = run("record", "batch", folder, *words, "--json")
     found = json.loads(out)
     assert code == 0
     assert (len(found["records"]), len(found["selection"]["scale"])) == (2, 2)
     assert found["selection"]["misfit"] == sorted(found["selection"]["misfit"])
-    code, out, _ = run("motions", folder, *words)
+    code, out, _ = run("record", "batch", folder, *words)
     assert "misfit of each" in out
 
 
@@ -128,14 +128,14 @@ def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
     peaks = []
     for head, factor in (("motion,scale", 1), ("file,factor", 3), ("Aufzeichnung,Skalierung", 3)):
         (folder / "list.csv").write_text(f"{head}\n{name},{factor}\n")
-        _, out, _ = run("motions", folder / "list.csv", "--periods", "1", "--json")
+        _, out, _ = run("record", "batch", folder / "list.csv", "--periods", "1", "--json")
         (record,) = json.loads(out)["records"]
         peaks.append(max(record[key] for key in ("pga_x", "pga_y") if record[key] is not None))
     assert peaks[1:] == pytest.approx([3.0 * peaks[0]] * 2)
     (folder / "list.csv").write_text(f"file,units\n{name},g\n")
-    assert run("motions", folder / "list.csv", "--periods", "1")[0] == 0
+    assert run("record", "batch", folder / "list.csv", "--periods", "1")[0] == 0
     (folder / "list.csv").write_text(f"file,units\n{name},cm/s2\n")
-    refuses(["motions", folder / "list.csv"], "the file states the unit g, you say cm/s2")
+    refuses(["record", "batch", folder / "list.csv"], "the file states the unit g, you say cm/s2")
 
 
 @pytest.mark.filterwarnings("always:check the input")
@@ -144,7 +144,7 @@ def test_a_source_without_horizontal_records_is_left_out(run, refuses, folder, t
     upright = tmp_path / "upright"
     upright.mkdir()
     write_motion(GroundMotion([0.0, 1.0, -1.0, 0.0] * 20, 0.02), upright / "S-UP.AT2", "peer")
-    words = ["codes", *BLOCK]
+    words = ["code-checks", *BLOCK]
     code, _, err = run(*words, folder / "RSN0_A000.AT2", upright)
     assert (code, "no horizontal component" in err) == (0, True)
     refuses([*words, upright], "horizontal component")
@@ -158,15 +158,15 @@ def test_convert_turns_two_components(run, refuses, tmp_path):
         (tmp_path / f"{name}.csv").write_text(f"time [s],{name} [m/s2]\n{rows}\n")
     words = [f"x={tmp_path / 'a.csv'}", f"y={tmp_path / 'b.csv'}"]
     for angle in (30, 40):
-        out = ["--out", f"columns={tmp_path / f'{angle}.csv'}", "--out", tmp_path / "turned.png"]
-        assert run("convert", *words, "--set", f"motion.process=rotate:angle={angle}", *out)[0] == 0
+        out = ["--output", f"columns={tmp_path / f'{angle}.csv'}", "--output", tmp_path / "turned.png"]
+        assert run("record", "convert", *words, "--set", f"motion.process=rotate:angle={angle}", *out)[0] == 0
     c, s = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
     read = [np.loadtxt(tmp_path / f"{angle}.csv")[:, 1:].T for angle in (30, 40)]
     np.testing.assert_allclose(read[0], [c * a + s * b, c * b - s * a], atol=1e-12)
     assert not np.allclose(read[1], read[0], atol=0.1)
-    _, told, _ = run("convert", *words, "--json")
+    _, told, _ = run("record", "convert", *words, "--json")
     assert set(json.loads(told)["components"]) == {"x", "y"}
-    refuses(["convert", *words, "--out", tmp_path / "one.at2"], "peer holds 1")
+    refuses(["record", "convert", *words, "--output", tmp_path / "one.at2"], "peer holds 1")
 
 
 @pytest.mark.parametrize("word", ["{}", "x={}", "{}#acceleration"])
@@ -176,7 +176,7 @@ def test_convert_keeps_its_source(run, tmp_path, word):
     own.write_text("time [s],acceleration [m/s2]\n" + "\n".join(f"{0.01 * k:.2f},{k % 3}" for k in range(50)), "utf-8")
     before = own.read_bytes()
     for out in (own, tmp_path / ".." / tmp_path.name / "own.csv", f"columns={own}"):
-        code, _, err = run("convert", word.format(own), "--out", out)
+        code, _, err = run("record", "convert", word.format(own), "--output", out)
         assert code == 2
         assert "is what is read, and would be written over" in err
     assert own.read_bytes() == before
@@ -185,16 +185,16 @@ def test_convert_keeps_its_source(run, tmp_path, word):
 def test_convert(run, folder, tmp_path):
     """A record goes through its steps into another format, drawn before and after, with what was done to it."""
     source, made = folder / "RSN0_A000.AT2", [tmp_path / name for name in ("new.at2", "new.png", "new.json")]
-    options = [word for file in made for word in ("--out", str(file))]
+    options = [word for file in made for word in ("--output", str(file))]
     words = "mean; bandpass:low=0.2,high=20; taper"
-    code, out, err = run("convert", source, "--set", f"motion.process={words}", *options)
+    code, out, err = run("record", "convert", source, "--set", f"motion.process={words}", *options)
     assert (code, err) == (0, "")
     expected = processed(read_motion(source), words)
     found = read_motion(made[0])
     assert found.acceleration == pytest.approx(expected.acceleration, abs=1e-6 * expected.peak)
     assert json.loads(made[2].read_text("utf-8"))["provenance"] == list(expected.provenance)
     assert "band-pass 0.2 to 20 Hz" in out
-    assert run("convert", source, "--set", "motion.process=polish")[0] == 2
+    assert run("record", "convert", source, "--set", "motion.process=polish")[0] == 2
 
 
 def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
@@ -203,24 +203,24 @@ def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
     one, many = folder / "one.toml", tmp_path / "many.toml"
     one.write_text(f'[motion]\nrecord = "{source.name}"\nprocess = {json.dumps(chain)}\n')
     many.write_text(f'[[motions]]\nrecords = ["{folder.name}"]\ntarget = "eurocode8:ag=0.2g"\ncount = 2\n')
-    typed = json.loads(run("convert", source, "--set", f"motion.process={'; '.join(chain)}", "--json")[1])
-    assert json.loads(run("convert", one, "--json")[1]) == typed
+    typed = json.loads(run("record", "convert", source, "--set", f"motion.process={'; '.join(chain)}", "--json")[1])
+    assert json.loads(run("record", "convert", one, "--json")[1]) == typed
     assert typed["before"]["peak_ground_acceleration"] != typed["after"]["peak_ground_acceleration"]
     assert typed["metadata"]["station"]
     one.unlink()
     words = ["--set", "motion.target=eurocode8:ag=0.2g", "--set", "motion.count=2"]
-    expected = json.loads(run("motions", folder, *words, "--json")[1])
-    assert json.loads(run("motions", many, "--json")[1])["selection"] == expected["selection"]
+    expected = json.loads(run("record", "batch", folder, *words, "--json")[1])
+    assert json.loads(run("record", "batch", many, "--json")[1])["selection"] == expected["selection"]
     assert expected["selection"]["sentence"].startswith("2 records scaled by ")
     one.write_text(f'[motion]\nrecord = "{source.name}"\nprocess = ["taper", "mean", "taper:fraction=2"]\n')
-    refuses(["convert", one], "step 3, taper: fraction must be")
-    refuses(["convert", one, "--units", "g"], "says everything itself")
-    refuses(["convert", one, "--set", "motion.pulse=sine:amplitude=3,period=0.8"], "exactly one of")
+    refuses(["record", "convert", one], "step 3, taper: fraction must be")
+    refuses(["record", "convert", one, "--units", "g"], "says everything itself")
+    refuses(["record", "convert", one, "--set", "motion.pulse=sine:amplitude=3,period=0.8"], "exactly one of")
     many.write_text('[[motions]]\npulse = ["sine:amplitude=3,period=0.8"]\n')
-    refuses(["motions", many], "records is missing")
+    refuses(["record", "batch", many], "records is missing")
 
 
-@pytest.mark.parametrize("command", ["assess", "codes"])
+@pytest.mark.parametrize("command", ["assess", "code-checks"])
 def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
     """It is left out with its reason as damaged ones are; a folder of nothing else is refused."""
     quick = ["--set", "predict.count=8", "--set", "predict.shares=false"] if command == "assess" else []
@@ -267,9 +267,9 @@ def test_options_of_single_files(run, mixed):
     )
     usual = ["--units", "m/s2", "--set", "motion.time_step=0.01", "--set", OPTIONS]
     for words in (
-        ["motions", question, "--workers", 1],
-        ["motions", "mixed", "other/c.txt", "--workers", 1, *usual],
-        ["motions", "mixed/a.txt", "mixed/b.txt", "other/c.txt", "--workers", 1, *usual],
+        ["record", "batch", question, "--workers", 1],
+        ["record", "batch", "mixed", "other/c.txt", "--workers", 1, *usual],
+        ["record", "batch", "mixed/a.txt", "mixed/b.txt", "other/c.txt", "--workers", 1, *usual],
     ):
         code, out, err = run(*words, "--periods", "1", "--json")
         assert code == 0, err
@@ -290,10 +290,12 @@ def test_options_of_a_file_that_is_not_there(run, refuses, mixed):
     """A name that is no file of the set, an unknown key, and a file that is left without a unit are named."""
     usual = ["--set", "motion.time_step=0.01", "--set"]
     for records in (["mixed"], ["mixed/a.txt", "mixed/b.txt"], ["mixed/a.txt", "other/c.txt"]):
-        words = ["motions", *records, *usual, 'motion.files={"d.txt"={units="g"}}']
+        words = ["record", "batch", *records, *usual, 'motion.files={"d.txt"={units="g"}}']
         refuses(words, "files: 'd.txt' is no file of this set")
-    refuses(["motions", "mixed", *usual, 'motion.files={"a.txt"={unit="g"}}'], "files.a.txt: unknown key 'unit'")
+    refuses(
+        ["record", "batch", "mixed", *usual, 'motion.files={"a.txt"={unit="g"}}'], "files.a.txt: unknown key 'unit'"
+    )
     one = 'motion.files={"a.txt"={units="g"}}'
-    refuses(["motions", "mixed/a.txt", "mixed/b.txt", *usual, one], "b.txt: the file does not state its unit")
+    refuses(["record", "batch", "mixed/a.txt", "mixed/b.txt", *usual, one], "b.txt: the file does not state its unit")
     refuses(["simulate", *BLOCK, "mixed/a.txt", "other/c.txt", *usual, one], "c.txt: the file does not state its unit")
     refuses(["fragility", *BLOCK, "--synthetic", "firm-ground", "--set", one], "synthetic takes no files")

@@ -1,4 +1,4 @@
-"""`rocking example`: every example runs in an empty folder, leaves what it says, and takes nothing away."""
+"""`rocking examples`: every example runs in an empty folder, leaves what it says, and takes nothing away."""
 
 import dataclasses
 import json
@@ -11,7 +11,7 @@ import rocking as rk
 from rocking.examples import table
 
 ALL = rk.examples.catalogue()
-COMMAND = "example"
+COMMAND = "examples"
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -71,7 +71,7 @@ def test_a_folder_of_the_user_is_never_taken(refuses, tmp_path, monkeypatch):
 def test_a_command_that_fails_ends_it(run, tmp_path, monkeypatch):
     """Negative control: the exit code is that of the command, and what follows is not run."""
     monkeypatch.chdir(tmp_path)
-    broken = ("rocking motion nothing.csv --out a.png", "rocking motion pulse.csv --out b.png")
+    broken = ("rocking record show nothing.csv --output a.png", "rocking record show pulse.csv --output b.png")
     monkeypatch.setitem(table.EXAMPLES, "pulse", dataclasses.replace(table.EXAMPLES["pulse"], commands=broken))
     code, out, err = run("pulse")
     assert (code, "nothing.csv: no such file" in err) == (2, True)

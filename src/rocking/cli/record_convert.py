@@ -1,4 +1,4 @@
-"""`rocking convert`: a record, put through its steps where there are any, in another format."""
+"""`rocking record convert`: a record, put through its steps where there are any, in another format."""
 
 import json
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ def _kinds() -> dict[str, Export]:
     return {"columns": known["columns"], **known, **others}
 
 
-def convert(
+def record_convert(
     context: typer.Context,
     record: Annotated[
         list[str],
@@ -67,24 +67,23 @@ def convert(
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
     sets: options.Set = None,
-    out: Annotated[
+    output: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Write a file, again for more: in a format by its ending, or NAME=FILE as rocking formats names it; "
-            ".png, .svg and .pdf draw it before and after, .json keeps what was done.",
-            rich_help_panel=options.OUTPUT,
+        options.output(
+            "File; the extension selects the format, or NAME=FILE with a name of rocking record formats; .png, .svg "
+            "and .pdf: picture before and after; .json: processing steps; repeatable."
         ),
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking convert`."""
+    """Run `rocking record convert`."""
     from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
     from rocking.motions.motion import GroundMotion
     from rocking.spec.documents.records import RecordDocument
     from rocking.spec.motion_tables import ComponentsTable
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
-    exports = Exports.of(out, _kinds())
+    exports = Exports.of(output, _kinds())
     arguments = Arguments(context, "motion")
     file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
@@ -161,7 +160,7 @@ class Conversion:
         page.line()
         page.rows(rows, (), Display(own=_CLOSELY), most=len(rows))
         if not self.files:
-            page.line("Nothing was written: --out FILE.at2 writes it, --out FILE.png draws it before and after.")
+            page.line("Nothing was written: --output FILE.at2 writes it, --output FILE.png draws it before and after.")
 
 
 def _told(before: "GroundMotion", after: "GroundMotion") -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""`rocking example`: what comes with the package, and one of it run in the current folder."""
+"""`rocking examples`: what comes with the package, and one of it run in the current folder."""
 
 import shlex
 import sys
@@ -9,14 +9,15 @@ from typing import Annotated
 
 import typer
 
-from rocking import checks, examples
+from rocking import checks
 from rocking.answers import Answer
 from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 from rocking.errors import InvalidValueError
+from rocking.examples import Example, catalogue, write
 
 
-def example(
+def examples(
     context: typer.Context,
     name: Annotated[
         str | None,
@@ -26,8 +27,8 @@ def example(
     force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,
 ) -> None:
-    """Run `rocking example`."""
-    known = examples.catalogue()
+    """Run `rocking examples`."""
+    known = catalogue()
     if name is None or dry_run or as_json:
         chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}
         deliver(_Listed(chosen, whole=name is None), as_json=as_json)
@@ -39,7 +40,7 @@ def example(
 class _Listed:
     """Some examples; whole: as a table of all of them."""
 
-    chosen: Mapping[str, examples.Example]
+    chosen: Mapping[str, Example]
     whole: bool
 
     def answer(self) -> Answer:
@@ -51,7 +52,7 @@ class _Listed:
         if self.whole:
             rows = [(one.name, one.kind, one.title) for one in self.chosen.values()]
             page.table(("name", "kind", "what it is"), rows, ("name", "kind", "what it is"), whole={0, 1})
-            page.line("\nrocking example NAME runs one in this folder; in Python rk.examples has them too.")
+            page.line("\nRun an example in this folder: rocking examples NAME. In Python: rk.examples.")
             return
         for one in self.chosen.values():
             page.line(f"{one.name}: {one.title}")
@@ -60,7 +61,7 @@ class _Listed:
                 page.line(f"$ {command}", "bold")
 
 
-def _run(chosen: examples.Example, run: Callable[[list[str]], None], *, force: bool) -> None:
+def _run(chosen: Example, run: Callable[[list[str]], None], *, force: bool) -> None:
     """Write the files and run the commands, one after the other as if they were typed; the first that fails ends it."""
     page = Page()
     there = [name for name in chosen.outputs if Path(name).exists()]
@@ -70,7 +71,7 @@ def _run(chosen: examples.Example, run: Callable[[list[str]], None], *, force: b
         raise InvalidValueError(
             "{files}: there already", files=", ".join(there), hint="take another folder, or --force"
         )
-    written = examples.write(chosen.name, force=force)
+    written = write(chosen.name, force=force)
     page.line(f"{chosen.name}: {chosen.title}\n")
     for path in written:
         page.line(f"wrote {path}")

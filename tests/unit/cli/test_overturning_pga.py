@@ -1,4 +1,4 @@
-"""`rocking minimum`: crossings equal the study, sentences, files, refusals."""
+"""`rocking overturning-pga`: crossings equal the study, sentences, files, refusals."""
 
 import csv
 import json
@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.cli.minimum import stretches as sentence
+from rocking.cli.overturning_pga import stretches as sentence
 from rocking.studies.minimum_acceleration import Transitions
 
-COMMAND = "minimum"
+COMMAND = "overturning-pga"
 
 G = 9.80665
 SIZE = ("--width", "0.5", "--height", "2")
@@ -39,7 +39,7 @@ def test_json_is_the_python_call(answered):
 
 def test_page_and_files(printed, tmp_path):
     """The sentence, a line for each crossing with the modes on both sides, and files with all digits."""
-    files = ("--out", tmp_path / "a.png", "--out", tmp_path / "a.csv")
+    files = ("--output", tmp_path / "a.png", "--output", tmp_path / "a.csv")
     out = printed(*SIZE, PULSE, "--restitution", "0.85", *files)
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

@@ -1,4 +1,4 @@
-"""`rocking codes`: what published rules say of bodies, and what their histories show."""
+"""`rocking code-checks`: what published rules say of bodies, and what their histories show."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -53,7 +53,7 @@ _OWN = {
 
 
 @options.takes(options.SIZES, options.SEVERAL_SIZES)
-def codes(
+def code_checks(
     context: typer.Context,
     body: options.BodyFile = None,
     record: options.SeveralRecords = None,
@@ -81,16 +81,16 @@ def codes(
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking codes`."""
+    """Run `rocking code-checks`."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES
     from rocking.motions.intensity import measure as measure_of
     from rocking.studies.code_methods import compare_code_methods
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, *TABLES)
     wanted = measure_of(measure)
     problem = _problem(arguments)

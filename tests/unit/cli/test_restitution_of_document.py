@@ -1,4 +1,4 @@
-"""`rocking cor` of files and options: a file to take away, and what is known of a body, said in every way."""
+"""`rocking restitution` of files and options: a file to take away, and what is known of a body, said in every way."""
 
 import json
 import math
@@ -75,7 +75,7 @@ def test_what_cannot_be_meant_is_refused(run, tmp_path, text, words, said):
     assert "Traceback" not in err
 
 
-COMMAND = "cor"
+COMMAND = "restitution"
 SIZE = ("--width", 80, "--height", 200, "--depth", 60, "--units", "cm")
 KNOWN = (*SIZE, "--mass", 300, "--centre", "42,70")
 BLOCK = rk.Block(width=0.8, height=2.0, depth=0.6, mass=300.0, centre=(0.42, 0.7))

@@ -1,4 +1,4 @@
-"""`rocking paper`: Mao et al. 2024, recomputed from the published measurements, with a verdict on each claim."""
+"""`rocking reproduce`: Mao et al. 2024, recomputed from the published measurements, with a verdict on each claim."""
 
 import sys
 from pathlib import Path
@@ -6,40 +6,39 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.cli.evidence import Selection, show_league
+from rocking.cli import options
+from rocking.cli.measurements import Selection, show_league
 from rocking.cli.page import Page, bar, print_json
 
 if TYPE_CHECKING:
     from rocking.reports.paper_document import Reproduction
 
 
-def paper(
+def reproduce(
     which: Selection = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the report, tables and figures; none is written if left out.")
-    ] = None,
+    output: Annotated[Path | None, options.output("Folder for report, tables and figures.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print every number as JSON.")] = False,
 ) -> None:
-    """Run `rocking paper`."""
+    """Run `rocking reproduce`."""
     from rocking.evidence.store import selected
-    from rocking.reports.paper_document import reproduce
+    from rocking.reports.paper_document import reproduce as recomputed
 
     with bar("recomputing tables and claims", quiet=as_json):
-        result = reproduce(selected(which)) if which else reproduce()
+        result = recomputed(selected(which)) if which else recomputed()
     if as_json:
         print_json(result.answer())
-    if out is None:
+    if output is None:
         if not as_json:
             _show(result)
         return
     from rocking.reports.paper_folder import steps, write_folder
 
     with bar("", steps(), quiet=as_json) as progress:
-        written, left_out = write_folder(result, out, lambda name: progress(1, name))
+        written, left_out = write_folder(result, output, lambda name: progress(1, name))
     for sentence in left_out:
         print(f"rocking: note: {sentence}", file=sys.stderr)
     if not as_json:
-        _what_to_look_at(result, written, out)
+        _what_to_look_at(result, written, output)
         _show(result)
 
 

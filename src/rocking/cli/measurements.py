@@ -1,4 +1,4 @@
-"""`rocking evidence`: measurements of one's own beside the published ones, and what all of them say of the models."""
+"""`rocking measurements`: own and published measurements, and the calibration of the models."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,8 +22,8 @@ Selection = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
-evidence = typer.Typer(
-    name="evidence",
+measurements = typer.Typer(
+    name="measurements",
     help="Add measured coefficients of restitution, list them, and see what all of them say of the models.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -31,7 +31,7 @@ evidence = typer.Typer(
 )
 
 
-@evidence.command()
+@measurements.command()
 def add(
     file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV, see the manual.")],
     as_json: AsJson = False,
@@ -42,7 +42,7 @@ def add(
     deliver(AddedAnswer(*store.add(file)), as_json=as_json)
 
 
-@evidence.command(name="list")
+@measurements.command(name="list")
 def list_(as_json: AsJson = False) -> None:
     """Print the published measurements and your own: who measured what, and how many."""
     from rocking.evidence import store
@@ -52,7 +52,7 @@ def list_(as_json: AsJson = False) -> None:
     deliver(ListAnswer([*sets, *((str(path), data) for path, data in store.own_sets())]), as_json=as_json)
 
 
-@evidence.command()
+@measurements.command()
 def calibrate(which: Selection = None, as_json: AsJson = False) -> None:
     """Print how all models fare on measurements, and the calibration for a body on an interface that is new."""
     from rocking.evidence import league, store
@@ -80,7 +80,7 @@ class AddedAnswer:
     def show(self, page: Page) -> None:
         words = "added to your evidence" if self.new else "are in your evidence already"
         page.line(f"{self.data!r}: {words}", "bold")
-        page.facts([("file", str(self.path)), ("next", "rocking evidence calibrate")])
+        page.facts([("file", str(self.path)), ("next", "rocking measurements calibrate")])
 
 
 @dataclass(frozen=True)

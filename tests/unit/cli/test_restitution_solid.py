@@ -1,4 +1,4 @@
-"""`rocking cor` of bodies in space: closed forms edge by edge, meshes with their repairs, refusals in one sentence."""
+"""`rocking restitution` of bodies in space: closed forms edge by edge, repairs of meshes, refusals."""
 
 import csv
 import math
@@ -12,7 +12,7 @@ from rocking.bodies.solid import box, extrusion
 from rocking.dynamics.space import SpatialBody
 from rocking.restitution.space import edge_coefficient, impact_in_space
 
-COMMAND = "cor"
+COMMAND = "restitution"
 
 G = 9.80665
 MODELS = ("housner-3d", "horizontal-momentum-3d", "ked-3d")
@@ -91,7 +91,7 @@ def test_options(run, capsys, file, tmp_path):
     """One model, another gravity, CSV and picture: what is printed is what is written."""
     path, table, picture = file(PRISM), tmp_path / "a.csv", tmp_path / "a.png"
     code, out, err = run(
-        path, "--restitution", "ked", "--set", "settings.gravity=1.6", "--out", table, "--out", picture
+        path, "--restitution", "ked", "--set", "settings.gravity=1.6", "--output", table, "--output", picture
     )
     assert (code, err) == (0, "")
     assert f"wrote {table}" in out

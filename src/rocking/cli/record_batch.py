@@ -1,4 +1,4 @@
-"""`rocking motions`: a folder of records in one table, and which of them come close to a target spectrum."""
+"""`rocking record batch`: a folder of records in one table, and which of them come close to a target spectrum."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,7 +53,7 @@ EXPORTS = {
 }
 
 
-def motions(
+def record_batch(
     context: typer.Context,
     record: Annotated[
         list[str],
@@ -71,12 +71,12 @@ def motions(
     workers: Annotated[
         int | None, typer.Option(help=r"Number of processes \[default: number of processors, at most 8].")
     ] = None,
-    out: Annotated[list[str] | None, options.out(EXPORTS)] = None,
+    output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Run `rocking motions`."""
+    """Run `rocking record batch`."""
     from rocking.cli.arguments import Arguments, document_file, is_file, with_sets
-    from rocking.cli.motion import parsed_periods
+    from rocking.cli.record_show import parsed_periods
     from rocking.dynamics.settings import processors
     from rocking.motions.flatfiles import PERIODS, flatfile
     from rocking.spec.documents.records import RecordSetDocument
@@ -84,7 +84,7 @@ def motions(
     from rocking.spec.reading import CommandFiles, InputFiles, checked, is_pattern, tables_in
     from rocking.spec.record_sets import record_set
 
-    exports = Exports.of(out, EXPORTS)
+    exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "motion")
     beside = ("record", "damping", "periods", "workers")
     file = document_file(context, record[0], ("motions",), beside) if len(record) == 1 else None
