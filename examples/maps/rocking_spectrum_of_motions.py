@@ -17,7 +17,7 @@ from rocking.studies import SyntheticSet, rocking_spectrum
 
 motions = SyntheticSet("point-source", count=200, seed=1, pga=0.3 * conventions.g)
 angles, periods = np.arctan([1 / 4, 1 / 6, 1 / 8]), np.geomspace(0.8, 16.0, 60)
-found = rocking_spectrum([motions[k] for k in range(len(motions))], angles, periods)
+found = rocking_spectrum([motions[k] for k in range(len(motions))], angles, periods, "ked")
 
 share = (found["mode"] >= 0).mean("motion")
 for place, slenderness in enumerate((4, 6, 8)):

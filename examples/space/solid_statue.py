@@ -37,14 +37,16 @@ for name in spatial_models():
 # %%
 # The bust in a mirror has the same coefficients, on the edges that the mirror shows.
 
-here, there = (sorted(edge_coefficient(body, start=i) for i in range(4)) for body in (statue, statue.mirrored()))
+here, there = (
+    sorted(edge_coefficient(body, "ked-3d", start=i) for i in range(4)) for body in (statue, statue.mirrored())
+)
 assert np.allclose(here, there, rtol=1e-12, atol=0.0)
 
 # %%
 # Where the energy of an impact is lost: unit by unit, in an upright slice, and over the height.
 
 edges = statue.base.edges
-result = impact_in_space(statue, -edges[3].direction, pivot=edges[3], onto=statue.base.opposite(3))
+result = impact_in_space(statue, -edges[3].direction, pivot=edges[3], onto=statue.base.opposite(3), model="ked-3d")
 energies = unit_energies(result, 12)
 share = [energies.lost[energies.units.part == i].sum() / energies.lost.sum() for i in range(4)]
 print("energy lost in pedestal, socle, chest, head:", ", ".join(f"{100.0 * s:.1f} %" for s in share))

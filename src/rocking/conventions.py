@@ -61,6 +61,13 @@ DEFAULT_FRICTION: Final = Assumed(0.5)
 """Coefficient of friction where nobody gave one [-]."""
 
 
+DEFAULT_RESTITUTION: Final = "calibrated"
+"""Restitution model where none is stated, of every mechanics."""
+
+COMPARED_RESTITUTIONS: Final = ("ked", "housner")
+"""Restitution models that every verdict with the default model is compared with."""
+
+
 def given_or_assumed(value: float) -> str:
     """Return "given", or "assumed" of a value that nobody gave."""
     return "assumed" if isinstance(value, Assumed) else "given"

@@ -70,7 +70,7 @@ def python() -> dict[str, Case]:
                     doors.response_tree(doors.simulate(b, m, r))
                 )
     cases["simulate linear reference"] = lambda _: doors.response_tree(
-        doors.simulate(STATUE, MOTIONS["horizontal"], engine="reference", scale=0.6, linear=True)
+        doors.simulate(STATUE, MOTIONS["horizontal"], "ked", engine="reference", scale=0.6, linear=True)
     )
     cases["simulate drawn"] = lambda _: doors.response_tree(
         doors.simulate(BLOCK, MOTIONS["both"], rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=4))
@@ -244,7 +244,7 @@ def _fragility() -> Any:
 
 
 RECORD = "".join(f"{value:.6f}\n" for value in 0.4 * np.sin(0.06 * np.arange(800)) * np.exp(-0.002 * np.arange(800)))
-SHORT = {"SIZE": "--width 0.5 --height 2", "PULSE": PULSE}
+SHORT = {"SIZE": "--width 0.5 --height 2", "PULSE": PULSE, "KED": "--restitution ked"}
 ASKED = {
     "help": "--help",
     "cor": "restitution SIZE",
@@ -255,37 +255,37 @@ ASKED = {
     "cor solid page": "restitution solid.toml --restitution ked-3d",
     "cor refused": "restitution --width -1 --height 2",
     "cor refused model": "restitution SIZE --restitution kedd",
-    "simulate": "simulate SIZE PULSE",
-    "simulate json": "simulate SIZE PULSE --json",
+    "simulate": "simulate SIZE PULSE KED",
+    "simulate json": "simulate SIZE PULSE --json KED",
     "simulate files": "simulate statue.toml PULSE --restitution housner -o csv=o.csv -o picture=o.png --json",
-    "simulate record": "simulate statue.toml record.txt --units cm,g --set motion.time_step=0.01 --scale 3",
-    "simulate record json": "simulate SIZE record.txt --units m,g --set motion.time_step=0.01 --scale 4 --json",
-    "simulate free": "simulate statue.toml --free 0.5",
-    "simulate free json": "simulate SIZE --free -0.5 --json",
-    "simulate contact": "simulate SIZE PULSE --friction 0.4",
-    "simulate contact json": "simulate statue.toml PULSE --friction 0.3 --json",
-    "simulate solid": "simulate solid.toml PULSE --motion y=sine:amplitude=1,period=0.5",
-    "simulate solid json": "simulate solid.toml PULSE --json",
+    "simulate record": "simulate statue.toml record.txt --units cm,g --set motion.time_step=0.01 --scale 3 KED",
+    "simulate record json": "simulate SIZE record.txt --units m,g --set motion.time_step=0.01 --scale 4 --json KED",
+    "simulate free": "simulate statue.toml --free 0.5 KED",
+    "simulate free json": "simulate SIZE --free -0.5 --json KED",
+    "simulate contact": "simulate SIZE PULSE --friction 0.4 KED",
+    "simulate contact json": "simulate statue.toml PULSE --friction 0.3 --json KED",
+    "simulate solid": "simulate solid.toml PULSE --motion y=sine:amplitude=1,period=0.5 KED",
+    "simulate solid json": "simulate solid.toml PULSE --json KED",
     "simulate document": "simulate response.toml --json",
     "simulate document page": "simulate free.toml",
     "simulate refused": "simulate SIZE sine:amplitude=3",
     "simulate refused file": "simulate SIZE none.at2",
     "simulate refused units": "simulate SIZE record.txt --set motion.time_step=0.01",
-    "simulate doubted": "simulate --width 500 --height 2000 sine:amplitude=300,period=0.8",
-    "map": "map SIZE PULSE --x frequency_ratio=0.5:7:14 --y amplitude_ratio=1:9:12",
-    "map files": "map statue.toml PULSE --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json -o csv=o.csv -o netcdf=o.nc "
-    "-o picture=o.png",
+    "simulate doubted": "simulate --width 500 --height 2000 sine:amplitude=300,period=0.8 KED",
+    "map": "map SIZE PULSE --x frequency_ratio=0.5:7:14 --y amplitude_ratio=1:9:12 KED",
+    "map files": "map statue.toml PULSE KED --x pga=0.1g:0.6g:9 --y period=0.3s:2s:8 --json -o csv=o.csv "
+    "-o netcdf=o.nc -o picture=o.png",
     "map two": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --restitution ked "
     "--restitution housner",
-    "map refined": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --refine 2 --json "
+    "map refined": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --refine 2 KED --json "
     "--output netcdf=o.nc --output csv=o.csv",
     "map refused": "map SIZE PULSE --x nonsense=1:2:3",
-    "minimum": "overturning-pga SIZE sine:amplitude=1,period=0.8 --points 60",
-    "minimum files": "overturning-pga statue.toml sine:amplitude=1,period=0.8 --points 60 --json",
-    "spectrum": "spectrum PULSE --slenderness 4,6 --periods 1:6:6",
-    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --output csv=o.csv",
-    "fragility": "fragility SIZE --synthetic point-source --count 20",
-    "fragility json": "fragility SIZE --synthetic pulse-like --count 15 --seed 2 --json",
+    "minimum": "overturning-pga SIZE sine:amplitude=1,period=0.8 --points 60 KED",
+    "minimum files": "overturning-pga statue.toml sine:amplitude=1,period=0.8 --points 60 --json KED",
+    "spectrum": "spectrum PULSE --slenderness 4,6 --periods 1:6:6 KED",
+    "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --output csv=o.csv KED",
+    "fragility": "fragility SIZE --synthetic point-source --count 20 KED",
+    "fragility json": "fragility SIZE --synthetic pulse-like --count 15 --seed 2 --json KED",
     "inventory": "inventory inventory.csv --pga 0.3g --count 30",
     "inventory files": "inventory inventory.csv --pga 0.3g --count 20 --json --output made",
     "models": "models",

@@ -56,7 +56,7 @@ def over(solid):
     """From the left edge, at the upright side of the wedge, onto the right one."""
     old, new = sorted((e for e in solid.base.edges if abs(e.direction[0]) < 1e-9), key=lambda e: e.point[0])
     down = 1.0 if np.cross(old.direction, new.point - old.point)[2] < 0.0 else -1.0
-    return impact_in_space(solid, down * old.direction, pivot=old, onto=new)
+    return impact_in_space(solid, down * old.direction, pivot=old, onto=new, model="ked-3d")
 
 
 @pytest.mark.verifies("computed anew", "the exact integral over the solid", within="2e-3")

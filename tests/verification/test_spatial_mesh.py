@@ -106,7 +106,7 @@ def test_the_coefficient_converges_to_that_of_the_drum():
     The base is narrower than the drum by the square of 1/n.
     """
     counts = (8, 16, 32, 64, 128, 200)
-    drum = edge_coefficient(statue(None), start=math.pi * 1.5)
+    drum = edge_coefficient(statue(None), start=math.pi * 1.5, model="ked-3d")
     found = []
     for n in counts:
         angle = 2.0 * np.pi * (np.arange(n) + 0.5) / n
@@ -114,7 +114,7 @@ def test_the_coefficient_converges_to_that_of_the_drum():
         solid = Solid(parts, base=RADIUS * np.column_stack([np.cos(angle), np.sin(angle)]))
         normals = [math.atan2(-edge.direction[0], edge.direction[1]) for edge in solid.base.edges]
         start = int(np.argmin(np.abs(np.array(normals) + 0.5 * math.pi)))
-        found.append(edge_coefficient(solid, start=start))
+        found.append(edge_coefficient(solid, start=start, model="ked-3d"))
     missing = np.abs(np.array(found) - drum)
     order = np.log(missing[:-1] / missing[1:]) / np.log(np.array(counts[1:]) / np.array(counts[:-1]))
     np.testing.assert_allclose(order, 2.0, rtol=0.0, atol=0.1)

@@ -115,7 +115,7 @@ def test_corner_to_corner(model, value):
 def test_wrong_closures_are_found_out():
     """Negative control: energy without the momentum's direction, or momentum before stage 1, miss the vectors."""
     right = np.array([0.22320589, 0.92754448, 0.02004924])
-    impact = impact_in_space(PRISM, [0.3, 1.0, 0.1], pivot=(0, 0), onto=(1, 0)).impact
+    impact = impact_in_space(PRISM, [0.3, 1.0, 0.1], pivot=(0, 0), onto=(1, 0), model="ked-3d").impact
     for direction in (impact.velocity, np.linalg.solve(impact.inertia, impact.angular_momentum)):
         wrong = direction * math.sqrt(2.0 * energy_left(impact) / (direction @ impact.inertia @ direction))
         assert np.abs(wrong - right).max() > 1e-3
@@ -142,7 +142,7 @@ def test_corner_energy_by_brute_force(agreement):
     d = (s - point) / np.linalg.norm(s - point, axis=1, keepdims=True)
     left = v - d * np.einsum("nd,nd->n", v, d)[:, None]
     brute = 0.5 * 2400.0 * float(dv @ np.einsum("nd,nd->n", left, left))
-    impact = impact_in_space(PRISM, velocity, pivot=(0, 0), onto=(1, 0)).impact
+    impact = impact_in_space(PRISM, velocity, pivot=(0, 0), onto=(1, 0), model="ked-3d").impact
     agreement(abs(energy_left(impact) / brute - 1.0), 1e-9)
 
 
@@ -178,7 +178,7 @@ def test_prisms_of_any_polygon_equal_the_plane(section, onto, model):
 def test_known_trapezoid():
     """REF: KED 0.8704740952680223 for the trapezoid, here as a solid."""
     solid = rk.Solid.from_section(TRAPEZOID)
-    assert edge_coefficient(solid, start=1) == pytest.approx(0.8704740952680223, rel=1e-12, abs=0.0)
+    assert edge_coefficient(solid, start=1, model="ked-3d") == pytest.approx(0.8704740952680223, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.verifies("computed anew", "quadrature over the faces of the same prism", within="1e-12")
@@ -244,7 +244,7 @@ def test_flat_faces_exactly(seed, agreement, monkeypatch):
 def test_thin_bodies_approach_the_plane(depth):
     """About a corner KED tends to the plane value with the square of the depth."""
     solid = rk.Solid(box(1.0, depth, 4.0))
-    result = impact_in_space(solid, ALONG, pivot=(-0.5, -0.5 * depth), onto=(0.5, -0.5 * depth))
+    result = impact_in_space(solid, ALONG, pivot=(-0.5, -0.5 * depth), onto=(0.5, -0.5 * depth), model="ked-3d")
     assert result.velocity[1] == pytest.approx(0.94736683503237, abs=0.05 * depth**2 + 1e-12)
 
 

@@ -50,7 +50,7 @@ def test_a_map_is_its_single_histories(restitution):
 def test_sliding_before_rocking():
     """Under a motion that starts from nothing a block first slides at mu g, or first lifts at g tan alpha."""
     friction, levels = [0.2, 0.41, 0.42, 0.9], [1.9, 2.0, 4.0, 4.1, 9.0]
-    found = overturning_map(BLOCK, PULSE, ("friction", friction), ("pga", levels))
+    found = overturning_map(BLOCK, PULSE, ("friction", friction), ("pga", levels), restitution="ked")
     for i, level in enumerate(levels):
         for j, mu in enumerate(friction):
             outcome = list(Outcome)[int(found.outcome[i, j])]
@@ -125,7 +125,7 @@ def test_one_word_and_one_range_at_every_door():
     with pytest.raises(InvalidValueError, match="needs friction"):
         rk.simulate(BODY, PULSE, None)
     hops = noise_motion(5, 400, 0.01, 0.5, vertical=14.0)
-    flat = fragility_analysis(BLOCK, MotionList([hops] * 2), [0.5], friction=5.0)
+    flat = fragility_analysis(BLOCK, MotionList([hops] * 2), [0.5], friction=5.0, restitution="ked")
     assert not flat.responses.rocked.any() or (flat.responses.rotation[flat.responses.rocked] > 0.0).all()
 
 
@@ -139,7 +139,9 @@ def test_every_study():
     assert held == pytest.approx(pure, rel=1e-6)
     assert free is None or free > held
     motions = MotionList([noise_motion(k, 600, 0.01, 3.0) for k in range(6)])
-    rough, smooth = (fragility_analysis(BLOCK, motions, [3.0, 5.0, 7.0], friction=mu) for mu in (0.6, 0.3))
+    rough, smooth = (
+        fragility_analysis(BLOCK, motions, [3.0, 5.0, 7.0], friction=mu, restitution="ked") for mu in (0.6, 0.3)
+    )
     assert rough.uplift.contradictions == 0
     assert rough.uplift.checked == 18
     assert smooth.uplift.threshold is None
@@ -187,7 +189,7 @@ def test_refusals(how, says):
 def test_friction_is_said_once():
     """As an axis or as a number."""
     with pytest.raises(InvalidValueError, match="leave friction out"):
-        overturning_map(BLOCK, PULSE, ("friction", [0.3]), ("scale", [1.0]), friction=0.3)
+        overturning_map(BLOCK, PULSE, ("friction", [0.3]), ("scale", [1.0]), friction=0.3, restitution="ked")
     with pytest.raises(InvalidValueError, match="restitution"):
         overturning_map(BLOCK, PULSE, ("period", [0.6]), ("scale", [1.0]), None)
 

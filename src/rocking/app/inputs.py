@@ -13,6 +13,7 @@ from rocking.app.errors import Refused, TooLarge
 from rocking.app.work import Remembered
 from rocking.bodies import Body
 from rocking.bodies.formats.schema import BODIES, BlockInput, BodyFile, KnownTable
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.errors import InvalidValueError, located
 from rocking.motions.pulse import Motion
 from rocking.spec.bodies import body_of
@@ -209,7 +210,11 @@ _BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
 
 _MOTION: dict[str, Any] = {"pulse": "sine:amplitude=3,period=0.8"}
 
-_INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"models": ["ked", "housner"]}}
+_INPUTS: dict[str, Any] = {
+    "body": _BODY,
+    "motion": _MOTION,
+    "restitution": {"models": [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]},
+}
 
 
 def _shown(example: dict[str, Any]) -> ConfigDict:
@@ -249,7 +254,7 @@ class Inputs(ResponseTables):
     model_config = _shown(_INPUTS)
 
     # said once more: the schema tells defaults, which it does not know of a factory
-    restitution: RestitutionTable = RestitutionTable(model="ked")
+    restitution: RestitutionTable = RestitutionTable(model=DEFAULT_RESTITUTION)
     response: ResponseTable = ResponseTable()
     settings: SettingsTable = SettingsTable()
     body: BodyInput

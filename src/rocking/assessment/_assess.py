@@ -215,7 +215,7 @@ MAX_MARGIN = 50.0
 DIRECTIONS = 12
 """Directions of two components over half a turn; both polarities cover the full turn."""
 
-IN_SPACE = CALIBRATED, "ked", "housner"
+IN_SPACE = conventions.DEFAULT_RESTITUTION, *conventions.COMPARED_RESTITUTIONS
 """Default models of solids."""
 
 

@@ -202,14 +202,15 @@ class Arguments:
         return hinted(body, rest if axis in {"x", "y", "z"} else next(iter(motions), None))
 
     def restitution(self, usual: Tables | None = None) -> Tables:
-        """Return the table [restitution]: what `--set` says, or the usual one, which has the model of the option."""
+        """Return the table [restitution]: what `--set` says, or the usual one, or that of the option; may be empty."""
         keys: Tables = self.sets.get("restitution", {})
         if keys and (option := self.spelt("restitution")):
             raise InvalidValueError(
                 "{parameter} and --set {key} say the same: leave one out", parameter=option,
                 key=f"restitution.{next(iter(keys))}",
             )  # fmt: skip
-        return keys or ({"model": self.options["restitution"]} if usual is None else usual)
+        model = self.options.get("restitution")
+        return keys or ({"model": model} if usual is None and model is not None else usual or {})
 
     def body_table(self, file: str | None) -> Tables:
         from rocking.bodies.formats.schema import BlockTable

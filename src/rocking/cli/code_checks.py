@@ -4,11 +4,13 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
 
 from rocking.answers import Answer, Display
 from rocking.bodies import Block
 from rocking.cli import options
+from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import Export, Exports, write_records
 from rocking.cli.numbers import row
 from rocking.cli.page import Page, bar, deliver
@@ -71,7 +73,7 @@ def code_checks(
             "motions at 2, the limit of the Italian linear check."
         ),
     ] = None,
-    restitution: options.Restitution = "ked",
+    restitution: options.Restitution = None,
     slenderness: Annotated[
         str | None,
         typer.Option(
@@ -98,21 +100,23 @@ def code_checks(
         levels = LEVEL if wanted.needs_body else None
     at = None if levels is None else row("--levels", levels, "1" if wanted.unit == "-" else wanted.unit)[0]
     with bar("histories", quiet=as_json) as progress:
-        found = compare_code_methods(
-            problem.bodies, problem.motions, problem.restitution, levels=at, measure=wanted,
-            threads=threads, progress=progress, **problem.stated,
+        found, others = with_models(
+            lambda one: compare_code_methods(
+                one.bodies, one.motions, one.restitution, levels=at, measure=wanted, threads=threads,
+                progress=progress, **one.stated,
+            ), problem,
         )  # fmt: skip
     found = replace(found, bodies=_names(problem, Display(arguments.length or "m")))
-    deliver(CodesAnswer(found), exports, as_json=as_json)
+    deliver(CodesAnswer(found, others), exports, as_json=as_json)
 
 
 def _problem(arguments: "Arguments") -> "StudyProblem":
-    from rocking.cli.study import motions_of, problem_of
+    from rocking.cli.study import models_table, motions_of, problem_of
 
     with arguments.hinted():
         motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
-        body, _ = arguments.body_and_motions()
-        tables = {"body": _bodies(arguments, body), "restitution": {"models": [arguments.options["restitution"]]}}
+        (body, _), model = arguments.body_and_motions(), arguments.options["restitution"]
+        tables = {"body": _bodies(arguments, body), "restitution": models_table(model and [model])}
         return problem_of("histories", arguments, motions, **tables)
 
 
@@ -161,12 +165,14 @@ class CodesAnswer:
     """What methods say, and what histories show."""
 
     found: "CodeComparison"
+    others: dict[str, Any]  # of the compared models
 
     def answer(self) -> Answer:
         """Return what each method gives for each body."""
         from rocking.studies.code_methods import LEFT_OUT
 
-        return self.found.answer() | {"left_out": LEFT_OUT}
+        models = model_facts(self.found.restitution, self.others, _overturned)
+        return self.found.answer() | {"left_out": LEFT_OUT, **models}
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines
@@ -201,6 +207,12 @@ class CodesAnswer:
         )
         if found.asymmetric.any():
             page.line("Where sides differ, the worse one counts, in methods and in histories.")
+        show_models(page, self.answer(), Display(), found.restitution, _overturned(found))
+
+
+def _overturned(found: "CodeComparison") -> dict[str, Any]:
+    known = found.overturned == found.overturned  # NaN where there is no result
+    return overturned(np.where(known, found.overturned - 1.0, -3.0))
 
 
 def show_limits(page: Page, methods: "Iterable[CodeMethod]", found: "BodyAssessment | CodeComparison") -> None:

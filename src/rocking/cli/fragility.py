@@ -195,7 +195,7 @@ def _states(text: str) -> list[float | str]:
 def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     from rocking.cli.study import motions_of, of_body
 
-    kind, restitution = arguments.options["analysis"], arguments.options["restitution"] or ["ked"]
+    kind, restitution = arguments.options["analysis"], arguments.options["restitution"]
     motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
     count = motions[0].get("count")
     if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:

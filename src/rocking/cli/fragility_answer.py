@@ -1,10 +1,11 @@
 """What `rocking fragility` shows and writes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rocking.answers import Answer, Display
+from rocking.cli.compared import model_facts, show_models, with_models
 from rocking.cli.page import Page, sentence
 from rocking.errors import InvalidValueError
 from rocking.quantities import Quantity
@@ -36,16 +37,17 @@ class FragilityAnswer:
     length: str  # unit of lengths
     name: str | None = None  # of the body, in files
     crossing: Any = "keep-uplift"  # treatment of curves that cross
+    others: dict[str, Any] = field(default_factory=dict)  # analyses of the compared models
 
     @classmethod
     def of(
         cls, problem: "StudyProblem", progress: Any, threads: int | None, *, written: str, length: str
     ) -> "FragilityAnswer":
         """Compute an analysis."""
-        analysis = problem.answer(progress, threads)
+        analysis, others = with_models(lambda one: one.answer(progress, threads), problem)
         several = len(problem.restitutions) > 1
         results = analysis.results if several else {next(iter(problem.restitutions)): analysis}
-        return cls(problem, results, analysis if several else None, written, length)
+        return cls(problem, results, analysis if several else None, written, length, others=others)
 
     @property
     def first(self) -> Any:
@@ -149,6 +151,7 @@ class FragilityAnswer:
                 "choices": compared.summary(),
                 "verdict": compared.verdict,
             },
+            **model_facts(", ".join(self.results), self.others, _of_model),
         }, {name: Quantity(name, unit, first.subject.measure_words) for name in _MEASURED})  # fmt: skip
 
     def _motions_facts(self) -> dict[str, Any]:
@@ -202,6 +205,7 @@ class FragilityAnswer:
             page.line()
         for line in self._sentences(display):
             page.line(line)
+        show_models(page, answer, display, ", ".join(self.results), _of_model(first))
 
     def _uplift(self, display: Display) -> str:
         check, lowest = self.first.uplift, self.first.subject.lowest_uplift
@@ -285,6 +289,13 @@ class FragilityAnswer:
             sentence(f"{analysis.definitions['first crossing']}: {curve}"),
             analysis.resurrection,
         ]
+
+
+def _of_model(analysis: Any) -> dict[str, Any]:
+    """Return the curve of the last limit state."""
+    state, fit = list(analysis.fits.items())[-1]
+    curve = fit.summary()
+    return {"state": state, **{name: curve[name] for name in _OF_CURVES[:2]}}
 
 
 def _result_facts(analysis: Any, adjusted: "dict[str, FragilityCurve]") -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from rocking.answers import Answer, Display
 from rocking.cli import options
+from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import contact_words, lost_contact, mode_shares
@@ -56,22 +57,22 @@ def command_of(kind: str) -> Callable[..., None]:
         as_json: options.AsJson = False,
     ) -> None:
         from rocking.cli.arguments import Arguments
-        from rocking.cli.study import TABLES, histories_in, motions_of, of_body, problem_in, problem_of
+        from rocking.cli.study import TABLES, histories_in, models_table, motions_of, of_body, problem_in, problem_of
 
         files, length = Exports.of(context.params["output"], exports), None
         first = context.params["body"] if has_body else next(iter(context.params["record"] or ()), None)
         if (problem := problem_in(context, first, own)) is None:
             arguments = Arguments(context, *TABLES, own)
-            length, laws = arguments.length, restitution or ["ked"]
+            length = arguments.length
             stated = arguments.table(own, arguments.values(table))
             motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
             if has_body:
-                problem = of_body(arguments, kind, stated, laws, motions)
+                problem = of_body(arguments, kind, stated, restitution, motions)
             else:
-                problem = problem_of(kind, arguments, motions, restitution={"models": laws}, **{own: stated})
+                problem = problem_of(kind, arguments, motions, restitution=models_table(restitution), **{own: stated})
         with bar("histories", histories_in(problem), quiet=as_json) as progress:
-            dataset = problem.answer(progress, threads)
-        deliver(HistoriesAnswer(problem, dataset, length or "m"), files, as_json=as_json)
+            dataset, others = with_models(lambda one: one.answer(progress, threads), problem)
+        deliver(HistoriesAnswer(problem, dataset, length or "m", others), files, as_json=as_json)
 
     return command
 
@@ -88,6 +89,12 @@ class HistoriesAnswer:
     problem: "StudyProblem"
     dataset: "xr.Dataset"
     length: str  # unit of lengths
+    others: dict[str, Any]  # histories of the compared models
+
+    @property
+    def label(self) -> str:
+        """The restitutions."""
+        return ", ".join(self.problem.restitutions)
 
     def draw(self) -> Any:
         return self.problem.document.plot(_Finished(self.problem, self.dataset), None)
@@ -107,6 +114,7 @@ class HistoriesAnswer:
             **{name: dataset[name].values.tolist() for name in names},
             "modes": mode_shares(dataset["mode"].values),
             "contact": contact_words(lost_contact(dataset)),
+            **model_facts(self.label, self.others, _overturned),
         })  # fmt: skip
 
     def show(self, page: Page) -> None:
@@ -116,7 +124,7 @@ class HistoriesAnswer:
         problem, answer = self.problem, self.answer()
         if len(problem.bodies) == 1:
             page.facts(subject_lines(problem, Display(self.length)))
-        page.facts([("restitution", ", ".join(answer["restitution"]))])
+        page.facts([("restitution", self.label)])
         page.facts(source_lines(summaries_of(problem.kept_motions)))
         counts = [
             f"{size} {name if size == 1 else _PLURALS.get(str(name), f'{name}s')}"
@@ -125,6 +133,11 @@ class HistoriesAnswer:
         page.line(f"histories:    {' x '.join(counts)}\n")
         page.rows(answer["modes"], ("mode", "count", "share"), dense=False)
         page.warn(filter(None, [answer["contact"]]))
+        show_models(page, answer, Display(), self.label, _overturned(self.dataset))
+
+
+def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:
+    return overturned(dataset["mode"].values)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import typer
 
 from rocking.answers import Answer, Display
 from rocking.cli import options
+from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import mode_shares
@@ -74,10 +75,11 @@ def map(
         arguments = Arguments(context, *TABLES, "map")
         length = arguments.length
         table, written = _table(arguments)
-        problem = body_and_motion(arguments, "overturning-map", table, restitution or ["ked"])
+        problem = body_and_motion(arguments, "overturning-map", table, restitution)
     with bar("histories", quiet=as_json) as progress:
-        arrays, compared = _computed(problem, progress, threads, picture="picture" in exports.names)
-    deliver(MapAnswer(problem, arrays, compared, written, length or "m"), exports, as_json=as_json)
+        picture = "picture" in exports.names
+        maps, others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
+    deliver(MapAnswer(problem, *maps, written, length or "m", others), exports, as_json=as_json)
 
 
 def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":
@@ -147,6 +149,7 @@ class MapAnswer:
     compared: Any  # maps with all restitutions, where there are several
     written: dict[str, str]  # units that axes were written in, by their name
     length: str  # unit of lengths
+    others: dict[str, Any]  # maps of the compared models
 
     @property
     def axes(self) -> "tuple[Axis, Axis]":
@@ -224,6 +227,7 @@ class MapAnswer:
             "overturning": self.extent(),
             "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
+            **model_facts(arrays.attributes["restitution"], self.others, lambda maps: overturned(maps[0]["mode"])),
         }, {which: Quantity(which, axis.unit, axis.words, label=axis.name) for which, axis in axis_of.items()}
         | _RESTITUTIONS)  # fmt: skip
 
@@ -286,6 +290,7 @@ class MapAnswer:
             changed = replace(display, own={**answer.quantities, **_CHANGES})
             page.rows(answer["sensitivity"]["pairs"], _FLIPS, changed, dense=False)
             page.line(self.compared.verdict)
+        show_models(page, answer, display, answer["restitution"], overturned(self.arrays["mode"]))
 
 
 def _grouped(shares: list[dict[str, Any]]) -> list[dict[str, Any]]:

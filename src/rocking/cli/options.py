@@ -10,7 +10,7 @@ from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats.schema import BLOCK_KEYS, BlockTable
 from rocking.cli import completion
-from rocking.conventions import UNITS
+from rocking.conventions import DEFAULT_RESTITUTION, UNITS
 from rocking.spec.documents.prediction import PredictTable
 from rocking.spec.fields import Values, kinds_of, meaning_and_unit
 from rocking.spec.motion_tables import ComponentsTable
@@ -151,15 +151,16 @@ SeveralMotions = Annotated[
     ),
 ]
 Restitution = Annotated[
-    str,
+    str | None,
     typer.Option(
-        help="Model as in rocking models, my_file.py:MyModel, or a coefficient.", autocompletion=completion.models
+        help=rf"Model as in rocking models, my_file.py:MyModel, or a coefficient \[default: {DEFAULT_RESTITUTION}].",
+        autocompletion=completion.models,
     ),
 ]
 Restitutions = Annotated[
     list[str] | None,
     typer.Option(
-        help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none.",
+        help=rf"Model as in rocking models, or a coefficient; again for more \[default: {DEFAULT_RESTITUTION}].",
         autocompletion=completion.models,
     ),
 ]

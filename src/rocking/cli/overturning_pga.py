@@ -7,6 +7,7 @@ import typer
 
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
+from rocking.cli.compared import model_facts, show_models, with_models
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver, sentence
@@ -56,7 +57,7 @@ def overturning_pga(
     body: options.BodyFile = None,
     record: options.Record = None,
     motion: options.Motion = None,
-    restitution: options.Restitution = "ked",
+    restitution: options.Restitution = None,
     sets: options.Set = None,
     friction: options.Friction = None,
     threads: options.Threads = None,
@@ -74,9 +75,10 @@ def overturning_pga(
         arguments = Arguments(context, *TABLES, "minimum")
         length, acceleration = arguments.length, arguments.acceleration
         table = arguments.table("minimum", arguments.values(MinimumTable))
-        problem = body_and_motion(arguments, "minimum-acceleration", table, [restitution])
+        problem = body_and_motion(arguments, "minimum-acceleration", table, restitution and [restitution])
     with bar("histories", quiet=as_json) as progress:
-        answer = MinimumAnswer(problem, problem.answer(progress, threads), length or "m", acceleration or "m/s2")
+        transitions, others = with_models(lambda one: one.answer(progress, threads), problem)
+    answer = MinimumAnswer(problem, transitions, length or "m", acceleration or "m/s2", others)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -88,6 +90,7 @@ class MinimumAnswer:
     transitions: "Transitions"
     length: str  # units of lengths and of accelerations
     acceleration: str
+    others: dict[str, Any]  # of the compared models
 
     def draw(self) -> Any:
         from rocking.plots.transitions import transitions_picture
@@ -126,6 +129,7 @@ class MinimumAnswer:
             "failed": transitions.failed,
             "contact": transitions.contact,
             "sentence": stretches(transitions),
+            **model_facts(self.label, self.others, _of_model),
         }, _CLOSELY)  # fmt: skip
 
     def show(self, page: Page) -> None:
@@ -154,6 +158,11 @@ class MinimumAnswer:
         if transitions.failed:
             page.warn([f"{transitions.failed} of {transitions.samples} histories could not be computed"])
         page.warn(filter(None, [transitions.contact]))
+        show_models(page, answer, display, self.label, _of_model(transitions))
+
+
+def _of_model(transitions: "Transitions") -> dict[str, Any]:
+    return {"minimum_acceleration": transitions.minimum}
 
 
 _SCANNED = "scanned from {low} to {high}, resolution {resolution}"

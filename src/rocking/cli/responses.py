@@ -7,13 +7,15 @@ from typing import Any
 from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli.page import Page, sentence
-from rocking.conventions import given_or_assumed
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
 from rocking.dynamics import SpatialStart
-from rocking.errors import InvalidValueError, RockingError
+from rocking.errors import RockingError
+from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import MotionSummary, peak_name
 from rocking.outcome import Outcome
+from rocking.restitution.headline import headline
 from rocking.spec.construction import COMPLEMENTARITY
 from rocking.spec.response import ResponseProblem
 
@@ -39,19 +41,21 @@ _TABLES = {
     ),
 }  # fmt: skip
 _COMPARED = ("model", "coefficient", "outcome", "peak_ratio", "impacts")
-_NAMED = ("calibrated", "housner")
+_NAMED = (DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS)
+_AGREE, _DIFFER = "All models have the same outcome.", "The outcome depends on the restitution model."
 _IN_PYTHON = "simulate(body, motion, friction=...)"
 
 
 def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, details: bool) -> "ResponseAnswer":
-    """Return the response to a problem, and with the models that it lists beside the first, or all without a value."""
+    """Return the response to a problem, and those of other models: the listed ones, or the default comparison."""
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError("there is no response: {reason}", reason=response.status.value)
-    if not problem.mechanics.is_compared:
-        return ResponseAnswer(problem, response, display, details=details)
     rivals = dict(list(problem.restitutions.items())[1:])
-    if not listed:
+    if not problem.mechanics.is_compared:
+        is_default = next(iter(problem.restitutions)) == DEFAULT_RESTITUTION
+        rivals = {name: name for name in COMPARED_RESTITUTIONS if is_default}
+    elif not listed:
         from rocking.evidence._coefficient_table import default_models
 
         rivals = {model.label: model for model in default_models() if model.label != response.parameters.label}
@@ -59,14 +63,14 @@ def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, detai
     for name, law in rivals.items():
         try:
             others[name] = problem.answer(law)
-        except InvalidValueError as error:
+        except RockingError as error:
             others[name] = str(error)
     return ResponseAnswer(problem, response, display, others, details=details)
 
 
 @dataclass(frozen=True)
 class ResponseAnswer:
-    """A response of any mechanics; of pure rocking with what other models make of the same problem."""
+    """A response of any mechanics, and the responses of other models to the same problem."""
 
     problem: ResponseProblem
     response: Any
@@ -92,12 +96,10 @@ class ResponseAnswer:
         if problem.dropped:
             still = [0.0] * len(problem.axes)
             more |= {"start_height": problem.start_height, "start_velocity": list(problem.start_velocity) or still}
-        if problem.mechanics.is_compared:
-            more["other_models"] = {
-                name: {"error": other} if isinstance(other, str) else other.outcome_answer()
-                for name, other in self.others.items()
-            }
         answer: Answer = self.response.answer(**self._friction)
+        others = self.others.items()
+        more["other_models"] = {name: {"error": one} if isinstance(one, str) else _facts(one) for name, one in others}
+        more["headline"] = headline(answer["restitution"])
         return answer | more
 
     def show(self, page: Page) -> None:
@@ -118,8 +120,11 @@ class ResponseAnswer:
             lines.append(("friction demand", f"{demand} ({given_or_assumed(given)} {given:g})"))
         page.values([*lines, *(display.lines(answer.values, _DETAILS) if self.details else ())])
         page.warn(doubt.replace(_IN_PYTHON, "--friction") for doubt in answer.values.get("warnings", ()))
-        if self.others:
+        if self.problem.mechanics.is_compared and self.others:
             self._compare(page)
+        else:
+            self._compare_outcomes(page, answer)
+        page.line(answer["headline"])
         self._show_tables(page, answer)
         page.line()
         for assumed in answer["body"]["assumed"]:
@@ -191,6 +196,18 @@ class ResponseAnswer:
         known = {name: one for name, one in responses.items() if not isinstance(one, str)}
         page.line(ModelAgreement.of(known).sentence)
 
+    def _compare_outcomes(self, page: Page, answer: Answer) -> None:
+        """Write the outcome with each model."""
+        given = answer["other_models"]
+        known = {name: one for name, one in given.items() if "error" not in one}
+        if known:
+            rows = {answer["restitution"]: _facts(self.response), **known}
+            page.line("\nCompare restitution models", "bold")
+            page.rows([{"model": name, **one.values} for name, one in rows.items()], (), self.display)
+            differ = len({one["outcome"] for one in rows.values()}) > 1
+            page.line(Message(_DIFFER if differ else _AGREE))
+        page.warn(f"{name}: {one['error']}" for name, one in given.items() if "error" in one)
+
     def _compared(self, label: str, response: Any) -> tuple[str, ...]:
         if isinstance(response, str):
             return label, "-", "not for this body", "-", "-"
@@ -201,6 +218,16 @@ class ResponseAnswer:
             outcome = "still rocking"
         ratio = "-" if fell else self.display.cell("peak_ratio", answer["peak_ratio"])
         return label, self._coefficient_words(answer["coefficient"]), outcome, ratio, str(answer["impacts"])
+
+
+def _facts(response: Any) -> Answer:
+    """Return the outcome of a response, where it is compared with others."""
+    if hasattr(response, "outcome_answer"):
+        answer: Answer = response.outcome_answer()
+        return answer
+    peak = "peak_tilt" if hasattr(response, "peak_tilt") else "peak_rotation"
+    facts = {"outcome": response.outcome.name.lower(), peak: getattr(response, peak), "impacts": len(response.impacts)}
+    return Answer({**facts, "still_rocking": response.still_rocking})
 
 
 def _grouped(rows: dict[str, tuple[str, ...]], shown: set[str]) -> dict[str, tuple[str, ...]]:

@@ -87,7 +87,7 @@ def simulate(
         ),
     ] = None,
     motion: options.Motion = None,
-    restitution: options.Restitution = "ked",
+    restitution: options.Restitution = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     details: options.Details = False,
@@ -96,13 +96,15 @@ def simulate(
     """Run `rocking simulate`."""
     from rocking.cli.responses import answer_of
 
-    exports = Exports.of(output, EXPORTS)
+    exports, stated = Exports.of(output, EXPORTS), False
     in_space = any(path.suffix.lower() == ".glb" for _, path in exports.files)
     display = Display(acceleration="g")
     if file := document_file(context, body, ("response",), has="has a table [body] and "):
         with located(str(file), "file"):
             tables = with_sets(tables_in(file) or {}, parsed_sets(sets, _TABLES))
-            problem = response_problem(checked(ResponseDocument, tables), InputFiles(file.parent), in_space=in_space)
+            document = checked(ResponseDocument, tables)
+            problem = response_problem(document, InputFiles(file.parent), in_space=in_space)
+            stated = "restitution" in document.model_fields_set
     else:
         arguments = Arguments(context, *_TABLES)
         display = Display(arguments.length or "m", arguments.acceleration or "g")
@@ -120,7 +122,7 @@ def simulate(
     if in_space and problem.mechanics.name != "hull":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     with bar("history", quiet=as_json):
-        answer = answer_of(problem, display, listed=file is not None, details=details)
+        answer = answer_of(problem, display, listed=stated, details=details)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -149,7 +151,7 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
         tables: dict[str, Any] = {
             "body": arguments.body_table(body),
             "response": response,
-            "restitution": arguments.restitution(),
+            **_restitution(arguments),
             "settings": arguments.sets.get("settings", {}),
         }
         if motions or not (free or dropped):
@@ -157,6 +159,11 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
             scale = arguments.options["scale"] if arguments.spelt("scale") else None
             tables["motion"] = {**motion, **arguments.table("motion", {"scale": scale}, keys={"scale"})}
         return response_problem(checked(ResponseDocument, tables), CommandFiles(Path()), in_space=in_space)
+
+
+def _restitution(arguments: Arguments) -> dict[str, Any]:
+    """Return the table [restitution] by its name; nothing where no restitution is stated."""
+    return {"restitution": stated} if (stated := arguments.restitution()) else {}
 
 
 def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bool) -> "SeveralAnswer":
@@ -170,7 +177,7 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
     with arguments.hinted():
         tables = {
             "response": arguments.table("response", arguments.values(ResponseTable)),
-            "restitution": arguments.restitution(),
+            **_restitution(arguments),
             "settings": arguments.sets.get("settings", {}),
         }  # fmt: skip
         scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})

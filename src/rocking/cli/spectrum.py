@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.answers import Answer
+from rocking.answers import Answer, Display
 from rocking.cli import options
+from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
@@ -37,7 +38,7 @@ def spectrum(
     slenderness: Annotated[
         str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
     ] = "4,6,8",
-    restitution: options.Restitution = "ked",
+    restitution: options.Restitution = None,
     units: options.RecordUnits = None,
     sets: options.Set = None,
     friction: options.Friction = None,
@@ -63,11 +64,15 @@ def spectrum(
         with hinted(None, named[0]):
             each = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
-                "rocking-spectrum", arguments, each, restitution={"model": restitution}, spectrum=table
+                "rocking-spectrum",
+                arguments,
+                each,
+                restitution={"model": restitution} if restitution else {},
+                spectrum=table,
             )
     with bar("histories", quiet=as_json) as progress:
-        answer = SpectrumAnswer(problem.answer(progress, threads), problem.settings)
-    deliver(answer, exports, as_json=as_json)
+        dataset, others = with_models(lambda one: one.answer(progress, threads), problem)
+    deliver(SpectrumAnswer(dataset, problem.settings, others), exports, as_json=as_json)
 
 
 def _angles(text: str) -> list[float]:
@@ -108,6 +113,7 @@ class SpectrumAnswer:
 
     dataset: "xr.Dataset"
     settings: "Settings"
+    others: dict[str, Any]  # spectra of the compared models
 
     def draw(self) -> Any:
         from rocking.plots.rocking_spectrum import rocking_spectrum_picture
@@ -130,6 +136,7 @@ class SpectrumAnswer:
             "peak_ratio": dataset["peak_ratio"].values,
             "curves": self.curves(),
             "contact": dataset.attrs["contact"],
+            **model_facts(dataset.attrs["restitution"], self.others, _overturned),
         })  # fmt: skip
 
     def curves(self) -> list[dict[str, Any]]:
@@ -166,6 +173,11 @@ class SpectrumAnswer:
         failed = sum(one["failed"] for one in curves)
         page.warn([f"{failed} histories could not be computed"] if failed else [])
         page.warn(filter(None, [dataset.attrs["contact"]]))
+        show_models(page, self.answer(), Display(), dataset.attrs["restitution"], _overturned(dataset))
+
+
+def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:
+    return overturned(dataset["mode"].values)
 
 
 def _curve(one: "xr.Dataset") -> dict[str, Any]:

@@ -49,7 +49,7 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *beside
 def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
     """Return the problem of the document that was typed, which has some tables beside the settings."""
     settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
-    if stated := arguments.restitution(tables.get("restitution", {})):
+    if stated := arguments.restitution(tables.pop("restitution", {})):
         tables["restitution"] = stated
     document = {
         "campaign": {"name": questions()[kind].own_table(), "kind": kind},
@@ -83,7 +83,9 @@ def histories_in(problem: StudyProblem) -> int:
     return int(math.prod(document.sizes) * len(problem.motions) // document.motion_count)
 
 
-def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str]) -> StudyProblem:
+def body_and_motion(
+    arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str] | None
+) -> StudyProblem:
     """Return the problem of a study of one body and one motion; own: the study's own table."""
     _, named = arguments.body_and_motions()
     if not named:
@@ -98,19 +100,29 @@ def body_and_motion(arguments: Arguments, kind: str, own: dict[str, Any], restit
 
 
 def of_body(
-    arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str], motions: list[dict[str, Any]]
+    arguments: Arguments,
+    kind: str,
+    own: dict[str, Any],
+    restitution: Sequence[str] | None,
+    motions: list[dict[str, Any]],
 ) -> StudyProblem:
     """Return the problem of a study of one body under motions; own: the study's own table."""
-    if twice := next((text for text in restitution if restitution.count(text) > 1), None):
+    stated = restitution or ()
+    if twice := next((text for text in stated if stated.count(text) > 1), None):
         raise InvalidValueError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])
     with arguments.hinted():
         body, _ = arguments.body_and_motions()
         tables = {
             "body": arguments.body_table(body),
-            "restitution": {"models": list(restitution)},
+            "restitution": models_table(restitution),
             questions()[kind].own_table(): own,
         }
         return problem_of(kind, arguments, motions, **tables)
+
+
+def models_table(restitution: Sequence[str] | None) -> dict[str, Any]:
+    """Return the table [restitution] of models that were typed; empty without any."""
+    return {"models": list(restitution)} if restitution else {}
 
 
 def in_lists(motions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, TypeVar, Unpack, overload
 
 from rocking.bodies import Body
+from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.mechanics_base import UNCHANGED, Mechanics
 from rocking.dynamics.response import Response
@@ -67,26 +68,28 @@ def _shown(function: Called) -> Called:
 
 @overload
 def simulate(
-    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: None = None,
+    body: Body, motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[MovedOptions],
 ) -> Response: ...  # fmt: skip
 @overload
 def simulate(
-    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: float,
+    body: Body, motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: float,
     **options: Unpack[MovedOptions],
 ) -> "ContactResponse": ...  # fmt: skip
 @overload
 def simulate(
-    body: "BodyInSpace", motion: AnyMotion, restitution: Any = "ked", *, friction: None = None,
+    body: "BodyInSpace", motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[MovedOptions],
 ) -> "SpatialResponse": ...  # fmt: skip
 @overload
 def simulate(
-    body: "BodyInSpace", motion: AnyMotion, restitution: Any = "ked", *, friction: float,
+    body: "BodyInSpace", motion: AnyMotion, restitution: Any = DEFAULT_RESTITUTION, *, friction: float,
     **options: Unpack[MovedOptions],
 ) -> "HullResponse": ...  # fmt: skip
 @_shown
-def simulate(body: Any, motion: Any, restitution: Any = "ked", *, friction: float | None = None, **options: Any) -> Any:
+def simulate(
+    body: Any, motion: Any, restitution: Any = DEFAULT_RESTITUTION, *, friction: float | None = None, **options: Any
+) -> Any:
     """Return how a body moves under a ground motion.
 
     A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
@@ -184,26 +187,31 @@ def simulate(body: Any, motion: Any, restitution: Any = "ked", *, friction: floa
 
 @overload
 def free_rocking(
-    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
+    body: Body, rotation: float = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[HistoryOptions],
 ) -> Response: ...  # fmt: skip
 @overload
 def free_rocking(
-    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: float,
+    body: Body, rotation: float = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: float,
     **options: Unpack[HistoryOptions],
 ) -> "ContactResponse": ...  # fmt: skip
 @overload
 def free_rocking(
-    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None,
+    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: None = None,
     **options: Unpack[HistoryOptions],
 ) -> "SpatialResponse": ...  # fmt: skip
 @overload
 def free_rocking(
-    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = "ked", *, friction: float,
+    body: "BodyInSpace", rotation: float = 0.0, restitution: Any = DEFAULT_RESTITUTION, *, friction: float,
     **options: Unpack[HistoryOptions],
 ) -> "HullResponse": ...  # fmt: skip
 def free_rocking(
-    body: Any, rotation: float = 0.0, restitution: Any = "ked", *, friction: float | None = None, **options: Any
+    body: Any,
+    rotation: float = 0.0,
+    restitution: Any = DEFAULT_RESTITUTION,
+    *,
+    friction: float | None = None,
+    **options: Any,
 ) -> Any:
     """Return how a body moves when it is let go, or pushed, on ground at rest.
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking.bodies import Body
+from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.dynamics._simulate import IntegrationOptions
 from rocking.dynamics.mechanics import mechanics_for_all
 from rocking.dynamics.mechanics_base import Combinations, frictions_of, listed
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 def simulate_many(  # noqa: PLR0913 - every one of them is a question that users ask
     bodies: Body | Sequence[Body],
     motions: Motion | Sequence[Motion],
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     friction: Any = None,
     scale: Any = 1.0,

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, IntArray, g
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray, IntArray, g
 from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.errors import InvalidValueError
@@ -68,7 +68,7 @@ def transitions_picture(
     found: Transitions,
     body: Body,
     motion: Motion,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     points: int = 800,
     gravity: float = conventions.g,

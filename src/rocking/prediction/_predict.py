@@ -29,9 +29,6 @@ REPRODUCED = 0.01
 
 FIFTH = 0.2
 
-BESIDE = "ked", "housner"
-"""Models that stand beside what the measurements say, for half of the draws."""
-
 
 def predict(  # noqa: PLR0913 - everything that is not known is an argument
     body: Body | Solid,
@@ -142,7 +139,7 @@ def predict(  # noqa: PLR0913 - everything that is not known is an argument
     falls = found["overturning"][: len(points)]
     others: dict[str, Chance] = {}
     if isinstance(body, Body) and (restitution is None or (isinstance(restitution, str) and restitution in MEASURED)):
-        for name in BESIDE:
+        for name in conventions.COMPARED_RESTITUTIONS:
             try:
                 other = _mechanics(body, motions, {**given, "restitution": name}, gravity, bounce, bounce_law)
             except RockingError:

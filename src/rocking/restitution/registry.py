@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import FEET, Foot
+from rocking.conventions import DEFAULT_RESTITUTION, FEET, Foot
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.restitution._implied import energy_bound
 from rocking.restitution._model import RestitutionModel
@@ -280,7 +280,7 @@ def energy_refusal(onto: Foot, most: float, largest: float) -> InvalidValueError
 
 def coefficient_of_restitution(
     body: Body,
-    restitution: str | RestitutionModel | float | Mapping[str, float] = "ked",
+    restitution: str | RestitutionModel | float | Mapping[str, float] = DEFAULT_RESTITUTION,
     *,
     onto: Foot = "right",
     eta: float = 1.0,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic_core import PydanticKnownError
 
+from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.errors import InvalidValueError
 from rocking.spec.fields import JobTable, Seed, Text, in_list, key
 from rocking.spec.motion_tables import MotionTable
@@ -57,7 +58,7 @@ class StudyQuestion(JobTable):
 
     campaign: CampaignTable
     motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
-    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model="ked"))
+    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model=DEFAULT_RESTITUTION))
     settings: StudySettingsTable = Field(default_factory=StudySettingsTable)
 
     @classmethod

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import DEFAULT_FRICTION
+from rocking.conventions import DEFAULT_FRICTION, DEFAULT_RESTITUTION
 from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, simulate
 from rocking.dynamics.mechanics import mechanics_for, mechanics_of
 from rocking.dynamics.mechanics_base import Mechanics
@@ -29,7 +29,9 @@ class ResponseProblem:
 
     body: Any  # a plane body, or a `Solid`
     motion: Any  # not scaled; by axis for a body in space, None for free rocking
-    restitutions: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})  # by label, as `simulate` takes them
+    restitutions: dict[str, Any] = field(
+        default_factory=lambda: {DEFAULT_RESTITUTION: DEFAULT_RESTITUTION}
+    )  # by label, as `simulate` takes them
     settings: Settings = field(default_factory=PlaneSettings)  # how it moves, and how to integrate
     engine: str = "auto"
     assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]

@@ -1,14 +1,14 @@
 """What the tables of a study describe: bodies, motions, restitutions and settings."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, g
+from rocking.conventions import COMPARED_RESTITUTIONS, FloatArray, g
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings
@@ -76,6 +76,12 @@ class StudyProblem:
     def restitution(self) -> Any:
         """The first restitution."""
         return next(iter(self.restitutions.values()))
+
+    @property
+    def with_compared_models(self) -> dict[str, "StudyProblem"]:
+        """The problem by compared restitution model; empty where the document states a restitution."""
+        stated = "restitution" in self.document.model_fields_set | {axis.name for axis in self.document.axes}
+        return {} if stated else {name: replace(self, restitutions={name: name}) for name in COMPARED_RESTITUTIONS}
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
         """Compute the study in memory, as its question says."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking import conventions
 from rocking.bodies import Body
+from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.errors import extra
 from rocking.messages import plain_texts
 from rocking.motions.pulse import Motion
@@ -25,7 +26,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     motion: Motion,
     x: Axis | tuple[str, Any],
     y: Axis | tuple[str, Any],
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     gravity: float = conventions.g,
     threads: int | None = None,

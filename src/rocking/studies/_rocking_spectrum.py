@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Block
-from rocking.conventions import FloatArray
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.parameters import sides_of
@@ -29,7 +29,7 @@ def rocking_spectrum(
     motions: Motion | Sequence[Motion],
     slenderness_angles: Any,
     periods: Any,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     gravity: float = conventions.g,
     threads: int | None = None,

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import DEFAULT_RESTITUTION, BoolArray, FloatArray, IntArray
 from rocking.dynamics.mechanics import study_settings
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
@@ -36,7 +36,9 @@ class Plane:
             axis.check_beside(other)
 
     @classmethod
-    def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any = "ked", **options: Any) -> "Plane":
+    def of(
+        cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any = DEFAULT_RESTITUTION, **options: Any
+    ) -> "Plane":
         """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
@@ -234,7 +236,7 @@ def refined_map(
     motion: Motion,
     x: Axis | tuple[str, Any],
     y: Axis | tuple[str, Any],
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     levels: int = 3,
     gravity: float = conventions.g,

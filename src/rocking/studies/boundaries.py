@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import DEFAULT_RESTITUTION, BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Motion
 from rocking.outcome import UNCOUNTED
@@ -47,7 +47,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     motion: Motion,
     x: Axis | tuple[str, Any],
     y: Axis | tuple[str, Any],
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     by: str = "verdict",
     levels: int = 0,

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray, IntArray
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
@@ -240,7 +240,7 @@ def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[T
 def minimum_overturning_acceleration(
     body: Body,
     motion: Motion,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     lowest: float | None = None,
     highest: float | None = None,
@@ -312,7 +312,7 @@ def minimum_overturning_acceleration(
 def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a question that users ask
     bodies: Sequence[Body],
     motion: Motion,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     lowest: float | None = None,
     highest: float | None = None,

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks, quantities
 from rocking.bodies import Block, Body
-from rocking.conventions import FloatArray
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics import mechanics_of
@@ -39,7 +39,7 @@ class Question:
 
     body: Any  # a plane body, or one in space
     motion: Any  # of a body in space components by axis too, as for `simulate`
-    restitution: Any = "ked"  # as for `simulate`
+    restitution: Any = DEFAULT_RESTITUTION  # as for `simulate`
     settings: Settings = field(default_factory=PlaneSettings)  # how to integrate
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
     engine: str = "auto"  # which engine

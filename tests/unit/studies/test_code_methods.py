@@ -136,7 +136,7 @@ def test_the_interval_of_the_median_draws_whole_motions():
 
 
 def test_methods_are_chosen_by_name():
-    one = compare_code_methods(SMALL, PULSES[0], methods=["ishiyama"])
+    one = compare_code_methods(SMALL, PULSES[0], methods=["ishiyama"], restitution="ked")
     assert [each.name for each in one.methods] == ["ishiyama"]
     assert one.levels == ("as they are",)
 
@@ -152,13 +152,13 @@ def test_what_is_refused():
     with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
         BodySides.of([box])
     with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
-        compare_code_methods(box, PULSES)
+        compare_code_methods(box, PULSES, restitution="ked")
     with pytest.raises(InvalidValueError, match="at least one body"):
-        compare_code_methods([], PULSES)
+        compare_code_methods([], PULSES, restitution="ked")
     with pytest.raises(InvalidValueError, match="method"):
-        compare_code_methods(SMALL, PULSES, methods=["eurocode"])
+        compare_code_methods(SMALL, PULSES, methods=["eurocode"], restitution="ked")
     with pytest.raises(InvalidValueError, match="> 0"):
-        compare_code_methods(SMALL, rk.GroundMotion([0.0, 0.0, 0.0], 0.1))
+        compare_code_methods(SMALL, rk.GroundMotion([0.0, 0.0, 0.0], 0.1), restitution="ked")
 
 
 def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():

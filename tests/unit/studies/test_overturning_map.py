@@ -37,7 +37,9 @@ def test_a_map_is_simulate_many_cell_by_cell():
 def test_slenderness_against_restitution_is_simulate_many():
     """Two axes of the body: the same bits as one call for each coefficient."""
     ratios, coefficients = np.linspace(2.0, 9.0, 8), [0.5, 0.8, 0.95]
-    found = overturning_map(BLOCK, PULSE, ("slenderness_ratio", ratios), ("restitution", coefficients), threads=1)
+    found = overturning_map(
+        BLOCK, PULSE, ("slenderness_ratio", ratios), ("restitution", coefficients), threads=1, restitution="ked"
+    )
     angles = np.arctan(1.0 / ratios)
     bodies = [rk.Block.from_angle(angle, BLOCK.semi_diagonal) for angle in angles]
     single = rk.simulate_many(bodies, PULSE, coefficients, threads=1)

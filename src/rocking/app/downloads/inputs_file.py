@@ -15,7 +15,7 @@ from rocking.app.plain_text import plain_line, record_file_name, toml_of, toml_v
 from rocking.app.records import is_hash
 from rocking.bodies.formats.schema import BLOCK_KEYS
 from rocking.bodies.formats.words import from_pydantic
-from rocking.conventions import Assumed
+from rocking.conventions import DEFAULT_RESTITUTION, Assumed
 from rocking.version import SOFTWARE
 
 FILE_NAME = "response.toml"  # what such a file is called
@@ -64,7 +64,7 @@ def inputs_as_toml(inputs: Inputs) -> str:
         "response": assumed | plain.get("response", {}),
         "body": plain["body"],
         "motion": motion,
-        "restitution": plain.get("restitution", {"model": "ked"}),
+        "restitution": plain.get("restitution", {"model": DEFAULT_RESTITUTION}),
         "settings": plain.get("settings"),
     }
     return "\n".join([*_head(inputs), "", toml_of(tables)])
@@ -174,7 +174,7 @@ def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
 
 
 def _restitution(inputs: Mapping[str, Any]) -> list[str] | None:
-    table = inputs.get("restitution") or {"model": "ked"}
+    table = inputs.get("restitution") or {"model": DEFAULT_RESTITUTION}
     choices = [table.get("model"), *(table.get("models") or ()), table.get("value"), *(table.get("values") or ())]
     first = next((value for value in choices if value is not None), None)
     return None if first is None else ["--restitution", str(first)]

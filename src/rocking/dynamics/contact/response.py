@@ -11,6 +11,7 @@ from rocking import checks, conventions, plausibility
 from rocking.answers import AnswerRows
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.combined import label_of
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
 from rocking.dynamics.contact.engine import ContactEngine
 from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
@@ -95,6 +96,8 @@ class ContactResponse(ResponseBase):
         Factor on the motion [-].
     trajectory : History
         What the engine returned.
+    restitution : str
+        Name of the restitution.
     """
 
     body: Body
@@ -105,6 +108,7 @@ class ContactResponse(ResponseBase):
     segments: Segments
     scale: float
     trajectory: History
+    restitution: str
 
     @cached_property
     def _record(self) -> FloatArray:
@@ -253,7 +257,8 @@ class ContactResponse(ResponseBase):
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
             "initial_rotation": float(self.rotation[0]), "friction": law.friction,
             "friction_assumed": isinstance(law.friction, conventions.Assumed), "bounce": law.bounce,
-            "bounce_law": law.bounce_law, "coefficient": imposed, "peak_rotation": self.peak_rotation,
+            "bounce_law": law.bounce_law, "restitution": self.restitution, "coefficient": imposed,
+            "peak_rotation": self.peak_rotation,
             "sliding_distance": self.sliding_distance, "residual_displacement": float(self.displacement[-1]),
             "friction_usage": self.friction_usage, "energy_lost": float(energy.lost_in_impacts[-1]),
             "lost_in_friction": float(energy.lost_in_friction[-1]), "energy_closure": energy.closure,
@@ -354,7 +359,7 @@ def response_with_contact(
             if extended.outcome is Outcome.FAILED:
                 break
             history, segments = extended, longer
-    return ContactResponse(body, motion, base, law, settings, segments, scale, history)
+    return ContactResponse(body, motion, base, law, settings, segments, scale, history, label_of(restitution))
 
 
 def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple[float, float] | None:

@@ -8,7 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.surfaces import vector
-from rocking.conventions import FloatArray
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.portable import norm
 from rocking.restitution.space.calibrated import SpatialCalibrated
@@ -71,7 +71,9 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     return _MODELS[name]()
 
 
-def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model: Any = "ked-3d") -> SpatialRestitution:
+def impact_in_space(
+    solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model: Any = DEFAULT_RESTITUTION
+) -> SpatialRestitution:
     """Return what an impact in space does to the angular velocity.
 
     Parameters
@@ -137,7 +139,9 @@ def _placed(solid: Solid) -> Placed:
     return solid, np.zeros(3)
 
 
-def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, onto: float | None = None) -> float:
+def edge_coefficient(
+    solid: Solid, model: Any = DEFAULT_RESTITUTION, *, start: float = 0, onto: float | None = None
+) -> float:
     """Return the coefficient of restitution of a body that falls back from one edge of its base onto another.
 
     A round base has no such impact of its own: free in space it rolls round its rim, and in the ideal model keeps its

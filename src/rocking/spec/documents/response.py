@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from rocking.conventions import DEFAULT_FRICTION
+from rocking.conventions import DEFAULT_FRICTION, DEFAULT_RESTITUTION
 from rocking.errors import InvalidValueError
 from rocking.spec.fields import JobTable, key
 from rocking.spec.motion_tables import ComponentsTable
@@ -42,7 +42,7 @@ class ResponseTable(JobTable):
 class ResponseTables(JobTable):
     """What every document of a response has, wherever its body and motion come from."""
 
-    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model="ked"))
+    restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model=DEFAULT_RESTITUTION))
     response: ResponseTable = Field(default_factory=ResponseTable)
     settings: SettingsTable = Field(default_factory=SettingsTable)
 

@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks
 from rocking.answers import Answer
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import DEFAULT_RESTITUTION, BoolArray, FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
 from rocking.motions.summary import MotionSummary, summaries_of
@@ -247,7 +247,7 @@ def _ends(values: FloatArray) -> tuple[float, float]:
 def compare_code_methods(
     bodies: Body | Sequence[Body],
     motions: Any,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     levels: Any = None,
     measure: Any = MEASURE,

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.errors import InvalidValueError
 from rocking.statistics.goodness import ends_of
 from rocking.studies.fragility.cloud_analysis import CloudAnalysis
@@ -24,7 +24,7 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     body: Body,
     motions: Motions,
     levels: Any = None,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     analysis: str = "stripes",
     measure: Any = "pga",
@@ -111,7 +111,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     body: Body,
     motions: Motions,
     levels: Any = None,
-    restitution: Any = "ked",
+    restitution: Any = DEFAULT_RESTITUTION,
     *,
     analysis: str = "stripes",
     measure: Any = "pga",

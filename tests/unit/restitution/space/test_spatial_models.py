@@ -36,10 +36,12 @@ def test_a_model_is_called_with_its_ending_or_without():
 def test_corners_and_points_mean_the_same():
     """A point (x, y), a point (x, y, z) and a Corner give one result, also far from the origin."""
     there = impact_in_space(PRISM, **DIAGONAL).velocity
-    corner = impact_in_space(PRISM, [-1, 1, 0], pivot=Corner(np.array([-0.5, -0.5, 0.0])), onto=(0.5, 0.5, 0.0))
+    corner = impact_in_space(
+        PRISM, [-1, 1, 0], pivot=Corner(np.array([-0.5, -0.5, 0.0])), onto=(0.5, 0.5, 0.0), model="ked-3d"
+    )
     assert (corner.velocity == there).all()
     far = Solid(Part(box(1.0, 1.0, 4.0)).moved(1000.0, 2000.0, 30.0), ground=30.0)
-    result = impact_in_space(far, [-1, 1, 0], pivot=(999.5, 1999.5), onto=(1000.5, 2000.5))
+    result = impact_in_space(far, [-1, 1, 0], pivot=(999.5, 1999.5), onto=(1000.5, 2000.5), model="ked-3d")
     assert result.velocity == pytest.approx(there, rel=1e-12, abs=0.0)
 
 
@@ -177,14 +179,16 @@ def test_a_body_that_leans_has_no_flags_and_no_units():
 
 def test_edges_by_number_and_direction():
     """Polygons count their edges, circles take directions; a triangle has no opposite edge."""
-    assert edge_coefficient(PRISM, start=1) == pytest.approx(edge_coefficient(PRISM, start=0), rel=1e-12, abs=0.0)
+    assert edge_coefficient(PRISM, start=1, model="ked-3d") == pytest.approx(
+        edge_coefficient(PRISM, start=0, model="ked-3d"), rel=1e-12, abs=0.0
+    )
     disc = Solid(cylinder(1.0, 2.0))
     assert edge_coefficient(disc, "housner", start=0.3) == pytest.approx(
         edge_coefficient(disc, "housner"), rel=1e-13, abs=0.0
     )
     triangle = Solid(extrusion([(0, 0), (1, 0), (0.5, 0.8)], 3.0))
     with pytest.raises(GeometryError, match="parallel"):
-        edge_coefficient(triangle)
+        edge_coefficient(triangle, model="ked-3d")
 
 
 def test_units_lose_what_the_body_loses():
@@ -222,7 +226,7 @@ STATUE = Solid([Part(box(1.0, 1.0, 0.3), 2400.0), Part(cylinder(0.8, 2.0), 2700.
 
 def fallen(solid):
     start = solid.base.edge(0)
-    return impact_in_space(solid, -start.direction, pivot=start, onto=solid.base.opposite(0))
+    return impact_in_space(solid, -start.direction, pivot=start, onto=solid.base.opposite(0), model="ked-3d")
 
 
 def test_energy_picture_names_its_units():

@@ -121,7 +121,7 @@ def test_barely_lifted_histories_reach_no_state():
         hurt.probability(4.0, 0.005)
     for bad in (-0.1, 1.0, math.nan):
         with pytest.raises(InvalidValueError, match="least"):
-            fragility_analysis(BLOCK, MOTIONS[:2], least=bad, analysis="cloud")
+            fragility_analysis(BLOCK, MOTIONS[:2], least=bad, analysis="cloud", restitution="ked")
 
 
 def test_the_same_motion_twice_is_one_observation():

@@ -27,7 +27,7 @@ LIFTS = 0.311  # tan of the slenderness angle of the weaker side: 0.311 m / 1.0 
 def leaning():
     """A cabinet with unequal sides under 30 motions, at levels between and above those of its two sides."""
     levels = np.array([0.25, 0.32, 0.34, 0.36, 0.38, 0.45, 0.6, 0.8, 1.1, 1.5]) * G
-    return fragility_analysis(CABINET, SyntheticSet("point-source", 30, 3), levels)
+    return fragility_analysis(CABINET, SyntheticSet("point-source", 30, 3), levels, restitution="ked")
 
 
 @pytest.mark.verifies("closed form", "g tan(alpha) of the weaker side", within="1e-12")
@@ -41,7 +41,7 @@ def test_no_motion_lifts_the_body_below_its_weaker_side(leaning):
     assert leaning.responses.rocked[leaning.history_levels < 0.34 * G].any()  # a slightly higher level lifts it
     assert model_of(leaning, "cabinet").uplift_threshold == leaning.subject.lowest_uplift
     upwards = with_vertical(rk.GroundMotion([0.0, 1.0, 0.0], 0.1), rk.GroundMotion([0.0, 1.0, 0.0], 0.1))
-    assert fragility_analysis(CABINET, upwards, [1.0, 2.0]).subject.lowest_uplift is None
+    assert fragility_analysis(CABINET, upwards, [1.0, 2.0], restitution="ked").subject.lowest_uplift is None
 
 
 @pytest.mark.verifies("computed anew", "maximum likelihood by scipy", within="1e-4, the tolerance of its simplex")
@@ -167,7 +167,10 @@ def test_a_cloud_without_a_state_knows_its_parts():
     """The parts of a cloud do not depend on the states that are shown."""
     pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]
     block = rk.Block(width=0.4, height=1.6)
-    whole, part = (fragility_analysis(block, pulses, analysis="cloud", states=s) for s in ((0.5,), (0.5, "rocking")))
+    whole, part = (
+        fragility_analysis(block, pulses, analysis="cloud", states=s, restitution="ked")
+        for s in ((0.5,), (0.5, "rocking"))
+    )
     assert list(part.fits) == ["rotation > 0.5 alpha"]
     for name, values in whole.parts([2.9, 4.0], 0.5).items():
         np.testing.assert_array_equal(part.parts([2.9, 4.0], 0.5)[name], values)

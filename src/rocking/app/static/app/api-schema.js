@@ -1,5 +1,7 @@
 /** An OpenAPI schema as lists that can be shown. Pure functions. */
 
+import { DEFAULT_MODELS } from "/app/inputs.js";
+
 /** @typedef {{ name: string, type: string, required: boolean, about: string }} Row
  * @typedef {{ [key: string]: any, anyOf?: Shape[], oneOf?: Shape[], enum?: unknown[] }} Shape
  * @typedef {{ name: string, in: string, required?: boolean, description?: string, schema?: Shape }} Parameter
@@ -15,7 +17,7 @@ const EXAMPLES = {
   response: {
     body: BLOCK,
     motion: { pulse: "sine:amplitude=5,period=0.8" },
-    restitution: { models: ["ked", "housner"] },
+    restitution: { models: DEFAULT_MODELS },
   },
 };
 

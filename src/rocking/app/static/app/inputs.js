@@ -5,12 +5,15 @@ import { inputsOf } from "/app/shape.js";
 const KEPT = "rocking.inputs";
 const ASIDE = "rocking.aside";
 
+/** The default restitution model, and the models that it is compared with. */
+export const DEFAULT_MODELS = ["calibrated", "ked", "housner"];
+
 /** What a new project holds. */
 /** @type {Server.Inputs} */
 export const FIRST = {
   body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
   motion: { pulse: "sine:amplitude=3,period=0.8" },
-  restitution: { models: ["ked", "housner"] },
+  restitution: { models: DEFAULT_MODELS },
 };
 
 /** The store of the inputs: get, set by path, subscribe, lend. @param {Server.Inputs | null} start */

@@ -52,7 +52,8 @@ export const StudyForm = ({ app, visits, onLaunched, taken }) => {
     try {
       const { kind: asked, job } = question.current.tables(inputs);
       const called = fresh(name.value.trim() || question.current.name, taken());
-      const tables = { campaign: { name: called, kind: asked }, restitution: inputs.restitution || { model: "ked" }, ...job };
+      const stated = inputs.restitution && { restitution: inputs.restitution };
+      const tables = { campaign: { name: called, kind: asked }, ...stated, ...job };
       if (inputs.settings && Object.keys(inputs.settings).length) tables.settings = inputs.settings;
       const { id } = await app.call("studies", { json: { name: called, job: tables, project: app.project.here.value.id } });
       name.value = "";
