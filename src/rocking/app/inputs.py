@@ -210,11 +210,9 @@ _BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
 
 _MOTION: dict[str, Any] = {"pulse": "sine:amplitude=3,period=0.8"}
 
-_INPUTS: dict[str, Any] = {
-    "body": _BODY,
-    "motion": _MOTION,
-    "restitution": {"models": [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]},
-}
+_MODELS = [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
+
+_INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"models": _MODELS}}
 
 
 def _shown(example: dict[str, Any]) -> ConfigDict:
@@ -254,7 +252,7 @@ class Inputs(ResponseTables):
     model_config = _shown(_INPUTS)
 
     # said once more: the schema tells defaults, which it does not know of a factory
-    restitution: RestitutionTable = RestitutionTable(model=DEFAULT_RESTITUTION)
+    restitution: RestitutionTable = RestitutionTable(models=_MODELS)
     response: ResponseTable = ResponseTable()
     settings: SettingsTable = SettingsTable()
     body: BodyInput

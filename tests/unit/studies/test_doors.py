@@ -146,11 +146,11 @@ def test_a_fit_without_a_curve_says_so(motions):
 
 def test_many_transitions_print_their_ends(motions):
     """Hundreds of stretches under a record: how many, from where to where; a few are printed one by one."""
-    found = rk.minimum_overturning_acceleration(BODY, motions[0])
+    found = rk.minimum_overturning_acceleration(BODY, motions[0], "ked")
     count, least = len(found.overturning_intervals), found.minimum
     assert count > 3
     assert f"overturns in {count} stretches from {least:.4g} to {found.highest:.4g} m/s2" in repr(found)
-    few = rk.minimum_overturning_acceleration(BODY, motions[0], highest=1.0001 * least)
+    few = rk.minimum_overturning_acceleration(BODY, motions[0], "ked", highest=1.0001 * least)
     assert f"overturns from {least:.4g} to " in repr(few)
 
 

@@ -64,7 +64,7 @@ def inputs_as_toml(inputs: Inputs) -> str:
         "response": assumed | plain.get("response", {}),
         "body": plain["body"],
         "motion": motion,
-        "restitution": plain.get("restitution", {"model": DEFAULT_RESTITUTION}),
+        "restitution": plain.get("restitution", inputs.restitution.model_dump(exclude_none=True)),
         "settings": plain.get("settings"),
     }
     return "\n".join([*_head(inputs), "", toml_of(tables)])

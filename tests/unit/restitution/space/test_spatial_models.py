@@ -35,7 +35,7 @@ def test_a_model_is_called_with_its_ending_or_without():
 
 def test_corners_and_points_mean_the_same():
     """A point (x, y), a point (x, y, z) and a Corner give one result, also far from the origin."""
-    there = impact_in_space(PRISM, **DIAGONAL).velocity
+    there = impact_in_space(PRISM, **DIAGONAL, model="ked-3d").velocity
     corner = impact_in_space(
         PRISM, [-1, 1, 0], pivot=Corner(np.array([-0.5, -0.5, 0.0])), onto=(0.5, 0.5, 0.0), model="ked-3d"
     )
@@ -193,7 +193,7 @@ def test_edges_by_number_and_direction():
 
 def test_units_lose_what_the_body_loses():
     """Energies of units are additive, by units and by layers, and none gains."""
-    result = impact_in_space(PRISM, **DIAGONAL)
+    result = impact_in_space(PRISM, **DIAGONAL, model="ked-3d")
     energies = unit_energies(result, 10)
     assert (energies.lost >= -1e-12 * energies.before).all()
     assert (energies.before >= energies.level - 1e-12).all()

@@ -5,7 +5,7 @@ import { DEFAULT_MODELS } from "/app/inputs.js";
 /** Returns {models, value, feet} of a table; feet is [left, right] or null.
  * @param {Server.RestitutionTable} [table] @returns {Chosen} */
 export const readRestitution = (table) => {
-  if (!table) return { models: DEFAULT_MODELS.slice(0, 1), value: null, feet: null };
+  if (!table) return { models: DEFAULT_MODELS, value: null, feet: null };
   const feet = table.left === undefined ? null : /** @type {number[]} */ ([table.left, table.right]);
   const models = /** @type {string[]} */ (table.models ?? (table.model === undefined ? [] : [table.model]));
   const value = table.values?.[0] ?? table.value ?? null;

@@ -1,0 +1,52 @@
+"""The one default restitution model: the same in Python, files and the page, and named in every answer."""
+
+import inspect
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import rocking as rk
+from rocking import studies
+from rocking.app.inputs import Inputs
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
+from rocking.dynamics import SpatialBody
+from rocking.restitution.space import edge_coefficient, impact_in_space, spatial_model
+from rocking.spec.questions import questions
+
+BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8)
+FUNCTIONS = (
+    rk.simulate, rk.free_rocking, rk.simulate_many, rk.overturning_map, rk.minimum_overturning_acceleration,
+    rk.coefficient_of_restitution, rk.rocking_spectrum, rk.fragility, studies.fragility_analysis, studies.boundary,
+    studies.refined_map, studies.compare_code_methods, edge_coefficient, impact_in_space,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda one: one.__name__)
+def test_functions_have_one_default(function):
+    """Every function with a default restitution has this one."""
+    parameters = inspect.signature(function).parameters
+    name = "restitution" if "restitution" in parameters else "model"
+    assert parameters[name].default == DEFAULT_RESTITUTION
+
+
+def test_files_and_page_have_one_default():
+    """Job files, question files, requests and the scripts of the page have this one."""
+    for question in questions().values():
+        table = question.model_fields["restitution"].get_default(call_default_factory=True)
+        assert table.model == DEFAULT_RESTITUTION
+    assert Inputs.model_fields["restitution"].default.models == [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
+    script = Path(rk.__file__).parent / "app/static/app/inputs.js"
+    models = re.search(r"DEFAULT_MODELS = (\[.*?\]);", script.read_text("utf-8"))
+    assert json.loads(models[1]) == [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
+
+
+def test_every_mechanics_has_the_default_and_names_it():
+    """The plane, contact, space and hull engines take the default, and their answers name it."""
+    box = SpatialBody.box(0.5, 0.5, 2.0)
+    assert spatial_model(DEFAULT_RESTITUTION).name == "calibrated-3d"
+    for body, motion in ((BLOCK, PULSE), (box, {"x": PULSE, "y": PULSE})):
+        for friction in (None, 0.5):
+            answer = rk.simulate(body, motion, friction=friction, duration=0.5).answer()
+            assert answer["restitution"].removesuffix("-3d") == DEFAULT_RESTITUTION
