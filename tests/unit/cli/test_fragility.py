@@ -44,9 +44,7 @@ def test_motions_follow_the_body(answered, tmp_path):
 def test_json_is_the_python_call(answered, motions):
     """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
     answer = answered(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")
-    found = fragility_analysis(
-        BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", measure="pga", states=(0.2, 0.5)
-    )
+    found = fragility_analysis(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), measure="pga", states=(0.2, 0.5))
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}

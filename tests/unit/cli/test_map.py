@@ -57,7 +57,7 @@ def test_islands_are_those_of_the_picture(run, answered):
     assert told["islands"]["definition"] in told["islands"]["sentences"][0]
     block, pulse = rk.Block(width=0.6, height=2.0), rk.pulses.sine(amplitude=1.0, period=0.5)
     grid = ("frequency_ratio", np.linspace(0.5, 10, 100)), ("amplitude_ratio", np.linspace(1, 12, 100))
-    found = overturning_map(block, pulse, *grid, "ked")
+    found = overturning_map(block, pulse, *grid)
     assert (classes_of(found) == ISLAND).sum() == sum(cells)
     still = sum(island["still_rocking"] for island in told["islands"]["all"])
     page = run(*words, *axes)[1]

@@ -150,7 +150,8 @@ def test_record_options(run, answered, capsys, body, record):
 def test_other_models_are_asked_too(run, answered):
     """Every model without parameters has its outcome and peak, those of Python; the page says who decides."""
     word, pulse = DECIDES
-    answer = answered(*SIZE, word)
+    ked = ("--restitution", "ked")
+    answer = answered(*SIZE, word, *ked)
     others = {model.label: model for model in default_models()}
     del others["ked"]
     assert list(answer["other_models"]) == list(others)
@@ -160,7 +161,7 @@ def test_other_models_are_asked_too(run, answered):
         assert found["peak_rotation"] == response.peak_rotation
         assert found["coefficient"]["left"] == model.coefficient(BLOCK, "left")
     assert (answer["outcome"], answer["other_models"]["housner"]["outcome"]) == ("overturned", "rocked")
-    out = run(*SIZE, word)[1]
+    out = run(*SIZE, word, *ked)[1]
     assert "the body overturns with ked" in out
     assert "does not overturn with housner" in out
     assert "The body does not overturn with any of these models." in run(*SIZE, PULSE)[1]
