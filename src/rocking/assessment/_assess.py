@@ -20,7 +20,7 @@ from rocking.motions.components import Components, components_of, rotated, with_
 from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import predict
-from rocking.prediction.mechanics import FRICTION, Uncertain, parts, several
+from rocking.prediction.mechanics import FRICTION, Uncertain, ground_components, motion_sequence
 from rocking.prediction.space import SampledInSpace
 from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
@@ -62,7 +62,7 @@ class SolidHistories:
     def __init__(self, solid: Solid, motions: Any, azimuth: Any, friction: float, options: dict[str, Any]) -> None:
         self.components = [Components(*components_of(motions[k])) for k in range(len(motions))]
         for components in self.components:
-            parts(components)  # raises an error for other types
+            ground_components(components)  # raises an error for other types
         inputs = {"friction": friction, "base": 0.0, "centre": 1.0, "restitution": 0.0}
         self._mechanics, self._options = SampledInSpace(solid, self.components, inputs, options["gravity"]), options
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()
@@ -287,7 +287,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     margin, gravity = float(margin), checks.positive("gravity", gravity, "m/s2")
     if isinstance(restitution, (str, int, float, RestitutionModel)):
         restitution = [restitution]
-    motion_set = several(motions, pga)
+    motion_set = motion_sequence(motions, pga)
     stated = (mu for mu in (friction, FRICTION[0]) if mu is not None)
     coefficient = Uncertain.of("friction", next(stated), *FRICTION[1:]).median
     options, subject = {"gravity": gravity, "threads": threads, "progress": progress}, cast(Any, body)
@@ -355,7 +355,7 @@ def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion],
     turned_motions: list[GroundMotion] = []
     records: list[int] = []
     for k in range(len(motions)):
-        along, across, upright = parts(motions[k])
+        along, across, upright = ground_components(motions[k])
         components = {"": sampled(along)}
         if across is not None:
             fixed = isinstance(azimuth, (int, float))

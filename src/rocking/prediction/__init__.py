@@ -1,4 +1,4 @@
-"""The probability that a body rocks, slides or overturns, of which not everything is known; and how good it was."""
+"""Probability of rocking, sliding and overturning of a body with uncertain inputs, and its validation."""
 
 from lazy_loader import attach_stub
 

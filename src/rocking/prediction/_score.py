@@ -1,4 +1,4 @@
-"""`score`: probabilities beside what then happened, and beside the plain curves that they must beat."""
+"""`score`: probabilities compared with outcomes, and with simple reference curves."""
 
 import csv
 import difflib
@@ -19,32 +19,32 @@ from rocking.statistics.scores import REPETITIONS, Forecasts, Score, logistic_le
 from rocking.studies.inventory.cells import DecimalMark
 from rocking.studies.inventory.sheets import MOST_BYTES, rows_of
 
-PREDICTION, LOGISTIC, BASE_RATE = "prediction", "logistic", "base rate"  # the forecasts that are compared, by name
+PREDICTION, LOGISTIC, BASE_RATE = "prediction", "logistic", "base rate"  # names of the compared forecasts
 MEASURES = ("brier", "logarithmic")
 BETTER, WORSE, MIXED, NOT_RESOLVED = "better", "worse", "mixed", "not resolved"
 _HAPPENED = {"overturning": "overturned", "uplift": "rocked", "sliding": "slid"}
 _RIVALS = {
-    LOGISTIC: "the plain logistic in PGA and PGV",
+    LOGISTIC: "the logistic regression on PGA and PGV",
     BASE_RATE: "the base rate",
 }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Validation:
-    """Probabilities beside what then happened, and beside plain curves.
+    """Probabilities compared with outcomes and with reference curves.
 
     Parameters
     ----------
     event : str
-        What was foreseen: overturning, uplift or sliding.
+        Predicted event: overturning, uplift or sliding.
     outcome : ndarray, shape (n,)
-        1 where it happened, 0 where not, NaN where nobody knows [-].
+        1 if the event occurred, 0 if not, NaN if unknown [-].
     motions : ndarray, shape (n,)
         Name of the motion of each outcome.
     probability : dict of str to ndarray
-        What each forecast gave to each outcome: "prediction", "logistic" and "base rate"; NaN where nothing [-].
+        Probability of each outcome by forecast: "prediction", "logistic" and "base rate"; NaN if missing [-].
     forecasts : dict of str to Forecasts
-        The same with their scores, where all of them and the outcome are known.
+        Forecasts with scores, for outcomes with a known result and all probabilities.
     """
 
     event: str
@@ -55,92 +55,101 @@ class Validation:
 
     @property
     def count(self) -> int:
-        """How many outcomes are scored."""
+        """Number of scored outcomes."""
         return int(self.forecasts[PREDICTION].outcome.size)
 
     @property
     def clusters(self) -> int:
-        """Under how many motions they are."""
+        """Number of motions of the scored outcomes."""
         return int(self.forecasts[PREDICTION].cluster.max()) + 1
 
     @cached_property
     def either(self) -> tuple[int, int]:
-        """Under how many motions it happened, and under how many it did not, at least once."""
-        said = self.forecasts[PREDICTION]
-        yes, no = (np.unique(said.cluster[said.outcome == each]).size for each in (1.0, 0.0))
-        return yes, no
+        """Number of motions with at least one occurrence, and with at least one absence of the event."""
+        forecast = self.forecasts[PREDICTION]
+        with_event, without_event = (
+            np.unique(forecast.cluster[forecast.outcome == value]).size for value in (1.0, 0.0)
+        )
+        return with_event, without_event
 
     @property
     def enough(self) -> bool:
-        """Whether both outcomes were seen under so many motions that drawing these anew says something."""
+        """True if both outcomes occur under enough motions for a bootstrap over motions."""
         return min(self.either) >= LEAST_CLUSTERS
 
     @cached_property
     def differences(self) -> dict[str, dict[str, Score]]:
-        """By how much each score of the prediction is better than that of each plain curve, drawn in pairs."""
-        said = self.forecasts[PREDICTION]
-        rivals = {name: each for name, each in self.forecasts.items() if name != PREDICTION}
+        """Paired difference of each score of the prediction to each reference curve; positive is better."""
+        forecast = self.forecasts[PREDICTION]
+        rivals = {name: rival for name, rival in self.forecasts.items() if name != PREDICTION}
         return {
-            name: {measure: said.skill(each, measure) for measure in MEASURES}
-            for name, each in rivals.items()
+            name: {measure: forecast.skill(rival, measure) for measure in MEASURES}
+            for name, rival in rivals.items()
         }  # fmt: skip
 
     @property
     def finding(self) -> str:
-        """What the paired differences say: "better" than both plain curves, "worse" than one, "mixed", "not resolved".
+        """Finding of the paired differences: "better" than both reference curves, "worse", "mixed" or "not resolved".
 
-        Balanced accuracy has no say in it: it does not see how sure a forecast was of itself.
+        Balanced accuracy is not used, because it ignores the probability of a forecast.
         """
-        sides = {_side(each) for each in self.differences.values()}
+        sides = {_side(side) for side in self.differences.values()}
         if not self.enough:
             return NOT_RESOLVED
-        return BETTER if sides == {BETTER} else next((each for each in (WORSE, MIXED) if each in sides), NOT_RESOLVED)
+        return BETTER if sides == {BETTER} else next((side for side in (WORSE, MIXED) if side in sides), NOT_RESOLVED)
 
     @property
     def verdict(self) -> str:
-        """Whether the prediction is better than the plain curves, in words."""
+        """Comparison of the prediction with the reference curves as a sentence."""
         if not self.enough:
-            (yes, no), word = self.either, _HAPPENED[self.event]
+            (with_event, without_event), verb = self.either, _HAPPENED[self.event]
             return (
-                f"Not resolved: of {self.clusters} motions it {word} under {yes} and did not under {no}, and a verdict "
-                f"needs {LEAST_CLUSTERS} of either."
+                f"Not resolved: of {self.clusters} motions the body {verb} under {with_event} and did not under "
+                f"{without_event}; a verdict requires {LEAST_CLUSTERS} motions of each."
             )
-        finding, head = self.finding, f"The prediction of {self.event}"
-        which = " and than ".join(_RIVALS[name] for name, each in self.differences.items() if _side(each) == finding)
+        finding, subject = self.finding, f"The prediction of {self.event}"
+        rivals = " and than ".join(
+            _RIVALS[name] for name, scores in self.differences.items() if _side(scores) == finding
+        )
         return {
-            BETTER: f"{head} is better than {which}",
-            WORSE: f"{head} is not better: it is worse than {which}",
-            MIXED: f"{head} is not better: by one score it is better and by the other worse than {which}",
-            NOT_RESOLVED: f"Not resolved: the prediction of {self.event} may be better or worse than {which}",
-        }[finding] + (", and it is too sure of itself." if self.too_sure else ".")
+            BETTER: f"{subject} is better than {rivals}",
+            WORSE: f"{subject} is not better: it is worse than {rivals}",
+            MIXED: f"{subject} is not better: by one score it is better and by the other worse than {rivals}",
+            NOT_RESOLVED: f"Not resolved: the prediction of {self.event} may be better or worse than {rivals}",
+        }[finding] + (", and it is overconfident." if self.too_sure else ".")
 
     @property
     def too_sure(self) -> bool:
-        """Whether more is wrong than the probabilities say, resolved by motion; balanced accuracy does not see that."""
+        """True if the prediction is overconfident, resolved over motions."""
         return self.enough and self.forecasts[PREDICTION].sureness.low > 0.0
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """The verdict, the differences behind it, and whether too much or too little was said."""
-        said = self.forecasts[PREDICTION]
-        found = [self.verdict]
+        """Verdict, its differences of scores, and bias of the probability."""
+        forecast = self.forecasts[PREDICTION]
+        sentences = [self.verdict]
         for name, scores in self.differences.items():
-            both = [
-                f"the {'Brier' if key == 'brier' else key} score is {_better(each)}" for key, each in scores.items()
+            parts = [
+                f"the {'Brier' if key == 'brier' else key} score is {_better(difference)}"
+                for key, difference in scores.items()
             ]
-            found.append(f"Against {_RIVALS[name]}, {' and '.join(both)}.")
+            sentences.append(f"Against {_RIVALS[name]}, {' and '.join(parts)}.")
         if self.differences:
-            found.append("Both are fitted to the outcomes under all other motions; the prediction is fitted to none.")
-        mean, share = percent(float(said.probability.mean())), percent(float(said.outcome.mean()))
-        more = "more" if said.bias.value > 0.0 else "less"
-        right = f"{more} than happened" if said.bias.resolved else "the difference is not resolved"
+            sentences.append(
+                "Both curves are fitted to the outcomes under all other motions; the prediction is not fitted."
+            )
+        mean, share = percent(float(forecast.probability.mean())), percent(float(forecast.outcome.mean()))
+        direction = "more" if forecast.bias.value > 0.0 else "less"
+        comparison = f"{direction} than observed" if forecast.bias.resolved else "the difference is not resolved"
         if not self.enough:
-            right = "too few to tell the two apart"
-        word = _HAPPENED[self.event]
-        found.append(f"It said {mean} in the mean, and {share} of {self.count} {word}: {right}.")
-        if left := self.outcome.size - self.count:
-            found.append(f"{left} of {self.outcome.size} outcomes are not known or have no probability: left out.")
-        return tuple(found)
+            comparison = "too few outcomes for a comparison"
+        verb = _HAPPENED[self.event]
+        sentences.append(f"The mean prediction is {mean}, and {share} of {self.count} {verb}: {comparison}.")
+        if left_out := self.outcome.size - self.count:
+            sentences.append(
+                f"{left_out} of {self.outcome.size} outcomes are unknown or have no probability and are not scored."
+            )
+        return tuple(sentences)
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
@@ -148,12 +157,12 @@ class Validation:
     __repr__ = __str__
 
     def answer(self) -> Answer:
-        """Return everything that is shown.
+        """Return all results.
 
         Returns
         -------
         Answer
-            NaN where something does not exist, such as the balanced accuracy where all outcomes are alike.
+            NaN without a value, such as the balanced accuracy if all outcomes are equal.
         """
         names = (*MEASURES, "balanced_accuracy", "bias", "sureness")
         return Answer({
@@ -162,24 +171,24 @@ class Validation:
             "outcomes": self.count, "happened": float(self.forecasts[PREDICTION].outcome.sum()),
             "motions": self.clusters, "left_out": self.outcome.size - self.count,
             "scores": {
-                key: {**{name: vars(getattr(each, name)) for name in names}, "calibration": each.calibration}
-                for key, each in self.forecasts.items()
+                key: {**{name: vars(getattr(item, name)) for name in names}, "calibration": item.calibration}
+                for key, item in self.forecasts.items()
             },
             "better_by": {
-                key: {name: {**vars(each), "resolved": each.resolved} for name, each in scores.items()}
+                key: {name: {**vars(item), "resolved": item.resolved} for name, item in scores.items()}
                 for key, scores in self.differences.items()
             },
             "reliability": [
                 {
-                    "count": each.count, "predicted": each.predicted, "observed": each.observed,
-                    "observed_low": each.low, "observed_high": each.high,
+                    "count": item.count, "predicted": item.predicted, "observed": item.observed,
+                    "observed_low": item.low, "observed_high": item.high,
                 }
-                for each in self.forecasts[PREDICTION].reliability()
+                for item in self.forecasts[PREDICTION].reliability()
             ],
         })  # fmt: skip
 
 
-def score(  # noqa: PLR0913 - the outcomes and what shook each, beside how they are counted
+def score(  # noqa: PLR0913 - outcomes, motions and settings
     probability: Any,
     outcome: Any,
     motions: Any,
@@ -191,31 +200,31 @@ def score(  # noqa: PLR0913 - the outcomes and what shook each, beside how they 
     repetitions: int = REPETITIONS,
     seed: int = 0,
 ) -> Validation:
-    """Score probabilities by what then happened, beside plain curves that must be beaten.
+    """Score probabilities against outcomes, compared with simple reference curves.
 
-    The plain forecasts are a logistic in ln PGA and ln PGV, and the share that happened at all, either fitted to the
-    outcomes under all other motions. Scores are the Brier and the logarithmic score; all intervals draw whole motions
-    anew, and differences are drawn in pairs.
+    The reference forecasts are a logistic regression on ln PGA and ln PGV, and the overall fraction of the event. Both
+    are fitted to the outcomes under all other motions. Scores are the Brier and the logarithmic score. The bootstrap of
+    the intervals resamples motions, and differences in pairs.
 
     Parameters
     ----------
     probability : array_like, shape (n,)
-        Probability given to each outcome beforehand [-].
+        Predicted probability of each outcome [-].
     outcome : array_like, shape (n,)
-        1 where it happened, 0 where not, NaN where nobody knows [-].
+        1 if the event occurred, 0 if not, NaN if unknown [-].
     motions : array_like, shape (n,)
         Name of the motion of each outcome: the same record at another scale is the same motion.
     pga, pgv : array_like, shape (n,)
-        Peak acceleration [m/s2] and velocity [m/s] of the ground.
+        Peak ground acceleration [m/s2] and velocity [m/s].
     count : int, optional
-        Histories behind each probability: a share h/n of a finite sample is never quite certain, so it counts as
-        (h + 1/2)/(n + 1). Taken as they are if not given.
+        Number of histories per probability. A fraction h/n of a finite sample is then replaced by
+        (h + 1/2)/(n + 1). Default: probabilities are used without change.
     event : str
-        What was foreseen: "overturning", "uplift" or "sliding".
+        Predicted event: "overturning", "uplift" or "sliding".
     repetitions : int
-        Bootstrap samples of the intervals.
+        Number of bootstrap samples.
     seed : int
-        Of the bootstrap.
+        Random seed of the bootstrap.
 
     Returns
     -------
@@ -225,93 +234,98 @@ def score(  # noqa: PLR0913 - the outcomes and what shook each, beside how they 
     Raises
     ------
     InvalidValueError
-        If lengths differ, a probability is outside [0, 1], an outcome is none, a peak is not above zero, or nothing is
-        known.
+        If lengths differ, a probability is outside [0, 1], an outcome is not allowed, a peak is not positive, or all
+        outcomes are unknown.
 
     Examples
     --------
     >>> import numpy as np
     >>> pga = np.repeat(np.linspace(1.0, 5.0, 20), 2)
-    >>> fell = (np.arange(40) % 3 == 0) * 1.0
-    >>> score(0.9 * fell + 0.05, fell, np.arange(40) // 2, pga=pga, pgv=0.1 * pga, count=128).finding
+    >>> outcome = (np.arange(40) % 3 == 0) * 1.0
+    >>> score(0.9 * outcome + 0.05, outcome, np.arange(40) // 2, pga=pga, pgv=0.1 * pga, count=128).finding
     'better'
     """
     checks.one_of("event", event, _HAPPENED)
-    given, happened = (np.asarray(each, dtype=np.float64) for each in (probability, outcome))
-    names, peaks = np.asarray(motions), [np.asarray(each, dtype=np.float64) for each in (pga, pgv)]
-    shapes = [each.shape for each in (given, happened, names, *peaks)]
-    if given.ndim != 1 or len(set(shapes)) > 1:
+    probabilities, outcomes = (np.asarray(values, dtype=np.float64) for values in (probability, outcome))
+    names, peaks = np.asarray(motions), [np.asarray(values, dtype=np.float64) for values in (pga, pgv)]
+    shapes = [values.shape for values in (probabilities, outcomes, names, *peaks)]
+    if probabilities.ndim != 1 or len(set(shapes)) > 1:
         raise InvalidValueError(
-            "probability, outcome, motions, pga and pgv must be rows of one length, got shapes "
+            "probability, outcome, motions, pga and pgv must be 1-D arrays of equal length, got shapes "
             + ", ".join(map(str, shapes))
         )
-    for name, each in zip(("pga", "pgv"), peaks, strict=True):
-        if not ((each > 0.0) & np.isfinite(each)).all():
+    for name, values in zip(("pga", "pgv"), peaks, strict=True):
+        if not ((values > 0.0) & np.isfinite(values)).all():
             raise InvalidValueError(
                 "{parameter} must be {allowed}, got {values}", parameter=name, allowed="above zero",
-                values=each[~(each > 0.0)][:1], hint="is a record empty?",
+                values=values[~(values > 0.0)][:1], hint="check for empty records",
             )  # fmt: skip
     if count is not None:
         n = checks.whole("count", count, 1, 1 << 24)
-        inside = (given >= 0.0) & (given <= 1.0)  # what is not is refused by its own value
-        given = np.where(inside, (given * n + 0.5) / (n + 1.0), given)
-    found = {
-        PREDICTION: given,
-        LOGISTIC: logistic_left_out(np.log(np.column_stack(peaks)), happened, names),
-        BASE_RATE: logistic_left_out(np.empty((given.size, 0)), happened, names),
+        inside = (probabilities >= 0.0) & (probabilities <= 1.0)  # Forecasts raises the error for other values
+        probabilities = np.where(inside, (probabilities * n + 0.5) / (n + 1.0), probabilities)
+    by_forecast = {
+        PREDICTION: probabilities,
+        LOGISTIC: logistic_left_out(np.log(np.column_stack(peaks)), outcomes, names),
+        BASE_RATE: logistic_left_out(np.empty((probabilities.size, 0)), outcomes, names),
     }
-    both = ~np.isnan(given) & ~np.isnan(happened)
-    rivals = (PREDICTION, *(name for name in (LOGISTIC, BASE_RATE) if np.isfinite(found[name][both]).all()))
-    how: dict[str, Any] = {"repetitions": repetitions, "seed": seed}
-    forecasts = {name: Forecasts(found[name][both], happened[both], names[both], **how) for name in rivals}
-    return Validation(event, happened, names, found, forecasts)
+    is_scored = ~np.isnan(probabilities) & ~np.isnan(outcomes)
+    rivals = (PREDICTION, *(name for name in (LOGISTIC, BASE_RATE) if np.isfinite(by_forecast[name][is_scored]).all()))
+    bootstrap: dict[str, Any] = {"repetitions": repetitions, "seed": seed}
+    forecasts = {
+        name: Forecasts(by_forecast[name][is_scored], outcomes[is_scored], names[is_scored], **bootstrap)
+        for name in rivals
+    }
+    return Validation(event, outcomes, names, by_forecast, forecasts)
 
 
 def _side(scores: Mapping[str, Score]) -> str:
-    """Return on which side of a plain curve a forecast is, by its differences that are resolved."""
-    sides = {BETTER if each.value > 0.0 else WORSE for each in scores.values() if each.resolved}
+    """Return the position of a forecast relative to a reference curve, from its resolved differences."""
+    sides = {BETTER if difference.value > 0.0 else WORSE for difference in scores.values() if difference.resolved}
     return NOT_RESOLVED if not sides else MIXED if len(sides) > 1 else sides.pop()
 
 
-def _better(each: Score) -> str:
-    side = "better" if each.value > 0.0 else "worse"
-    low, high = sorted((each.low, each.high) if each.value > 0.0 else (-each.low, -each.high))
-    ends = f"{low:.3f} to {high:.3f}" + ("" if each.resolved else ", not resolved")
-    return f"{side} by {abs(each.value):.3f} ({ends})"
+def _better(difference: Score) -> str:
+    side = "better" if difference.value > 0.0 else "worse"
+    low, high = sorted(
+        (difference.low, difference.high) if difference.value > 0.0 else (-difference.low, -difference.high)
+    )
+    ends = f"{low:.3f} to {high:.3f}" + ("" if difference.resolved else ", not resolved")
+    return f"{side} by {abs(difference.value):.3f} ({ends})"
 
 
 EVENTS = {"overturned": "overturning", "rocked": "uplift", "slid": "sliding"}
-"""Columns of what was seen, and what a prediction calls it."""
+"""Columns of observed outcomes, and the event of each in a prediction."""
 
 AXES = ("x", "y", "z")
 COLUMNS = ("motion", *AXES, "scale", *EVENTS)
-"""Columns that are read: motion, or x with y and z where there are several components."""
+"""Columns of a table: motion, or x with y and z for several components."""
 
-_SEEN = {"1": 1.0, "yes": 1.0, "true": 1.0, "0": 0.0, "no": 0.0, "false": 0.0, "": float("nan")}
+_OBSERVED = {"1": 1.0, "yes": 1.0, "true": 1.0, "0": 0.0, "no": 0.0, "false": 0.0, "": float("nan")}
 _HOW = (
-    "a table of outcomes is a .csv file whose first line names the columns motion (or x, y, z) and overturned, and if "
-    "known scale, rocked, slid, with commas, semicolons or tabs between"
+    "a table of outcomes is a .csv file with commas, semicolons or tabs; the first line names the columns motion (or "
+    "x, y, z), overturned, and optionally scale, rocked, slid"
 )
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One row: which motion, how strong, and what was seen."""
+    """One row: motion, scale factor and observed outcomes."""
 
     line: int
     files: tuple[tuple[str, str], ...]  # axis and record file of each component
     scale: float  # factor on the acceleration [-]
-    seen: dict[str, float]  # 1, 0, or NaN where nobody knows, by event
+    observed: dict[str, float]  # 1, 0, or NaN if unknown, by event
 
     @property
     def motion(self) -> str:
-        """The files, by which trials are counted as of one motion whatever their scale."""
+        """File names; trials with the same files have the same motion at any scale."""
         return " ".join(word if len(self.files) == 1 else f"{axis}={word}" for axis, word in self.files)
 
 
 @dataclass(frozen=True)
-class UntakenRow:
-    """A row that could not be taken, and why."""
+class RefusedRow:
+    """A row that cannot be used, and the reason."""
 
     line: int
     reason: str
@@ -319,19 +333,19 @@ class UntakenRow:
 
 @dataclass(frozen=True)
 class Outcomes:
-    """What a table says."""
+    """Content of a table of outcomes."""
 
     source: str
     trials: tuple[Trial, ...]
-    refused: tuple[UntakenRow, ...]
-    ignored: tuple[str, ...]  # columns that were not read
+    refused: tuple[RefusedRow, ...]
+    ignored: tuple[str, ...]  # names of ignored columns
 
     @classmethod
     def read(cls, path: Path) -> "Outcomes":
-        """Return what a file says, each row checked by itself."""
+        """Return the content of a file; each row is checked separately."""
         if path.stat().st_size > MOST_BYTES:
             raise InvalidValueError(
-                "a table must be below {limit} MiB", limit=MOST_BYTES >> 20, hint="another kind of file?"
+                "a table must be smaller than {limit} MiB", limit=MOST_BYTES >> 20, hint="check the kind of file"
             ).at(path.name)
         try:
             text = path.read_bytes().decode("utf-8-sig")
@@ -341,10 +355,10 @@ class Outcomes:
 
     @classmethod
     def parsed(cls, text: str, source: str) -> "Outcomes":
-        r"""Return what a text says.
+        r"""Return the content of a text.
 
-        >>> found = Outcomes.parsed("motion;scale;overturned\na.at2;1,5;yes\nb.at2;2;perhaps", "seen.csv")
-        >>> found.trials[0].scale, found.refused[0].reason
+        >>> outcomes = Outcomes.parsed("motion;scale;overturned\na.at2;1,5;yes\nb.at2;2;perhaps", "seen.csv")
+        >>> outcomes.trials[0].scale, outcomes.refused[0].reason
         (1.5, "overturned must be 1, 0, yes, no, true, false or empty, got 'perhaps'")
         """
         delimiter = _delimiter(text)
@@ -361,13 +375,13 @@ class Outcomes:
             try:
                 trials.append(_trial(line, cells, titles, mark))
             except InvalidValueError as error:
-                refused.append(UntakenRow(line, str(error)))
+                refused.append(RefusedRow(line, str(error)))
         ignored = (raw.strip() for raw, title in zip(head, titles, strict=True) if title and title not in COLUMNS)
         return cls(source, tuple(trials), tuple(refused), tuple(ignored))
 
 
 def is_outcomes(path: Path) -> bool:
-    """Return whether the first line of a file names what was seen. Never raises."""
+    """Return True if the first line of a file names observed outcomes; never raises."""
     try:
         with path.open("rb") as file:
             return _delimiter(file.read(10_000).decode("utf-8-sig", "replace")) is not None
@@ -385,45 +399,46 @@ def _delimiter(text: str) -> str | None:
 
 def _check_titles(titles: Sequence[str], source: str) -> None:
     if twice := next((title for title in titles if title and titles.count(title) > 1), None):
-        raise InvalidValueError("column {column!r:.60} stands twice", column=twice, hint="leave one").at(source)
+        raise InvalidValueError("column {column!r:.60} appears twice", column=twice, hint="remove one").at(source)
     if ("motion" in titles) == ("x" in titles):
-        raise InvalidValueError("give the column motion, or x with y and z, and not both", hint=_HOW).at(source)
-    if "motion" in titles and (odd := [axis for axis in AXES if axis in titles]):
-        raise InvalidValueError("column {column!r} goes with x: name the column motion x", column=odd[0]).at(source)
+        raise InvalidValueError("use either the column motion, or x with y and z", hint=_HOW).at(source)
+    if "motion" in titles and (unexpected := [axis for axis in AXES if axis in titles]):
+        raise InvalidValueError("column {column!r} goes with x: name the column motion x", column=unexpected[0]).at(
+            source
+        )
     for title in titles:
-        words = set(title.replace("_", " ").replace("-", " ").split())
-        near = [*(words & set(COLUMNS)), *difflib.get_close_matches(title, COLUMNS, n=1, cutoff=0.75)]
-        if title not in COLUMNS and near:  # what it says would change the answer, so it must not be passed over
+        title_words = set(title.replace("_", " ").replace("-", " ").split())
+        candidates = [*(title_words & set(COLUMNS)), *difflib.get_close_matches(title, COLUMNS, n=1, cutoff=0.75)]
+        if title not in COLUMNS and candidates:  # ignoring this column would change the result
             raise InvalidValueError(
-                "column {column!r:.60} is not known", column=title,
-                hint=f"did you mean {near[0]!r}? Rename it",
+                "unknown column {column!r:.60}", column=title, hint=f"rename it to {candidates[0]!r}",
             ).at(source)  # fmt: skip
 
 
 def _trial(line: int, cells: Sequence[str], titles: Sequence[str], mark: DecimalMark) -> Trial:
     if len(cells) != len(titles):
-        hint = "a decimal comma between commas?" if len(cells) > len(titles) else "a separator missing?"
+        hint = "check for decimal commas" if len(cells) > len(titles) else "check the separators"
         raise InvalidValueError(
-            "it has {count} fields, the first line {expected}", count=len(cells), expected=len(titles), hint=hint
+            "{count} fields, but the first line has {expected}", count=len(cells), expected=len(titles), hint=hint
         )
     row = {title: cell.strip() for title, cell in zip(titles, cells, strict=True)}
     files = tuple((axis, row[key]) for axis, key in (("x", "motion"), *((a, a) for a in AXES)) if row.get(key))
     if not files or files[0][0] != "x":
         raise InvalidValueError(
-            "{parameter} is empty: the name of a record file", parameter="motion" if "motion" in row else "x"
+            "{parameter} is empty; enter the name of a record file", parameter="motion" if "motion" in row else "x"
         )
     scale = mark.number("scale", row["scale"]) if row.get("scale") else 1.0
     if scale == 0.0:
-        raise InvalidValueError("scale must not be 0: nothing would move")
-    seen = {}
+        raise InvalidValueError("scale must not be 0")
+    observed = {}
     for column, event in EVENTS.items():
         word = row.get(column, "").casefold()
-        if word not in _SEEN:
+        if word not in _OBSERVED:
             raise InvalidValueError(parameter=column, allowed="1, 0, yes, no, true, false or empty", value=row[column])
-        seen[event] = _SEEN[word]
-    return Trial(line, files, scale, seen)
+        observed[event] = _OBSERVED[word]
+    return Trial(line, files, scale, observed)
 
 
 def column(trials: Sequence[Trial], event: str) -> FloatArray:
-    """Return what was seen of an event, one entry a trial."""
-    return np.array([trial.seen[event] for trial in trials], dtype=np.float64)
+    """Return the observed outcomes of an event, one entry per trial."""
+    return np.array([trial.observed[event] for trial in trials], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""What is foreseen of a body: probabilities with their intervals, which input matters, what cannot be predicted."""
+"""Result of a prediction: probabilities with intervals, contributions of inputs, limits of predictability."""
 
 import math
 from collections.abc import Mapping
@@ -27,15 +27,15 @@ _LIKELY = {
     "overturning": "Overturning is {likelihood} {condition}: {probability}.",
 }
 _PREDICTABLE = (
-    "Each response can be predicted: 0 of {rocking} pairs of histories that differ by one part in a million in scale "
-    "end differently or differ by more than 1 % in their peaks."
+    "Each response can be predicted. Of {rocking} pairs of histories with a difference of one part in a million in "
+    "scale, 0 have different outcomes or peaks that differ by more than 1 %."
 )
 _UNPREDICTABLE = (
-    "Under {motions} of {total} motions this response cannot be predicted; its distribution can: {pairs} of {rocking} "
-    "pairs of histories that differ by one part in a million in scale end differently or differ by more than 1 % in "
-    "their peaks."
+    "Under {motions} of {total} motions the response cannot be predicted, but its distribution can. Of {rocking} pairs "
+    "of histories with a difference of one part in a million in scale, {pairs} have different outcomes or peaks that "
+    "differ by more than 1 %."
 )
-_BESIDE = "With another restitution model and all else alike, overturning has {probabilities}."
+_BESIDE = "With another restitution model and otherwise equal inputs, overturning has {probabilities}."
 _AT_ENDS = (
     "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
 )
@@ -43,13 +43,13 @@ _AT_ENDS = (
 
 @dataclass(frozen=True, eq=False)
 class Chance:
-    """How likely something is, with 95 % intervals [-]."""
+    """Probability of an event with 95 % intervals [-]."""
 
-    value: float  # over all motions, each as likely
-    low: float  # low, high: from the number of bodies drawn, under these motions
+    value: float  # mean of all motions
+    low: float  # low, high: interval from the number of sampled bodies, under these motions
     high: float
-    between: float  # standard deviation from motion to motion, without what sampling adds; NaN of one motion
-    wide_low: float  # wide_low, wide_high: if other motions like these came; NaN of fewer than five motions
+    between: float  # standard deviation between motions, without sampling error; NaN for one motion
+    wide_low: float  # wide_low, wide_high: interval for other motions like these; NaN below five motions
     wide_high: float
     per_motion: FloatArray
     per_motion_low: FloatArray
@@ -58,9 +58,9 @@ class Chance:
 
 @dataclass(frozen=True)
 class EndsOfRange:
-    """How likely overturning is in the lowest and in the highest fifth of the draws of an input."""
+    """Probability of overturning in the lowest and in the highest fifth of the samples of an input."""
 
-    low: float  # mean of the input there
+    low: float  # mean of the input in the lowest fifth
     probability_low: float
     high: float
     probability_high: float
@@ -68,20 +68,20 @@ class EndsOfRange:
 
 @dataclass(frozen=True)
 class Growth:
-    """What becomes of a small difference: pairs of histories whose motions differ by one part in a million."""
+    """Growth of a small difference: pairs of histories whose motions differ by one part in a million."""
 
-    pairs: int  # under each motion
-    rocking: int  # how many of all pairs rocked
-    lost: int  # how many of these end differently, or differ by more than 1 % in their peaks
-    motions_lost: tuple[str, ...]  # motions under which that happened to a pair at least
-    motions: int  # how many motions there are
-    median: float  # of the relative change of the peak over that of the motion; NaN where nothing rocks on [-]
+    pairs: int  # number of pairs under each motion
+    rocking: int  # number of pairs with rocking, of all motions
+    lost: int  # number of these with different outcomes, or peaks that differ by more than 1 %
+    motions_lost: tuple[str, ...]  # motions with such pairs
+    motions: int  # number of motions
+    median: float  # median ratio of the relative changes of peak and motion; NaN without rocking [-]
 
     @property
     def sentence(self) -> str:
-        """Whether responses can be predicted at all, in words."""
+        """Predictability of responses as a sentence."""
         if not self.rocking:
-            return "No pair of histories rocks, so no difference between histories grows."
+            return "No pair of histories rocks; no difference between histories grows."
         facts = {
             "motions": len(self.motions_lost), "total": self.motions, "pairs": self.lost, "rocking": self.rocking,
         }  # fmt: skip
@@ -90,41 +90,41 @@ class Growth:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prediction(Exported):
-    """What is foreseen of a body of which not everything is known.
+    """Probabilities of rocking, sliding and overturning of a body with uncertain inputs.
 
     Parameters
     ----------
     body : Block, Section, MassPoints or Solid
-        The body as it is drawn.
+        Nominal body.
     motions : tuple of MotionSummary
-        Name, intensity, source and processing of each motion: what every probability is conditional on.
+        Name, intensity, source and processing of each motion; all probabilities are conditional on these motions.
     inputs : dict of str to str
-        What was drawn from what, in words, by input; also what is known.
+        Distribution or value of each input as text.
     assumptions : dict of str to str
-        What nobody said and was assumed, and why, by input; a sentence about no single input has no reason.
+        Reason of each default, by input; a sentence on no single input has an empty reason.
     fixed : dict of str to str
-        What is one value in all histories, and why, by input.
+        Value and reason of each input with one value in all histories.
     sliding_beyond : float
-        How far it slides at least where it is said to slide [m].
+        Sliding distance that counts as sliding [m].
     chances : dict of str to Chance
-        Of uplift, sliding and overturning.
+        Probabilities of uplift, sliding and overturning.
     shares : dict of str to VarianceShare
-        Share of each input, and of the motion as `case`, in whether it overturns; empty if they were not asked for.
+        Contribution of each input, and of the motion as `case`, to the variance of overturning; empty if not computed.
     ends : dict of str to EndsOfRange
-        How the probability of overturning would change at the ends of each input.
+        Probability of overturning at the ends of each input.
     growth : Growth
-        What becomes of small differences.
+        Growth of small differences.
     outcomes : int
-        How many outcomes, 1 or 2, all histories have, those of the sensitivity analysis included.
+        Number of different outcomes (1 or 2) of all histories, with those of the sensitivity analysis.
     count, histories, failed : int
-        Bodies for each motion behind a probability, histories in all, and those without a result, which do not count.
+        Bodies per motion, total number of histories, and number of histories without a result (not counted).
     seed : int
-        Seed of the draws.
+        Random seed.
     gravity : float
         Acceleration of gravity [m/s2].
     beside : dict of str to Chance
-        Of overturning with KED and with Housner's restitution instead of the measured one, all else drawn alike; of
-        plane bodies, where no restitution was asked for.
+        Probability of overturning with KED and with Housner's model, for otherwise equal inputs; plane bodies with
+        the default restitution only.
     """
 
     body: "Body | Solid"
@@ -147,7 +147,7 @@ class Prediction(Exported):
 
     @property
     def contributions(self) -> AnswerRows:
-        """Shares of the uncertain inputs in the variance of overturning, the largest first."""
+        """Contributions of the uncertain inputs to the variance of overturning, largest first."""
         ordered = sorted(self.shares.items(), key=lambda pair: -pair[1].total)
         return AnswerRows.of_records(
             {"input": "motion" if name == "case" else name, **vars(share)} for name, share in ordered
@@ -155,22 +155,22 @@ class Prediction(Exported):
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What nobody said and was assumed, and why, in a sentence each."""
+        """Assumptions with their reasons, one sentence per assumption."""
         return tuple(_reasoned(name, reason) if reason else name for name, reason in self.assumptions.items())
 
     @property
     def not_sampled(self) -> tuple[str, ...]:
-        """What is one value in all histories, and why, in a sentence each."""
+        """Inputs with one value in all histories and their reasons, one sentence per input."""
         return tuple(_reasoned(name, reason) for name, reason in self.fixed.items())
 
     @property
     def condition(self) -> str:
-        """The motions and their intensity, on which every probability depends, in words."""
+        """Motions and their intensity, the condition of all probabilities, as text."""
         return condition(self.motions)
 
     @property
     def repairs(self) -> tuple[str, ...]:
-        """Repairs of the mesh of the body, in words; none of a plane body."""
+        """Repairs of the mesh of the body as text; none for a plane body."""
         return tuple(getattr(self.body, "repairs", ()))
 
     @property
@@ -180,89 +180,91 @@ class Prediction(Exported):
 
     @property
     def decides(self) -> str:
-        """Why there are no contributions to the variance; empty where there are."""
+        """Reason for missing contributions to the variance; empty if there are contributions."""
         if any(share.total for share in self.shares.values()):
             return ""
         if self.outcomes == 1:
-            return "All histories have the same outcome, so that no input contributes to the variance."
+            return "All histories have the same outcome; no input contributes to the variance."
         if self.shares:
             return "Too few histories differ in their outcome to compute contributions to the variance."
         return "Contributions to the variance were not computed."
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Verdict, the other probabilities, the effect of inputs, and whether a response can be predicted."""
+        """Verdict, other probabilities, effects of inputs, and predictability."""
         chance = self.chances["overturning"]
-        found = [self.verdict]
+        sentences = [self.verdict]
         if not math.isnan(chance.wide_low):
             interval = _between(chance.wide_low, chance.wide_high)
-            found.append(Message("For other motions like these the interval is {interval}.", {"interval": interval}))
-        found += [self._sentence(event) for event in ("uplift", "sliding")]
+            sentences.append(
+                Message("For other motions like these the interval is {interval}.", {"interval": interval})
+            )
+        sentences += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
             others = [
-                Message("{probability} with {model}", {"probability": _of(each), "model": name})
-                for name, each in self.beside.items()
+                Message("{probability} with {model}", {"probability": _of(item), "model": name})
+                for name, item in self.beside.items()
             ]
             first = others[0]
             for other in others[1:]:
                 first = Message("{first} and {second}", {"first": first, "second": other})
-            found.append(Message(_BESIDE, {"probabilities": first}))
-        movers = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
-        for name, each in movers[:2]:
-            if each.probability_low != each.probability_high:
-                low, high = percent(each.probability_low), percent(each.probability_high)
-                facts = {"input": Message(name), "low": low, "high": high, "lower": each.low, "higher": each.high}
-                found.append(Message(_AT_ENDS, facts))
-        found.append(self.growth.sentence)
+            sentences.append(Message(_BESIDE, {"probabilities": first}))
+        ranked = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
+        for name, item in ranked[:2]:
+            if item.probability_low != item.probability_high:
+                low, high = percent(item.probability_low), percent(item.probability_high)
+                facts = {"input": Message(name), "low": low, "high": high, "lower": item.low, "higher": item.high}
+                sentences.append(Message(_AT_ENDS, facts))
+        sentences.append(self.growth.sentence)
         if self.failed:
             text = "{count} of {total} histories have no result and do not count."
-            found.append(Message(text, {"count": self.failed, "total": self.histories}))
-        return tuple(found)
+            sentences.append(Message(text, {"count": self.failed, "total": self.histories}))
+        return tuple(sentences)
 
     def _sentence(self, event: str) -> str:
         chance = self.chances[event]
-        same = Message("given the same motion" if len(self.motions) == 1 else "given the same motions")
+        same_motions = Message("given the same motion" if len(self.motions) == 1 else "given the same motions")
         facts = {
             "likelihood": likelihood(chance.low, chance.high),
-            "condition": self.condition if event == "overturning" else same,
+            "condition": self.condition if event == "overturning" else same_motions,
             "distance": 1000.0 * self.sliding_beyond,
             "probability": _of(chance),
         }
         return Message(_LIKELY[event], facts)
 
     def __str__(self) -> str:
-        left = (f"not sampled: {each}" for each in self.not_sampled)
-        return "\n".join([*self.sentences, *(f"assumed: {each}" for each in self.assumed), *left, scale_words()])
+        not_sampled = (f"not sampled: {text}" for text in self.not_sampled)
+        return "\n".join([*self.sentences, *(f"assumed: {text}" for text in self.assumed), *not_sampled, scale_words()])
 
     __repr__ = __str__
 
     def answer(self) -> Answer:
-        """Return everything that is shown.
+        """Return all results.
 
         Returns
         -------
         Answer
-            NaN where something does not exist.
+            Values by name; NaN without a value.
         """
         plain = ("verdict", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs", "decides",
                  "count", "histories", "failed", "seed", "gravity")  # fmt: skip
         return Answer({
             **{name: getattr(self, name) for name in plain},
             "sentences": list(self.sentences),
-            "likelihood": {name: likelihood(each.low, each.high) for name, each in self.chances.items()},
+            "likelihood": {name: likelihood(item.low, item.high) for name, item in self.chances.items()},
             "likelihood_scale": scale_words(),
             "body": repr(self.body),
-            "motions": [each.answer() for each in self.motions],
+            "motions": [item.answer() for item in self.motions],
             "software": SOFTWARE,
             "probability": {name: vars(chance) for name, chance in self.chances.items()},
             "beside": {name: vars(chance) for name, chance in self.beside.items()},
-            "shares": {_told(name): asdict(share) for name, share in self.shares.items()},
+            "shares": {_input_name(name): asdict(share) for name, share in self.shares.items()},
             "ends": {
                 name: {
-                    "input_low": each.low, "input_high": each.high, "probability_low": each.probability_low,
-                    "probability_high": each.probability_high,
+                    "input_low": item.low, "input_high": item.high, "probability_low": item.probability_low,
+                    "probability_high": item.probability_high,
                 }
-                for name, each in self.ends.items()
+                for name, item in self.ends.items()
             },
             "growth": {
                 "pairs": self.growth.pairs, "pairs_rocking": self.growth.rocking, "pairs_apart": self.growth.lost,
@@ -272,16 +274,20 @@ class Prediction(Exported):
         })  # fmt: skip
 
     def exported(self) -> "Table":
-        """Return one row a motion, the inputs beside it."""
+        """Return a table with one row per motion, and a table of the inputs."""
         from rocking.tables import Column, Table, text_array
 
         columns = {
-            "motion": Column(text_array([each.name for each in self.motions]), "", "name of the motion"),
-            "support": Column(text_array([each.support for each in self.motions]), "", "ground, or the floor"),
-            "peak_acceleration": Column(np.array([each.peak for each in self.motions]), "m/s2", "peak acceleration"),
-            "peak_velocity": Column(np.array([each.peak_velocity for each in self.motions]), "m/s", "peak velocity"),
+            "motion": Column(text_array([motion.name for motion in self.motions]), "", "name of the motion"),
+            "support": Column(text_array([motion.support for motion in self.motions]), "", "ground, or the floor"),
+            "peak_acceleration": Column(
+                np.array([motion.peak for motion in self.motions]), "m/s2", "peak acceleration"
+            ),
+            "peak_velocity": Column(
+                np.array([motion.peak_velocity for motion in self.motions]), "m/s", "peak velocity"
+            ),
             "provenance": Column(
-                text_array(["; ".join(each.provenance) for each in self.motions]), "", "source and processing steps"
+                text_array(["; ".join(motion.provenance) for motion in self.motions]), "", "source and processing steps"
             ),
         }
         for name, chance in self.chances.items():
@@ -289,7 +295,7 @@ class Prediction(Exported):
                 values = getattr(chance, f"per_motion{end}")
                 columns[f"{name}{end}"] = Column(values, "1", meaning.format(name))
         names = list(dict.fromkeys([*self.inputs, *self.shares]))
-        beside = {"name": Column(text_array(list(map(_told, names))), "", "what is not known")}
+        beside = {"name": Column(text_array(list(map(_input_name, names))), "", "uncertain input")}
         nothing = VarianceShare(*[0.0 if self.shares else math.nan] * 6)
         for key, meaning in (("first", "first-order index of overturning"), ("total", "total index of overturning")):
             for end in ("", "_low", "_high"):
@@ -318,5 +324,5 @@ def _of(chance: Chance) -> str:
     return Message("probability {value} (95 % interval {interval})", facts)
 
 
-def _told(name: str) -> str:
+def _input_name(name: str) -> str:
     return "motion" if name == "case" else name

@@ -1,4 +1,4 @@
-"""Words for probabilities: the calibrated likelihood scale of the IPCC."""
+"""Terms for probabilities: the calibrated likelihood scale of the IPCC."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,9 @@ from rocking.messages import Message
 
 
 class LikelihoodTerm(NamedTuple):
-    """A term and the range of probability that it stands for [-]."""
+    """A term and its range of probability [-]."""
 
-    words: str
+    text: str
     low: float
     high: float
 
@@ -31,17 +31,17 @@ SOURCE = (
 
 
 def likelihood(low: float, high: float) -> str:
-    """Return the words for a probability of which an interval is known [-].
+    """Return the likelihood term of a probability from its interval [-].
 
-    The words are the narrowest term that holds the whole interval, so that few histories never give a strong word.
-    Where no term holds the interval, the words are the terms of both ends.
+    The result is the narrowest term whose range contains the interval, so that few histories never give a strong term.
+    If no range contains the interval, the result names the terms of both ends.
 
     >>> likelihood(0.0, 0.21), likelihood(0.0, 0.005), likelihood(0.3, 0.5)
     ('unlikely', 'exceptionally unlikely', 'unlikely to about as likely as not')
     """
     term = next((term for term in TERMS if term.low <= low and high <= term.high), None)
     if term is not None:
-        return Message(term.words)
+        return Message(term.text)
     return Message("{low} to {high}", {"low": Message(_broad(low)), "high": Message(_broad(high))})
 
 
@@ -50,7 +50,7 @@ def _broad(probability: float) -> str:
 
 
 def scale_words() -> str:
-    """Return the scale in one sentence, to be printed with an answer.
+    """Return the scale as one sentence, for print with a result.
 
     >>> scale_words()[:17]
     'Likelihood terms:'
@@ -59,11 +59,11 @@ def scale_words() -> str:
     first, *others = (
         Message(
             "{term} {low:g} to {high:g} %",
-            {"term": Message(term.words), "low": 100.0 * term.low, "high": 100.0 * term.high},
+            {"term": Message(term.text), "low": 100.0 * term.low, "high": 100.0 * term.high},
         )
         for term in ordered
     )
     for other in others:
         first = Message("{first}, {second}", {"first": first, "second": other})
     facts = {"terms": first, "source": SOURCE}
-    return Message("Likelihood terms: {terms}. A term holds the whole 95 % interval. {source}.", facts)
+    return Message("Likelihood terms: {terms}. The range of a term contains the 95 % interval. {source}.", facts)

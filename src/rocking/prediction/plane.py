@@ -1,4 +1,4 @@
-"""What is drawn for a plane body on a floor with friction, and what becomes of it by the compiled engine."""
+"""Sampled plane bodies on a floor with friction, and their outcomes by the compiled engine."""
 
 import math
 from collections.abc import Mapping
@@ -20,117 +20,125 @@ from rocking.messages import Message
 from rocking.motions.components import rotated, with_vertical
 from rocking.outcome import Outcome, overturned
 from rocking.prediction.mechanics import (
-    AZIMUTH_WHY,
+    AZIMUTH_REASON,
     CENTRE,
-    CENTRE_WHY,
+    CENTRE_REASON,
     COMPLEMENTARITY,
-    DENSITY_WHY,
+    DENSITY_REASON,
     FRICTION,
-    FRICTION_WHY,
+    FRICTION_REASON,
     MEASURED,
-    MEASURED_WHY,
-    Endings,
+    MEASURED_REASON,
+    BodyOutcomes,
     SampledBodies,
     Uncertain,
     as_measured,
-    because,
-    parts,
+    ground_components,
+    with_reason,
 )
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted
 
-BASE = 0.02  # share of the base within which feet lie where nobody says otherwise
+BASE = 0.02  # default of the largest inset of a foot, fraction of the base width
 
 DIRECTIONS = 36
-"""Over half a turn, to which azimuths are rounded: a motion of two components is turned into each that was drawn."""
+"""Directions over half a turn; sampled azimuths are rounded to them."""
 
 NOT_SAMPLED = {
-    "placement": Message("the ground is level and the body stands flat on both feet"),
-    "density": DENSITY_WHY,
+    "placement": Message("the ground is level and the body has contact at both feet"),
+    "density": DENSITY_REASON,
 }
 
-_WHY = {
-    "friction": FRICTION_WHY,
+_REASONS = {
+    "friction": FRICTION_REASON,
     "base": Message(
-        "how far each foot lies inside of the drawn base, for chipped or rounded edges: up to 2 % of its width"
+        "inset of each foot from the nominal base, for chipped or rounded edges: up to 2 % of the base width"
     ),
-    "centre": CENTRE_WHY,
-    "polarity": Message("as recorded or mirrored: which way round the body will stand is not known"),
-    "azimuth": AZIMUTH_WHY,
+    "centre": CENTRE_REASON,
+    "polarity": Message("as recorded or reversed: the orientation of the body is unknown"),
+    "azimuth": AZIMUTH_REASON,
 }
 
 
-_FOLLOWS = Message("restitution follows base and centre as the shifted impulse of the calibrated model does")
+_FOLLOWS = Message("restitution depends on base and centre as in the shifted impulse of the calibrated model")
 
 
 class SampledInPlane(SampledBodies):
     """A plane body that may slide, hop and fly."""
 
-    widths_of, why, never_sampled = {"base": 2}, _WHY, NOT_SAMPLED
+    widths_of, reasons, never_sampled = {"base": 2}, _REASONS, NOT_SAMPLED
 
-    def __init__(self, body: Body, motions: Any, given: Mapping[str, Any], settings: ContactSettings) -> None:
-        super().__init__(motions, given)
+    def __init__(self, body: Body, motions: Any, inputs: Mapping[str, Any], settings: ContactSettings) -> None:
+        super().__init__(motions, inputs)
         self.body, self._settings = body, settings
-        if not self._turns and given.get("azimuth") is not None:
-            raise InvalidValueError('azimuth goes with motions of two components, {"x": ..., "y": ...}')
+        if not self._turns and inputs.get("azimuth") is not None:
+            raise InvalidValueError('azimuth requires motions of two components, {"x": ..., "y": ...}')
         left, right = (body.side(foot, settings.gravity) for foot in FEET)
         self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
         self._spread = body.moment_of_inertia / body.mass
-        most, turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
+        max_inset, full_turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
         self.assumed |= dict.fromkeys(body.assumed, "")
-        self._take({
+        self._set_inputs({
             "friction": FRICTION,
-            "base": ((0.0, min(BASE * float(self._levers.sum()), most)), 0.0, most, "m"),
+            "base": ((0.0, min(BASE * float(self._levers.sum()), max_inset)), 0.0, max_inset, "m"),
             "centre": CENTRE,
             "polarity": ({"values": [-1.0, 1.0]}, -1.0, 1.0, "-"),
-            **({"azimuth": ((0.0, turn), -turn, turn, "rad")} if self._turns else {}),
+            **({"azimuth": ((0.0, full_turn), -full_turn, full_turn, "rad")} if self._turns else {}),
         })  # fmt: skip
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
-            raise InvalidValueError(parameter="polarity", allowed="1, -1 or both as a sample", value=given["polarity"])
-        self._set_restitution(given.get("restitution"))
+            raise InvalidValueError(parameter="polarity", allowed="1, -1 or both as a sample", value=inputs["polarity"])
+        self._set_restitution(inputs.get("restitution"))
 
-    def _set_restitution(self, told: Any) -> None:
-        """Take coefficients onto both feet for probabilities, and whether they follow the base."""
-        word = told if isinstance(told, str) else MEASURED[0] if told is None else ""
-        if word in MEASURED:
-            found = restitution_distribution(self.body)
-            self._tables = [found.tables[foot] for foot in FEET]
+    def _set_restitution(self, stated: Any) -> None:
+        """Set the quantiles of the coefficients of both feet, and their dependence on the base."""
+        name = stated if isinstance(stated, str) else MEASURED[0] if stated is None else ""
+        if name in MEASURED:
+            distribution = restitution_distribution(self.body)
+            self._tables = [distribution.tables[foot] for foot in FEET]
             ends = {"low": float(self._tables[1][25]), "high": float(self._tables[1][-26])}
-            onto = Message("{low:.3f} to {high:.3f} onto the right foot in 95 % of draws", ends)
-            words = as_measured(onto, extrapolated=found.extrapolated)
+            onto = Message("{low:.3f} to {high:.3f} on the right foot in 95 % of samples", ends)
+            text = as_measured(onto, extrapolated=distribution.extrapolated)
             self._follows, fixed = True, False
-            self.assumed["restitution"] = because(words, MEASURED_WHY)
-        elif word == COMPLEMENTARITY:
-            words, self._follows, fixed = Message("by complementarity alone"), False, True
+            self.assumed["restitution"] = with_reason(text, MEASURED_REASON)
+        elif name == COMPLEMENTARITY:
+            text, self._follows, fixed = Message("complementarity only"), False, True
             self._tables = [np.full(2, np.nan)] * 2
-        elif word or isinstance(told, RestitutionModel) or (isinstance(told, Mapping) and set(told) == set(FEET)):
-            pair, words = coefficients_of(told, self.body)
+        elif name or isinstance(stated, RestitutionModel) or (isinstance(stated, Mapping) and set(stated) == set(FEET)):
+            pair, text = coefficients_of(stated, self.body)
             self._tables, self._follows, fixed = (
                 [np.full(2, pair[foot]) for foot in FEET],
-                not isinstance(told, Mapping),
+                not isinstance(stated, Mapping),
                 True,
             )
         else:
-            one = Uncertain.of("restitution", told, 0.0, 10.0)
+            uncertain = Uncertain.of("restitution", stated, 0.0, 10.0)
             levels = np.linspace(0.0, 1.0, 1025)
             levels[[0, -1]] = 0.25 / 1025, 1.0 - 0.25 / 1025
-            self._tables, self._follows, fixed, words = [one.quantile(levels)] * 2, False, one.fixed, one.words
+            self._tables, self._follows, fixed, text = (
+                [uncertain.quantile(levels)] * 2,
+                False,
+                uncertain.fixed,
+                uncertain.text,
+            )
         if self._follows:
             self.assumed[_FOLLOWS] = ""
-        at = np.linspace(0.0, 1.0, self._tables[1].size)
+        table_levels = np.linspace(0.0, 1.0, self._tables[1].size)
         right = self._tables[1]
-        self.inputs = {"restitution": Uncertain(words, lambda u: np.interp(u, at, right), fixed), **self.inputs}
+        self.inputs = {
+            "restitution": Uncertain(text, lambda u: np.interp(u, table_levels, right), fixed),
+            **self.inputs,
+        }
 
-    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> Endings:
-        """Return what becomes of bodies under a motion times a factor."""
-        levels, drawn = self.probabilities(draws), self.values(draws)
-        segments, number, mirrored = self._ground(motion, drawn)
-        levers = self._levers - drawn["base"]
-        height = self._height * drawn["centre"][:, 0]
+    def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> BodyOutcomes:
+        """Return the outcomes of bodies under a motion times a factor."""
+        levels, values = self.probabilities(draws), self.values(draws)
+        segments, motion_index, mirrored = self._ground(motion, values)
+        levers = self._levers - values["base"]
+        height = self._height * values["centre"][:, 0]
         coefficients = self._coefficients(levels["restitution"][:, 0], levers, height)
         levers, coefficients = _turned(levers, mirrored), _turned(coefficients, mirrored)
         rows: dict[str, FloatArray] = {
-            "friction": drawn["friction"][:, 0], "scale": factor,
+            "friction": values["friction"][:, 0], "scale": factor,
             "rotation": np.zeros(len(draws)), "velocity": np.zeros(len(draws)),
         }  # fmt: skip
         for k, foot in enumerate(FEET):
@@ -141,29 +149,33 @@ class SampledInPlane(SampledBodies):
             rows[f"q_{foot}"] = square / inertia  # Eq. 27
             rows[f"r_{foot}"] = coefficients[:, k]
         runner = RowsWithContact(segments, ConstantRestitution(), self._settings, "auto")
-        found, _ = runner.run(Rows.of(len(draws), number, **rows), thread_count(threads))
-        failed = np.asarray(found["outcome"]) == Outcome.FAILED.code
-        rose = np.isfinite(found["first_uplift"]) | (found["peak_rotation"] != 0.0)
-        return Endings(
-            np.where(failed, np.nan, rose), np.where(failed, np.nan, found["sliding_distance"]),
-            overturned(found["outcome"]), np.abs(found["peak_rotation"]),
+        results, _ = runner.run(Rows.of(len(draws), motion_index, **rows), thread_count(threads))
+        failed = np.asarray(results["outcome"]) == Outcome.FAILED.code
+        uplift = np.isfinite(results["first_uplift"]) | (results["peak_rotation"] != 0.0)
+        return BodyOutcomes(
+            np.where(failed, np.nan, uplift), np.where(failed, np.nan, results["sliding_distance"]),
+            overturned(results["outcome"]), np.abs(results["peak_rotation"]),
         )  # fmt: skip
 
-    def _ground(self, motion: int, drawn: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
-        """Return the motion in all directions that were drawn, which of them each body has, and whom it mirrors."""
-        first, second, upright = parts(self.motions[motion])
-        mirrored = drawn["polarity"][:, 0] < 0.0
+    def _ground(self, motion: int, values: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
+        """Return the motion in all sampled directions, index of the direction of each body, and flags of reversal."""
+        first, second, upright = ground_components(self.motions[motion])
+        mirrored = values["polarity"][:, 0] < 0.0
         if second is None:
             return [_whole(first, upright).segments()], np.zeros(mirrored.size, np.int64), mirrored
-        step = np.rint(drawn["azimuth"][:, 0] * DIRECTIONS / math.pi).astype(np.int64)
-        wanted, number = np.unique(step % DIRECTIONS, return_inverse=True)
-        turned = [rotated(first, second, math.pi * k / DIRECTIONS)[0] for k in wanted.tolist()]
+        step = np.rint(values["azimuth"][:, 0] * DIRECTIONS / math.pi).astype(np.int64)
+        directions, direction_index = np.unique(step % DIRECTIONS, return_inverse=True)
+        rotated_records = [rotated(first, second, math.pi * k / DIRECTIONS)[0] for k in directions.tolist()]
         half_a_turn = (step // DIRECTIONS) % 2 == 1
-        return [_whole(each, upright).segments() for each in turned], number, mirrored ^ half_a_turn
+        return (
+            [_whole(record, upright).segments() for record in rotated_records],
+            direction_index,
+            mirrored ^ half_a_turn,
+        )
 
     def _coefficients(self, level: FloatArray, levers: FloatArray, height: FloatArray) -> FloatArray:
-        """Return the coefficients landing left and right, within what energy allows."""
-        found = np.empty_like(levers)
+        """Return the coefficients landing left and right, limited by energy."""
+        coefficients = np.empty_like(levers)
         for new, table in enumerate(self._tables):
             old = 1 - new
             r = np.interp(level, np.linspace(0.0, 1.0, table.size), table)
@@ -173,8 +185,8 @@ class SampledInPlane(SampledBodies):
                 before = shifted(self._impact(self._levers[old], self._levers[new], self._height), k)
                 r = r * np.maximum(now, 0.0) / np.maximum(before, 1e-3)
             inertia = self._spread + height[:, None] ** 2 + levers**2
-            found[:, new] = np.clip(r, 0.0, np.sqrt(inertia[:, old] / inertia[:, new]))  # Eq. 29
-        return found
+            coefficients[:, new] = np.clip(r, 0.0, np.sqrt(inertia[:, old] / inertia[:, new]))  # Eq. 29
+        return coefficients
 
     def _impact(self, old: Any, new: Any, height: Any) -> ImpactGeometry:
         half = np.asarray(0.5 * self._spread)
@@ -189,6 +201,6 @@ def _whole(along: Any, upright: Any) -> Any:
     return along if upright is None else with_vertical(along, upright)
 
 
-def whole_settings(gravity: float, bounce: float, bounce_law: str) -> ContactSettings:
-    """Return how to integrate with friction, which every body has its own of."""
+def contact_settings(gravity: float, bounce: float, bounce_law: str) -> ContactSettings:
+    """Return the settings of contact; each body has its own friction."""
     return ContactSettings(gravity=gravity, friction=0.5, bounce=bounce, bounce_law=bounce_law)

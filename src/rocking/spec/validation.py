@@ -16,7 +16,7 @@ from rocking.messages import by_key
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.prediction import Prediction, Validation, predict, score
-from rocking.prediction._score import EVENTS, Outcomes, Trial, UntakenRow, column, is_outcomes
+from rocking.prediction._score import EVENTS, Outcomes, RefusedRow, Trial, column, is_outcomes
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motion_of
 from rocking.spec.prediction import options_of
@@ -64,7 +64,7 @@ class FolderValidation(Exported):
     source: str  # name of the table of outcomes
     prediction: Prediction  # one motion each time that a record stands at another scale
     trials: tuple[Trial, ...]
-    refused: tuple[UntakenRow, ...]
+    refused: tuple[RefusedRow, ...]
     ignored: tuple[str, ...]  # columns of the table that were not read
     repairs: tuple[str, ...]  # what a scan needed
     found: dict[str, Validation]  # by event, overturning first
@@ -113,7 +113,7 @@ class ValidationProblem:
     options: dict[str, Any]  # as `predict` takes them
     outcomes: Outcomes
     trials: tuple[Trial, ...]  # of which all records could be read
-    refused: tuple[UntakenRow, ...]
+    refused: tuple[RefusedRow, ...]
     clusters: tuple[str, ...]  # record files of each trial: components of one file are of one motion
     motions: dict[tuple[Any, float], dict[str, GroundMotion]]  # by files and scale
     name: str
@@ -133,7 +133,7 @@ class ValidationProblem:
                 motions[trial.files, trial.scale] = records.motion(trial)
                 trials.append(trial)
             except RockingError as error:
-                refused.append(UntakenRow(trial.line, error.spelt(by_key)))
+                refused.append(RefusedRow(trial.line, error.spelt(by_key)))
         refused.sort(key=lambda each: each.line)
         if not trials:
             why = f"line {refused[0].line}: {refused[0].reason}" if refused else "it has no rows"

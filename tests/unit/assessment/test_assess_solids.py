@@ -97,10 +97,10 @@ def test_a_report_draws_it_in_space(found, tmp_path):
 def test_models_that_know_no_solids_are_refused():
     """A model of the plane alone says nothing of a solid, and why; alone it is an error; so is a polarity."""
     both = rk.assess(TOWER, PULSE, ["ked", "horizontal-momentum"], azimuth=0.0, **QUICK)
-    assert "in space must be one of" in both.refused["horizontal-momentum"]
+    assert "of a 3D body must be one of" in both.refused["horizontal-momentum"]
     with pytest.raises(InvalidValueError, match="no restitution model applies"):
         rk.assess(TOWER, PULSE, "horizontal-momentum", azimuth=0.0, **QUICK)
-    with pytest.raises(InvalidValueError, match="polarity is of plane bodies"):
+    with pytest.raises(InvalidValueError, match="polarity applies to plane bodies"):
         rk.assess(TOWER, PULSE, 0.9, azimuth=0.0, polarity=1.0, **QUICK)
 
 

@@ -38,7 +38,7 @@ def test_what_is_printed_and_written(run, folder, tmp_path):
     files = [tmp_path / f"found.{ending}" for ending in ("png", "csv", "html")]
     code, out, err = run(folder, *(f"--output={file}" for file in files))
     assert (code, err) == (0, "")
-    assert out.startswith("The prediction of overturning is better than the plain logistic in PGA and PGV")
+    assert out.startswith("The prediction of overturning is better than the logistic regression on PGA and PGV")
     assert "The prediction of uplift" in out
     assert "sliding" not in out.partition("assumed")[0]  # nobody saw whether it slid
     assert "balanced" in out
@@ -49,7 +49,7 @@ def test_what_is_printed_and_written(run, folder, tmp_path):
     assert len(table) == 2 * (len(seen) - 1)
     for row in table[:4]:
         assert seen[int(row["line"]) - 1].split(",")[2] == f"{float(row['outcome']):g}"
-    assert "is better than the plain logistic" in files[2].read_text("utf-8")
+    assert "is better than the logistic regression" in files[2].read_text("utf-8")
 
 
 @pytest.mark.verifies("negative control", room="studies")

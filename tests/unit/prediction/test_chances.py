@@ -12,7 +12,7 @@ from rocking.errors import RockingError
 from rocking.prediction._predict import _chance, _growth
 from rocking.prediction.likelihood import TERMS, likelihood, scale_words
 from rocking.prediction.mechanics import Uncertain
-from rocking.prediction.plane import SampledInPlane, whole_settings
+from rocking.prediction.plane import SampledInPlane, contact_settings
 from rocking.statistics import share_interval
 
 pytestmark = pytest.mark.verifies(room="studies")
@@ -82,7 +82,7 @@ def test_no_restitution_creates_energy():
     about_centre = body.moment_of_inertia
     left, right = (about_centre + 650.0 * (lever**2 + 0.9**2) for lever in (0.52, 0.28))
     known = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
-    settings = whole_settings(rk.conventions.g, 0.0, "newton")
+    settings = contact_settings(rk.conventions.g, 0.0, "newton")
     what = SampledInPlane(body, rk.pulses.sine(4.2, 0.8), {**known, "restitution": 1.0}, settings)
     found = what._coefficients(np.array([0.5]), np.array([[0.52, 0.28]]), np.array([0.9]))
     assert left > 1.05 * right
@@ -145,7 +145,7 @@ KNOWN = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
 
 def mechanics(body, **given):
     return SampledInPlane(
-        body, rk.pulses.sine(4.2, 0.8), {**KNOWN, **given}, whole_settings(rk.conventions.g, 0.0, "newton")
+        body, rk.pulses.sine(4.2, 0.8), {**KNOWN, **given}, contact_settings(rk.conventions.g, 0.0, "newton")
     )
 
 
@@ -199,14 +199,14 @@ def test_the_terms_of_the_scale():
         "about as likely as not": (33, 66), "unlikely": (0, 33), "very unlikely": (0, 10),
         "exceptionally unlikely": (0, 1),
     }  # fmt: skip
-    assert {term.words: (round(100 * term.low), round(100 * term.high)) for term in TERMS} == printed
+    assert {term.text: (round(100 * term.low), round(100 * term.high)) for term in TERMS} == printed
     assert all(words in scale_words() for words in printed)
 
 
 @pytest.mark.verifies("invariant", "all intervals of a grid of 41 probabilities")
 def test_a_term_holds_the_whole_interval():
     """Both ends of an interval lie within the range of the term, or of the first and the last term."""
-    ranges = {term.words: term for term in TERMS}
+    ranges = {term.text: term for term in TERMS}
     for low, high in itertools.combinations(np.linspace(0.0, 1.0, 41), 2):
         first, _, last = likelihood(low, high).partition(" to ")
         assert ranges[first].low <= low <= ranges[first].high

@@ -17,10 +17,10 @@ def parsed(*lines, head=HEAD):
 def test_what_a_table_says():
     found = parsed("a.at2,1.5,yes,TRUE,0,Monday", "", "a.at2#NS,,0,,,")
     first, second = found.trials
-    assert (first.files, first.scale, first.seen["sliding"]) == ((("x", "a.at2"),), 1.5, 0.0)
-    assert (first.seen["overturning"], first.seen["uplift"]) == (1.0, 1.0)
+    assert (first.files, first.scale, first.observed["sliding"]) == ((("x", "a.at2"),), 1.5, 0.0)
+    assert (first.observed["overturning"], first.observed["uplift"]) == (1.0, 1.0)
     assert (second.line, second.scale, second.motion) == (4, 1.0, "a.at2#NS")
-    assert math.isnan(second.seen["uplift"])
+    assert math.isnan(second.observed["uplift"])
     assert (found.refused, found.ignored) == ((), ("day",))
 
 
@@ -38,10 +38,10 @@ def test_a_bad_row_does_not_touch_the_others():
         "a,1,perhaps,,,": "overturned must be 1, 0, yes, no, true, false or empty, got 'perhaps'",
         "a,1,1,2,,": "rocked must be 1, 0, yes, no, true, false or empty, got '2'",
         "a,twice,1,,,": "scale must be one number",
-        "a,0,1,,,": "scale must not be 0: nothing would move",
+        "a,0,1,,,": "scale must not be 0",
         ",1,1,,,": "motion is empty",
-        "a,1,1": "it has 3 fields, the first line 6; a separator missing?",
-        "a,1,5,1,0,,": "it has 7 fields, the first line 6; a decimal comma between commas?",
+        "a,1,1": "3 fields, but the first line has 6; check the separators",
+        "a,1,5,1,0,,": "7 fields, but the first line has 6; check for decimal commas",
     }
     found = parsed("a,1,1,,,", *bad, "b,2,0,,,")
     assert [(trial.line, trial.motion) for trial in found.trials] == [(2, "a"), (10, "b")]
@@ -54,12 +54,12 @@ def test_a_bad_row_does_not_touch_the_others():
     ("head", "why"),
     [
         ("motion,result", "first line names the columns motion"),
-        ("scale,overturned", "give the column motion, or x with y and z"),
-        ("motion,x,overturned", "and not both"),
+        ("scale,overturned", "either the column motion, or x with y and z"),
+        ("motion,x,overturned", "use either"),
         ("motion,y,overturned", "column 'y' goes with x"),
-        ("motion,scale,scale,overturned", "column 'scale' stands twice"),
-        ("motion,scale factor,overturned", "column 'scale factor' is not known; did you mean 'scale'"),
-        ("motion,scael,overturned", "did you mean 'scale'"),
+        ("motion,scale,scale,overturned", "column 'scale' appears twice"),
+        ("motion,scale factor,overturned", "unknown column 'scale factor'; rename it to 'scale'"),
+        ("motion,scael,overturned", "rename it to 'scale'"),
     ],
 )
 def test_tables_that_mislead_are_refused(head, why):

@@ -177,10 +177,10 @@ def test_a_body_given_at_a_slant_has_the_impacts_of_its_base():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"polarity": 1.0}, "polarity is of plane bodies"),
-        ({"restitution": "plastic-winkler"}, "restitution in space must be one of measured"),
+        ({"polarity": 1.0}, "polarity applies to plane bodies"),
+        ({"restitution": "plastic-winkler"}, "restitution of a 3D body must be one of measured"),
         ({"restitution": 1.4}, "restitution"),
-        ({"bounce": 0.3}, "bounce is of plane bodies"),
+        ({"bounce": 0.3}, "bounce applies to plane bodies"),
         ({"base": 4.0}, "base"),
     ],
 )
@@ -205,7 +205,7 @@ def test_a_body_wider_than_its_base_is_measured_as_its_section():
     ]
     found = SampledInSpace(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
     r = restitution_distribution(section, onto="left").tables["left"]  # the nearer one
-    assert found.inputs["restitution"].words.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
+    assert found.inputs["restitution"].text.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
 
 
 @pytest.mark.verifies("closed form", "corners moved towards the middle by a length", within="1e-12")
