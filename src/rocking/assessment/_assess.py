@@ -280,7 +280,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     >>> block = rk.Block(width=0.5, height=2.0, mass=300.0)
     >>> assessment = assess(block, rk.pulses.sine(2.0, 0.8), ["ked", 0.95], count=16)
     >>> assessment.verdict
-    'No uplift and no overturning: 0 of 1 motion, 2 restitutions, both polarities.'
+    'No uplift and no overturning: 0 of 1 motion, 2 restitution cases (1 model, 1 coefficient), both polarities.'
     """
     checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
     checks.within("margin", margin, 0.0, MAX_MARGIN, open_low=True)

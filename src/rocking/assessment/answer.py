@@ -1,7 +1,7 @@
 """Result of an assessment: outcome and margin with each model, and the sentences on them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -16,7 +16,7 @@ from rocking.messages import Message
 from rocking.motions.summary import peak_name, support_of
 from rocking.prediction import Prediction
 from rocking.studies.code_methods.comparison import AT_MOST
-from rocking.studies.remedies import Remedies, millimetres, rounded_up
+from rocking.studies.remedies import CALIBRATED, Remedies, millimetres, rounded_up
 
 _IN_PLANE = "The plane body along {direction}, without sliding, has a margin of {factor:.3g}."
 _IN_PLANE_STANDS = "The plane body along {direction}, without sliding, does not overturn at any computed factor."
@@ -101,8 +101,21 @@ _ISOLATORS = (
 )
 
 
-def _restitutions(count: int) -> Message:
-    return Message("{count} restitution", {"count": count}, "{count} restitutions")
+def _cases(names: Collection[str]) -> Message:
+    """Return the number of restitution cases, and of the models, coefficients and interval ends among them."""
+    ends = sum(name.startswith(f"{CALIBRATED}, ") for name in names)
+    values = sum(name.startswith("r = ") for name in names)
+    models = len(names) - ends - values
+    counts = [
+        (models, Message("{count} model", {"count": models}, "{count} models")),
+        (values, Message("{count} coefficient", {"count": values}, "{count} coefficients")),
+        (ends, Message("{count} ends of the 95 % interval of the calibrated model", {"count": ends})),
+    ]
+    first, *others = (text for count, text in counts if count)
+    for other in others:
+        first = Message("{first}, {second}", {"first": first, "second": other})
+    facts = {"count": len(names), "parts": first}
+    return Message("{count} restitution case ({parts})", facts, "{count} restitution cases ({parts})")
 
 
 def just_above(factor: float) -> float:
@@ -353,7 +366,7 @@ class BodyAssessment:
             int((self.overturning_fraction > 0.0).sum()),
         )
         facts = {
-            "motions": self.motion_count, "models": _restitutions(len(self.models)),
+            "motions": self.motion_count, "models": _cases(self.models),
             "with_all": with_all, "with_some": with_some,
         }  # fmt: skip
         if math.isnan(self.lowest.factor):
@@ -430,9 +443,7 @@ class BodyAssessment:
             low, high = min(margins, key=margins.__getitem__), max(margins, key=margins.__getitem__)
             facts = {"low": margins[low], "lower": low, "high": margins[high], "higher": high}
             differ = f"{margins[low]:.3g}" != f"{margins[high]:.3g}"
-            sentences.append(
-                Message(_MARGIN_RANGE if differ else _SAME, {**facts, "models": _restitutions(len(margins))})
-            )
+            sentences.append(Message(_MARGIN_RANGE if differ else _SAME, {**facts, "models": _cases(margins)}))
         if self.standing is not None:
             sentences.append(self.standing.sentences[1])
         slope = side.half_width / side.centre_height

@@ -230,6 +230,6 @@ class AssessmentAnswer:
         page.line()
         page.facts(source_lines(found.prediction.motions))
         page.line(scale_words())
-        assumed = "; ".join(found.prediction.assumptions)
+        assumed = "; ".join(found.prediction.assumed_values)
         page.line(f"Assumed: {assumed}. Reasons and all references: --output report.pdf, or --json.")
         page.warn(found.prediction.repairs)

@@ -159,6 +159,14 @@ class Prediction(Exported):
         return tuple(_reasoned(name, reason) if reason else name for name, reason in self.assumptions.items())
 
     @property
+    def assumed_values(self) -> tuple[str, ...]:
+        """Assumed inputs with their values, without the reasons."""
+        return tuple(
+            Message("{name}: {value}", {"name": Message(name), "value": self.inputs[name]}) if reason else name
+            for name, reason in self.assumptions.items()
+        )
+
+    @property
     def not_sampled(self) -> tuple[str, ...]:
         """Inputs with one value in all histories and their reasons, one sentence per input."""
         return tuple(_reasoned(name, reason) for name, reason in self.fixed.items())

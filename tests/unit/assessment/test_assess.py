@@ -11,7 +11,7 @@ import pytest
 import rocking as rk
 import rocking.studies.remedies
 from rocking.assessment._assess import DIRECTIONS, choices, in_the_plane
-from rocking.assessment.answer import millimetres, rounded_up
+from rocking.assessment.answer import _cases, millimetres, rounded_up
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
@@ -212,3 +212,12 @@ def test_what_governs_agrees_with_its_figures():
         apart = most.total_low > max(each.total_high for each in shares.values() if each is not most)
         assert ("Main uncertainty" in along.governing_factors[-1]) == apart
         assert ("distinguishable" in along.governing_factors[-1]) != apart
+
+
+def test_cases_count_models_coefficients_and_interval_ends():
+    """The number of restitution cases, and the models, coefficients and interval ends among them."""
+    names = choices(CABINET, ["calibrated", "ked", 0.9])
+    facts = _cases(names).facts
+    assert facts["count"] == len(names) == 5
+    assert "2 models, 1 coefficient, 2 ends" in facts["parts"]
+    assert _cases(["ked"]).facts["parts"] == "1 model"
