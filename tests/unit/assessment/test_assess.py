@@ -40,7 +40,7 @@ def test_it_overturns():
     """The margin is the least factor of all: a history just below stands with every model, just above one falls."""
     found = rk.assess(CABINET, record(9.0), ["ked", 0.85], count=16)
     factor, name, motion, mirrored = found.lowest
-    assert found.verdict == "The body overturns under 1 of 1 motion with all of 2 restitutions."
+    assert [found.verdict.facts[name] for name in ("count", "with_all", "with_some")] == [1, 1, 1]
     assert factor == min(each.min_factor for each in found.models.values()) < 1.0
     choice = choices(CABINET, ["ked", 0.85])[name]
     body = CABINET.mirrored() if mirrored else CABINET
@@ -132,7 +132,7 @@ def test_records_are_counted_not_their_directions():
     """Of one pair and one component two motions are counted, in verdict, models and code methods."""
     pair = {"x": record(9.0), "y": record(0.5)}
     found = rk.assess(CABINET, [pair, record(2.0)], ["ked", 0.85], count=8)
-    assert found.verdict == "The body overturns under 1 of 2 motions (in 13 directions) with all of 2 restitutions."
+    assert [found.verdict.facts[name] for name in ("count", "with_all", "with_some")] == [1, 1, 1]
     assert found.overturning_fraction.tolist() == [1.0, 0.0]
     assert [found.count_overturned(each) for each in found.models.values()] == [1, 1]
     fell = np.array([each.overturned for each in found.models.values()]).max(axis=0)
