@@ -47,10 +47,10 @@ def map_tables(
     } | more
 
 
-def search(points: int, tolerance: float) -> str:
+def search(samples: int, tolerance: float) -> str:
     """Tables of minimum accelerations of two bodies under two motions with two restitutions."""
     motions = '[motions]\nsynthetic = "pulse-like"\ncount = 2\nseed = 3\n'
-    how = f"highest = 25.0\npoints = {points}\nlevels = 1\ntolerance = {tolerance}\n"
+    how = f"max_pga = 25.0\nsamples = {samples}\nbisections = 1\ntolerance = {tolerance}\n"
     return f"{TWO_BODIES}{motions}[restitution]\nvalues = [0.85, 0.93]\n[minimum]\n{how}"
 
 

@@ -33,8 +33,8 @@ seed = 2
 [restitution]
 models = ["housner", "ked"]
 [minimum]
-points = 120
-levels = 2
+samples = 120
+bisections = 2
 """)
 
 with TemporaryDirectory() as home:
@@ -47,7 +47,7 @@ found = {"housner": crossings[0::2], "ked": crossings[1::2]}
 # One of them is what the search by itself finds.
 
 motions, block = SyntheticSet("pulse-like", COUNT, seed=2), rk.Block(width=0.4, height=1.6)
-alone = minimum_overturning_acceleration(block, motions[7], "ked", points=120, levels=2)
+alone = minimum_overturning_acceleration(block, motions[7], "ked", samples=120, bisections=2)
 assert alone.acceleration.tolist() == found["ked"][7].acceleration.tolist()
 
 # %%

@@ -288,9 +288,9 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
     section.get_by_label("Analysis").select_option("overturning-pga")
-    section.get_by_label("points").fill("60")
-    section.get_by_label("levels").fill("1")
-    section.get_by_label("highest").fill("20")
+    section.get_by_label("samples").fill("60")
+    section.get_by_label("bisections").fill("1")
+    section.get_by_label("max_pga").fill("20")
     outcome = asked(section)
     question = served.api("questions", method="GET")["questions"][0]
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
@@ -300,6 +300,6 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     assert rows.count() == min(len(answer["crossings"]), 20)
     expect(outcome.locator("img.drawing")).to_be_visible()
     shot(page, "crossings")
-    section.get_by_label("lowest").fill("30")
+    section.get_by_label("min_pga").fill("30")
     asked(section, "refused")
     expect(section.get_by_role("alert")).to_contain_text("below highest, got 30 and 20 m/s2")

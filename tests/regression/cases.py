@@ -117,7 +117,7 @@ def python() -> dict[str, Case]:
         refine=2,
     )  # fmt: skip
     cases["spectrum"] = lambda _: doors.rocking_spectrum(records, [0.15, 0.25], [1.0, 2.0, 4.0], "housner")
-    cases["minimum"] = lambda _: _parts(doors.minimum(STATUE, rk.pulses.sine(1.0, 0.7), 0.9, points=60))
+    cases["minimum"] = lambda _: _parts(doors.minimum(STATUE, rk.pulses.sine(1.0, 0.7), 0.9, samples=60))
     cases["intensity"] = lambda _: [rk.motions.intensity_measures(motion) for motion in records]
     cases["response spectrum"] = lambda _: _parts(
         rk.motions.response_spectrum(noise(37, 4.0), [0.1, 0.2, 0.5, 1.0, 2.0], 0.05)
@@ -280,8 +280,8 @@ ASKED = {
     "map refined": "map SIZE PULSE --x frequency_ratio=0.5:7:9 --y amplitude_ratio=1:9:9 --refine 2 KED --json "
     "--output netcdf=o.nc --output csv=o.csv",
     "map refused": "map SIZE PULSE --x nonsense=1:2:3",
-    "minimum": "overturning-pga SIZE sine:amplitude=1,period=0.8 --points 60 KED",
-    "minimum files": "overturning-pga statue.toml sine:amplitude=1,period=0.8 --points 60 --json KED",
+    "minimum": "overturning-pga SIZE sine:amplitude=1,period=0.8 --samples 60 KED",
+    "minimum files": "overturning-pga statue.toml sine:amplitude=1,period=0.8 --samples 60 --json KED",
     "spectrum": "spectrum PULSE --slenderness 4,6 --periods 1:6:6 KED",
     "spectrum files": "spectrum PULSE --slenderness 10deg,15deg --periods 1:6:5 --json --output csv=o.csv KED",
     "fragility": "fragility SIZE --synthetic point-source --count 20 KED",
@@ -383,7 +383,7 @@ STUDIES: dict[str, dict[str, Any]] = {
         "histories": {"scales": [1.0, 4.0, 9.0]}, "motions": PULSES,
         "restitution": {"distribution": {"mean": 0.9, "deviation": 0.03, "each": "impact"}},
     },
-    "minimum-acceleration": {"minimum": {"points": 20}},
+    "minimum-acceleration": {"minimum": {"samples": 20}},
 }  # fmt: skip
 INVENTORY = {
     "campaign": {"name": "objects", "kind": "inventory"}, "inventory": {"objects": "inventory.csv", "pga": "0.3g"},

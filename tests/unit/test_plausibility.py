@@ -176,7 +176,7 @@ def test_command_line_says_it(run):
 
 ASKED = {
     "map": ("map", "sine:amplitude=3,period=.5", "--x", "scale=1:2:2", "--y", "restitution=.8:.9:2"),
-    "minimum": ("overturning-pga", "sine:amplitude=3,period=.5", "--highest", "6"),
+    "minimum": ("overturning-pga", "sine:amplitude=3,period=.5", "--max-pga", "6"),
     "fragility": ("fragility", "--motion", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
 }
 

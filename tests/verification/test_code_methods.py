@@ -123,7 +123,7 @@ def test_housners_pulse_overturns_as_the_engine_says(duration):
         1.0 + 0.5 / (ratio * (ratio - 1.0)), rel=1e-12
     )
     pulse = rk.pulses.rectangular(1.0, duration)
-    least = minimum_overturning_acceleration(block, pulse, 0.0, linear=True, points=40, highest=4.0 * found)
+    least = minimum_overturning_acceleration(block, pulse, 0.0, linear=True, samples=40, max_pga=4.0 * found)
     assert least.minimum == pytest.approx(found, rel=1e-9)
     assert least.minimum != pytest.approx(1.001 * found, rel=1e-9)
 
@@ -193,7 +193,7 @@ def test_what_overturns_is_the_least_of_either_way_round():
     assert found.asymmetric.tolist() == [False, True]
     for k, pulse in enumerate(pulses):
         least = [
-            minimum_overturning_acceleration(body, pulse, "housner", points=100).minimum
+            minimum_overturning_acceleration(body, pulse, "housner", samples=100).minimum
             for body in (BLOCKS[2], CABINET, CABINET.mirrored())
         ]
         over = found.overturning[k] / [least[0], min(least[1:])]

@@ -31,7 +31,7 @@ def test_upright_components_of_plane_bodies():
 
     def answers(motion):
         spectrum = rocking_spectrum(motion, [0.25], [1.5, 2.5], 0.9)
-        least = minimum_overturning_acceleration(BLOCK, motion, 0.9, points=12, levels=0)
+        least = minimum_overturning_acceleration(BLOCK, motion, 0.9, samples=12, bisections=0)
         stripes = fragility_analysis(BLOCK, [motion, motion], [4.0, 9.0], 0.9, friction=0.5)
         found = overturning_map(BLOCK, motion, *axes, 0.9)
         peaks = [each.peak_rotation.values for each in (found, spectrum)]

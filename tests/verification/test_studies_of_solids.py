@@ -267,13 +267,13 @@ def test_without_friction_nothing_slides():
 @pytest.mark.verifies("second engine", "histories on both sides of the minimum", within="1e-3")
 def test_the_minimum_is_where_the_verdict_changes():
     """Just below the least acceleration `simulate` stands, just above it falls; little friction needs no less."""
-    found = minimum_overturning_acceleration(STATUE, BOTH, friction=0.8, points=30, levels=1, tolerance=1e-6)
+    found = minimum_overturning_acceleration(STATUE, BOTH, friction=0.8, samples=30, bisections=1, tolerance=1e-6)
     scale = found.minimum / 3.0
     verdicts = [rk.simulate(STATUE, BOTH, friction=0.8, scale=s * scale).outcome for s in (0.999, 1.001)]
     assert verdicts[0] is not Outcome.OVERTURNED
     assert verdicts[1] is Outcome.OVERTURNED
     assert set(found.modes[found.modes >= 0].tolist()) == {UNCOUNTED}
-    smooth = minimum_overturning_acceleration(STATUE, BOTH, friction=0.05, points=12, highest=20.0, levels=0)
+    smooth = minimum_overturning_acceleration(STATUE, BOTH, friction=0.05, samples=12, max_pga=20.0, bisections=0)
     assert smooth.minimum is None
     assert smooth.failed == 0
 
@@ -366,8 +366,8 @@ def test_commands_of_studies(tmp_path, answered):
     grid = overturning_map(tall, PULSE, ("scale", [1, 2, 3, 4]), ("period", [0.4, 0.6, 0.8]), friction=0.6)
     assert told["mode"] == grid["mode"].values.tolist()
     assert (tmp_path / "map.png").stat().st_size > 1000
-    least = answered("overturning-pga", *words, "--points", "20", "--levels", "0")["minimum_acceleration"]
-    python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, points=20, levels=0).minimum
+    least = answered("overturning-pga", *words, "--samples", "20", "--bisections", "0")["minimum_acceleration"]
+    python = minimum_overturning_acceleration(tall, PULSE, friction=0.6, samples=20, bisections=0).minimum
     assert least == pytest.approx(python, rel=1e-9)
 
 

@@ -48,8 +48,8 @@ EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 
 @options.takes(
-    options.keys(MinimumTable, lowest=": 0.1g, 1m/s2", highest=": 5g"),
-    options.keys(MinimumTable, "points", "levels", panel=options.HOW),
+    options.keys(MinimumTable, min_pga=": 0.1g, 1m/s2", max_pga=": 5g"),
+    options.keys(MinimumTable, "samples", "bisections", panel=options.HOW),
     options.SIZES,
 )
 def overturning_pga(
@@ -119,8 +119,8 @@ class MinimumAnswer:
             "certain_acceleration": transitions.certain,
             "overturning_intervals": transitions.overturning_intervals,
             "safe_intervals": transitions.safe_intervals,
-            "lowest_acceleration": transitions.lowest,
-            "highest_acceleration": transitions.highest,
+            "min_pga": transitions.min_pga,
+            "max_pga": transitions.max_pga,
             "uplift_acceleration": transitions.uplift_acceleration,
             "resolution": transitions.resolution,
             "resolution_below": transitions.resolution_below if transitions.minimum is not None else None,
@@ -176,14 +176,14 @@ def stretches(transitions: "Transitions") -> str:
     """Return where the body overturns, in words: with many stretches the first and the last."""
     falls = transitions.overturning_intervals
     facts = {
-        "low": _g(transitions.lowest), "high": _g(transitions.highest), "resolution": percent(transitions.resolution),
+        "low": _g(transitions.min_pga), "high": _g(transitions.max_pga), "resolution": percent(transitions.resolution),
         "below": percent(transitions.resolution_below),
     }  # fmt: skip
     finer = transitions.minimum is not None and transitions.resolution_below < 0.5 * transitions.resolution
     scanned = Message(_SCANNED_FINER if finer else _SCANNED, facts)
     if not falls:
         return Message.followed(Message("survives everything"), scanned)
-    if falls == ((transitions.lowest, transitions.highest),):
+    if falls == ((transitions.min_pga, transitions.max_pga),):
         return Message.followed(Message("overturns at every acceleration"), scanned)
     texts = [_stretch(transitions, falls, k) for k in range(len(falls))]
     if len(texts) > _SPOKEN:
@@ -199,7 +199,7 @@ def stretches(transitions: "Transitions") -> str:
 def _stretch(transitions: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
     """Return one stretch of overturning in words, and how far it then survives."""
     low, high = falls[k]
-    if k == len(falls) - 1 and high == transitions.highest:
+    if k == len(falls) - 1 and high == transitions.max_pga:
         return Message("overturns above") if k else Message("overturns above {low}", {"low": _g(low)})
     facts = {"low": _g(low), "high": _g(high)}
     if k == len(falls) - 1:

@@ -135,8 +135,8 @@ def transitions_picture(
 def _shown_until(found: Transitions) -> float:
     """Return the largest amplitude worth showing [m/s2]."""
     if not len(found):
-        return found.highest
-    return min(found.highest, _ROOM * float(found.acceleration[-1]))
+        return found.max_pga
+    return min(found.max_pga, _ROOM * float(found.acceleration[-1]))
 
 
 def _places(found: Transitions, count: int) -> FloatArray:
@@ -144,8 +144,8 @@ def _places(found: Transitions, count: int) -> FloatArray:
     last = _shown_until(found)
     near = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
     around = (found.acceleration[:, None] * (1.0 + near)).ravel()
-    both = np.concatenate([np.geomspace(found.lowest, last, count), around])
-    return np.unique(both[(both >= found.lowest) & (both <= last)])
+    both = np.concatenate([np.geomspace(found.min_pga, last, count), around])
+    return np.unique(both[(both >= found.min_pga) & (both <= last)])
 
 
 def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -164,7 +164,7 @@ def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray)
     for run in sorted(runs, key=lambda run: run.high / run.low):
         # above the dashed line of alpha, which says nothing of what overturns
         axes.axvspan(run.low / g, run.high / g, color=CLASSES[run.kind][1], linewidth=0.0, zorder=2)
-        if np.log(run.high / run.low) > _LEAST * np.log(last / found.lowest):
+        if np.log(run.high / run.low) > _LEAST * np.log(last / found.min_pga):
             widest[run.words] = run
     for run in widest.values():
         _name(axes, run)
@@ -200,9 +200,9 @@ def _finish(axes: "Axes", found: Transitions, place: FloatArray, peaks: FloatArr
 
     most = float(np.nanmax(peaks, initial=1.0))
     axes.set_ylim(0.0, 1.06 * min(most, 2.0))
-    axes.set_xlim(found.lowest / g, float(place[-1]) / g)
+    axes.set_xlim(found.min_pga / g, float(place[-1]) / g)
     plain_log(axes, "x")
-    if place[-1] < 20.0 * found.lowest:
+    if place[-1] < 20.0 * found.min_pga:
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 4.0, 6.0, 8.0)))
     axes.set(xlabel=PGA, ylabel=PEAK)
     axes.spines[["top", "right"]].set_visible(True)
@@ -292,14 +292,14 @@ def transitions_of_many_picture(
 
 def _ends(found: Sequence[Transitions]) -> tuple[float, float]:
     """Return how far it is worth showing [g]."""
-    low = min(one.lowest for one in found)
+    low = min(one.min_pga for one in found)
     last = [1.35 * one.acceleration[-1] for one in found if len(one)]
     return low / g, max([2.0 * low, *last]) / g
 
 
 def _lanes(axes: "Axes", found: Sequence[Transitions], ends: tuple[float, float]) -> None:
     for row, one in enumerate(found):
-        lane, shown = (row - 0.36, 0.72), [(one.lowest / g, max(ends[1] - one.lowest / g, 0.0))]
+        lane, shown = (row - 0.36, 0.72), [(one.min_pga / g, max(ends[1] - one.min_pga / g, 0.0))]
         axes.broken_barh(shown, lane, color=_STANDS, linewidth=0)
         stretches = [(low / g, (high - low) / g) for low, high in one.overturning_intervals]
         axes.broken_barh(stretches, lane, color=_FALLS, linewidth=0, zorder=2)

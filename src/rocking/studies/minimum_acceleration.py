@@ -44,12 +44,12 @@ class Transitions:
     # how the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts
     modes: IntArray
     width: FloatArray  # widths of the brackets; the transitions are their middles [m/s2]
-    lowest: float  # lowest, highest: range that was searched [m/s2]
-    highest: float
+    min_pga: float  # min_pga, max_pga: range that was searched [m/s2]
+    max_pga: float
     # ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]
     uplift_acceleration: float
     resolution: float  # relative spacing of the first samples [-]
-    starts_overturned: bool  # whether the lowest acceleration overturns already
+    starts_overturned: bool  # whether the smallest acceleration overturns already
     # samples, failed: histories that were computed, and those that have no result; a bracket stays wide where one
     # failed
     samples: int
@@ -65,7 +65,7 @@ class Transitions:
         if len(stretches) > _FEW:  # under a record there may be hundreds
             falls = f"in {len(stretches)} stretches from {stretches[0][0]:.4g} to {stretches[-1][1]:.4g}"
         searched = (
-            f"searched from {self.lowest:.4g} to {self.highest:.4g} m/s2 with a resolution of {self.resolution:.2%}"
+            f"searched from {self.min_pga:.4g} to {self.max_pga:.4g} m/s2 with a resolution of {self.resolution:.2%}"
         )
         return f"<Transitions: overturns {falls} m/s2; {searched}>" if falls else f"<Transitions: stands; {searched}>"
 
@@ -81,7 +81,7 @@ class Transitions:
     def minimum(self) -> float | None:
         """Least acceleration that overturns, of those sampled; under a record thinner stretches may lie below [m/s2].
 
-        None if none in the range overturns, or its lowest does already.
+        None if none in the range overturns, or the smallest does already.
         """
         return None if self.starts_overturned or not len(self) else float(self.acceleration[0])
 
@@ -89,10 +89,10 @@ class Transitions:
     def certain(self) -> float | None:
         """Acceleration above which all that were sampled overturn; under a record thinner gaps may lie above [m/s2].
 
-        None if the highest survives.
+        None if the body survives the largest.
         """
         if not len(self):
-            return self.lowest if self.starts_overturned else None
+            return self.min_pga if self.starts_overturned else None
         return float(self.acceleration[-1]) if self.modes[-1, 1] >= 0 else None
 
     @property
@@ -106,7 +106,7 @@ class Transitions:
         return self._stretches(overturned=True)
 
     def _stretches(self, *, overturned: bool) -> tuple[Interval, ...]:
-        ends = [self.lowest, *self.acceleration.tolist(), self.highest]
+        ends = [self.min_pga, *self.acceleration.tolist(), self.max_pga]
         falls = [self.starts_overturned, *(self.modes[:, 1] >= 0).tolist()]
         pairs = pairwise(ends)
         return tuple(pair for pair, fall in zip(pairs, falls, strict=True) if fall == overturned)
@@ -114,19 +114,19 @@ class Transitions:
 
 # range searched over the acceleration that lifts the body, and how far below it where a vertical part lightens it
 _FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
-_MOST_POINTS = 1_000_000
+_MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
 class Effort:
     """How closely to look."""
 
-    points: int = 400  # first samples, in equal ratios [-]
-    levels: int = 4  # how often suspicious intervals are halved, from 0 to 12 [-]
+    samples: int = 400  # first samples, in equal ratios [-]
+    bisections: int = 4  # number of bisections of suspicious intervals, from 0 to 12 [-]
     tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
 
     def __post_init__(self) -> None:
-        for name, low, high in (("points", 2, _MOST_POINTS), ("levels", 0, 12)):
+        for name, low, high in (("samples", 2, _MOST_SAMPLES), ("bisections", 0, 12)):
             checks.whole(name, getattr(self, name), low, high)
         object.__setattr__(self, "tolerance", checks.within("tolerance", self.tolerance, 0.0, 0.1))
 
@@ -144,8 +144,8 @@ class Cases:
 
     @classmethod
     def of(
-        cls, motion: Motion, sides: dict[str, FloatArray], settings: Settings, lowest: float | None,
-        highest: float | None,
+        cls, motion: Motion, sides: dict[str, FloatArray], settings: Settings, min_pga: float | None,
+        max_pga: float | None,
     ) -> "Cases":  # fmt: skip
         """Return the cases of some bodies under one motion, to be looked for between peak accelerations [m/s2]."""
         if not motion.peak > 0.0:
@@ -159,10 +159,10 @@ class Cases:
         # other components may lift a body in space before the one that is scaled does
         light = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None
         low, high = (_FROM_VERTICAL if light else _FROM) * uplift, _TO * lifts.max(axis=0)
-        if lowest is not None:
-            low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
-        if highest is not None:
-            high = np.full_like(high, checks.positive("highest", highest, "m/s2"))
+        if min_pga is not None:
+            low = np.full_like(low, checks.positive("min_pga", min_pga, "m/s2"))
+        if max_pga is not None:
+            high = np.full_like(high, checks.positive("max_pga", max_pga, "m/s2"))
         bad = np.flatnonzero(~(low < high))
         if bad.size:
             k = bad[0]
@@ -170,7 +170,7 @@ class Cases:
                 "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2 for body {index}"
                 if low.size > 1
                 else "{lowest} must be below {highest}, got {low:g} and {high:g} m/s2",
-                lowest=Parameter("minimum.lowest", "lowest"), highest=Parameter("minimum.highest", "highest"),
+                lowest=Parameter("minimum.min_pga", "min_pga"), highest=Parameter("minimum.max_pga", "max_pga"),
                 low=low[k], high=high[k], index=k,
             )  # fmt: skip
         return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, record)
@@ -182,17 +182,17 @@ class Cases:
         arrays = {name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
         return cls(sides, **arrays, record=parts[0].record)
 
-    def grid(self, points: int) -> FloatArray:
+    def grid(self, samples: int) -> FloatArray:
         """Return the first factors on the motions, so many for each case, in equal ratios [-]."""
-        return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])  # Eq. 182
+        return np.asarray(np.geomspace(self.low, self.high, samples, axis=1) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:
     """Return the transitions of all cases, which are computed together; None where no history could be computed."""
-    scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.points))
+    scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.samples))
     if cases.record:
-        search_below(scan, effort.points)
-    for _ in range(effort.levels):
+        search_below(scan, effort.samples)
+    for _ in range(effort.bisections):
         scan.zoom()
     scan.hunt()
     return _transitions(scan, cases, effort)
@@ -223,10 +223,10 @@ def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[T
                 scale=scale,
                 modes=brackets.modes[own],
                 width=np.diff(brackets.ends[own])[:, 0] * peak,
-                lowest=low if known[0] else first,
-                highest=high if known[-1] else last,
+                min_pga=low if known[0] else first,
+                max_pga=high if known[-1] else last,
                 uplift_acceleration=uplift,
-                resolution=(high / low) ** (1.0 / (effort.points - 1)) - 1.0,
+                resolution=(high / low) ** (1.0 / (effort.samples - 1)) - 1.0,
                 starts_overturned=bool(good[0] >= 0),
                 samples=int(modes.size),
                 failed=int(np.sum(modes == FAILED)),
@@ -242,9 +242,9 @@ def minimum_overturning_acceleration(
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
     *,
-    lowest: float | None = None,
-    highest: float | None = None,
-    points: int = 400,
+    min_pga: float | None = None,
+    max_pga: float | None = None,
+    samples: int = 400,
     tolerance: float = 1e-12,
     **options: Any,
 ) -> Transitions:
@@ -253,7 +253,7 @@ def minimum_overturning_acceleration(
     The motion is scaled over a range of amplitudes in equal ratios; intervals in which a thin stretch may hide are
     halved several times; then all changes are bisected together. Under long records overturning and survival may be
     interleaved at all scales: then only what the samples show is listed. Below the least amplitude that overturns
-    a record is sampled in further rounds, of as many points each, until the minimum has held for two of them or four
+    a record is sampled in further rounds, of as many samples each, until the minimum has held for two of them or four
     are done.
 
     Parameters
@@ -264,16 +264,16 @@ def minimum_overturning_acceleration(
         The motion, or its components as for `simulate`, of any amplitude above zero.
     restitution : as for `simulate`
         One that is drawn at random draws the same numbers at every amplitude.
-    lowest, highest : float, optional
+    min_pga, max_pga : float, optional
         Peak accelerations between which to look [m/s2]; if not given 1 (0.1 with a vertical part) and 50 times
         the one that lifts the body.
-    points : int
+    samples : int
         First samples, in equal ratios, and those of each round below the minimum; nothing wider than their spacing is
         missed [-].
     tolerance : float
         Width of the last brackets over the acceleration; 0 for neighbouring doubles [-].
     **options
-        ``levels`` (how often suspicious intervals are halved, 0 to 12, else 4), ``gravity`` [m/s2], ``threads``,
+        ``bisections`` (number of bisections of suspicious intervals, 0 to 12, else 4), ``gravity`` [m/s2], ``threads``,
         ``progress`` (called with the number of histories done since the last call), ``engine`` and fields of
         `Settings`.
 
@@ -305,7 +305,7 @@ def minimum_overturning_acceleration(
             parameter="body", allowed="one body", value=body,
             hint="for several bodies there is minimum_overturning_accelerations",
         )  # fmt: skip
-    search: dict[str, Any] = {"lowest": lowest, "highest": highest, "points": points, "tolerance": tolerance}
+    search: dict[str, Any] = {"min_pga": min_pga, "max_pga": max_pga, "samples": samples, "tolerance": tolerance}
     return minimum_overturning_accelerations([body], motion, restitution, **search, **options)[0]
 
 
@@ -314,10 +314,10 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
     *,
-    lowest: float | None = None,
-    highest: float | None = None,
-    points: int = 400,
-    levels: int = 4,
+    min_pga: float | None = None,
+    max_pga: float | None = None,
+    samples: int = 400,
+    bisections: int = 4,
     tolerance: float = 1e-12,
     gravity: float = conventions.g,
     threads: int | None = None,
@@ -330,7 +330,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     ----------
     bodies : sequence of Body
         The bodies; the restitution is evaluated for every one.
-    motion, restitution, lowest, highest, points, levels, tolerance, gravity, threads, progress, **settings
+    motion, restitution, min_pga, max_pga, samples, bisections, tolerance, gravity, threads, progress, **settings
         As for `minimum_overturning_acceleration`.
 
     Returns
@@ -348,9 +348,9 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
         raise InvalidValueError(parameter="bodies", allowed="a sequence of at least one body", value=bodies)
     engine = settings.pop("engine", "auto")
     question = Question(bodies[0], motion, restitution, study_settings(bodies[0], settings, gravity), threads, engine)
-    effort = Effort(points, levels, tolerance)
+    effort = Effort(samples, bisections, tolerance)
     sides = sides_of([question.parameters_of(b) for b in bodies])
-    cases = Cases.of(question.motion, sides, question.settings, lowest, highest)
+    cases = Cases.of(question.motion, sides, question.settings, min_pga, max_pga)
 
     def run(values: dict[str, FloatArray], body: IntArray) -> Arrays:
         return question.run(values, np.ones(body.size), body, progress)[0]

@@ -25,8 +25,8 @@ _NUMBERS: dict[str, tuple[str, str]] = {
     "minimum": ("m/s2", "least peak acceleration that overturns, of those sampled; NaN if none, or the lowest does"),
     "certain": ("m/s2", "peak acceleration above which all that were sampled overturn; NaN if the highest survives"),
     "uplift_acceleration": ("m/s2", "ground acceleration that lifts the body"),
-    "lowest": ("m/s2", "where the search began"),
-    "highest": ("m/s2", "where it ended"),
+    "min_pga": ("m/s2", "smallest PGA that is computed"),
+    "max_pga": ("m/s2", "largest PGA that is computed"),
     "resolution": ("1", "relative spacing of the first samples"),
     "resolution_below": ("1", "widest relative gap between samples below the minimum; NaN if there is none"),
 }
@@ -105,8 +105,8 @@ def tables_of(
 
 def _row(crossings: Transitions | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
     if crossings is None:  # nothing but the first samples was tried, and all of them failed
-        limits = {"uplift_acceleration": cases.uplift[k], "lowest": cases.low[k], "highest": cases.high[k]}
-        counts = {"crossings": 0, "starts_overturned": 0, "samples": effort.points, "failed": effort.points}
+        limits = {"uplift_acceleration": cases.uplift[k], "min_pga": cases.low[k], "max_pga": cases.high[k]}
+        counts = {"crossings": 0, "starts_overturned": 0, "samples": effort.samples, "failed": effort.samples}
         return dict.fromkeys(_NUMBERS, np.nan) | limits | counts
     row = {name: getattr(crossings, name) for name in (*_NUMBERS, *_COUNTS) if name != "crossings"}
     return {name: np.nan if value is None else value for name, value in row.items()} | {"crossings": len(crossings)}

@@ -305,7 +305,7 @@ def test_crossings(desk):
     body = {"units": "cm", "width": 50, "height": 200, "depth": 50, "density": 2400}
     tables = {
         "campaign": {"name": "crossings", "kind": "minimum-acceleration"}, "body": body,
-        "motions": [{"pulse": ["sine:amplitude=3,period=0.8"]}], "minimum": {"points": 40, "levels": 1},
+        "motions": [{"pulse": ["sine:amplitude=3,period=0.8"]}], "minimum": {"samples": 40, "bisections": 1},
     }  # fmt: skip
     found = ended(desk, desk.ask("overturning-pga", tables, {}).id)
     answer = json.loads(desk.answer(found.id))
@@ -453,7 +453,7 @@ def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
         "    def raw_coefficient(self, body, onto):\n        return 0.5\n"
     )
     pulses = [{"pulse": ["sine:amplitude=3,period=0.8"]}]
-    tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"points": 40}}
+    tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"samples": 40}}
     asked = desk.ask("overturning-pga", tables, {})
     assert "no restitution model named 'own'" in ended(desk, asked.id).message
     monkeypatch.setenv("ROCKING_MODELS", str(tmp_path / "own.py"))

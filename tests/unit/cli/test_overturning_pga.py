@@ -25,9 +25,9 @@ def made(modes, accelerations, *, starts=False):
 
 def test_json_is_the_python_call(answered):
     """Every crossing is that of the study, bit by bit, in g and in m/s2."""
-    told = answered(*SIZE, PULSE, "--restitution", "0.85", "--highest", "5g")
+    told = answered(*SIZE, PULSE, "--restitution", "0.85", "--max-pga", "5g")
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
-    found = rk.minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
+    found = rk.minimum_overturning_acceleration(block, pulse, 0.85, max_pga=5.0 * G)
     assert [one["peak_ground_acceleration"] for one in told["crossings"]] == found.acceleration.tolist()
     assert [[one["mode_below"], one["mode_above"]] for one in told["crossings"]] == found.modes.tolist()
     assert told["minimum_acceleration"] == found.minimum
@@ -80,9 +80,9 @@ def test_sentences(found, words):
 def test_range_with_units(run):
     """A range in g is the same as in m/s2; a body that survives it all is told so."""
     for low, high in (("0.3g", "0.34g"), (str(0.3 * G), str(0.34 * G))):
-        _, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", "--lowest", low, "--highest", high, "--json")
+        _, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", "--min-pga", low, "--max-pga", high, "--json")
         told = json.loads(out)
-        assert (told["lowest_acceleration"], told["highest_acceleration"]) == pytest.approx(
+        assert (told["min_pga"], told["max_pga"]) == pytest.approx(
             (0.3 * G, 0.34 * G), rel=1e-14, abs=0.0
         )
         assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")

@@ -17,7 +17,7 @@ COMMANDS = {
     "assess": (*SIZE, "--restitution", "0.9", "--set", "predict.count=4", "--set", "predict.shares=false"),
     "code-checks": SIZE,
     "map": (*SIZE, "--x", "pga=1,2", "--y", "width=0.4,0.5"),
-    "overturning-pga": (*SIZE, "--points", "8"),
+    "overturning-pga": (*SIZE, "--samples", "8"),
     "fragility": (*SIZE, "--levels", "1,2"),
     "inventory": (),
 }

@@ -104,7 +104,7 @@ RADIUS = "slenderness angle 14.04 deg, R 1030.8 mm, p 2.6712 rad/s"  # R = sqrt(
     [
         ("simulate", ()),
         ("map", ("--x", "scale=1:2:3", "--y", "slenderness_angle=5deg:20deg:3")),
-        ("overturning-pga", ("--points", "12", "--levels", "1")),
+        ("overturning-pga", ("--samples", "12", "--bisections", "1")),
         ("fragility", ("--levels", "0.2g,0.4g")),
     ],
 )
@@ -158,6 +158,6 @@ def test_accelerations_stand_in_the_unit_of_the_record_beside_g(printed, record)
     assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
     assert "0.33 gal (0.00033651 g)" in out
     assert "PSA [m/s2]" in printed("record", "show", record, "--units", "g")
-    out = printed("overturning-pga", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
+    out = printed("overturning-pga", *IN_MM[:-1], "mm,gal", "--motion", record, "--samples", "12", "--bisections", "1")
     assert "lifts it:     245.166 gal (0.25 g)" in out  # g tan(alpha) = 980.665 / 4
     assert "m/s2" not in out

@@ -70,7 +70,7 @@ def test_names_are_inside_the_panel_and_apart(axes):
 
 def test_nothing_overturns():
     """Without crossings there is the curve over the whole range and no shade."""
-    found = rk.minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=0.3 * G)
+    found = rk.minimum_overturning_acceleration(BLOCK, SINE, 0.85, max_pga=0.3 * G)
     axes = transitions_picture(found, BLOCK, SINE, 0.85, points=50).axes[0]
     assert not axes.patches
     assert axes.get_xlim() == pytest.approx((0.25, 0.3), rel=1e-9)
@@ -81,7 +81,7 @@ def test_stretches_too_narrow_for_words_have_a_legend():
     time = np.arange(1500) * 0.01
     row = np.sin(4.5 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2)) + 0.3 * np.sin(12.0 * time)
     record, block = rk.GroundMotion(row, 0.01, name="made up, 5 $"), rk.Block.from_angle(0.2, 1.0)
-    found = rk.minimum_overturning_acceleration(block, record, 0.9, points=100, levels=1)
+    found = rk.minimum_overturning_acceleration(block, record, 0.9, samples=100, bisections=1)
     figure = transitions_picture(found, block, record, 0.9)
     words = [text.get_text() for text in figure.axes[0].texts]
     assert len(words) == len(set(words))

@@ -75,7 +75,7 @@ def test_a_batch_is_its_members():
         alone = minimum_overturning_acceleration(body, SINE, "housner", threads=1)
         np.testing.assert_array_equal(found.acceleration, alone.acceleration)
         np.testing.assert_array_equal(found.modes, alone.modes)
-        assert (found.samples, found.lowest, found.highest) == (alone.samples, alone.lowest, alone.highest)
+        assert (found.samples, found.min_pga, found.max_pga) == (alone.samples, alone.min_pga, alone.max_pga)
 
 
 def test_what_is_missed_is_narrower_than_the_resolution():
@@ -84,8 +84,8 @@ def test_what_is_missed_is_narrower_than_the_resolution():
     The record is chaotic in places, where stretches of any narrowness are interleaved.
     """
     record, block = noise(seed=6), rk.Block(width=0.4, height=2.0)
-    found = minimum_overturning_acceleration(block, record, 0.8, points=500, threads=1)
-    scales = np.geomspace(found.lowest, found.highest, 5000) / record.peak
+    found = minimum_overturning_acceleration(block, record, 0.8, samples=500, threads=1)
+    scales = np.geomspace(found.min_pga, found.max_pga, 5000) / record.peak
     single = rk.simulate_many(block, record, 0.8, scale=scales, threads=1)
     over = single["outcome"].values[0, 0, :, 0] == 2
     said = np.zeros(scales.size, dtype=bool)
@@ -106,7 +106,7 @@ def test_a_range_of_ones_own():
     whole = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
     first, second, third = whole.acceleration.tolist()
     part = minimum_overturning_acceleration(
-        BLOCK, SINE, 0.85, lowest=0.5 * (first + second), highest=0.5 * (second + third), threads=1
+        BLOCK, SINE, 0.85, min_pga=0.5 * (first + second), max_pga=0.5 * (second + third), threads=1
     )
     assert part.acceleration == pytest.approx([second], rel=1e-11, abs=0.0)
     assert part.starts_overturned
@@ -118,7 +118,7 @@ def test_a_range_of_ones_own():
 def test_coarse_samples_find_what_hides_between_them():
     """Twenty samples, 23 % apart, still find the gap of 6 % between the modes: the way of falling changes."""
     fine = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
-    coarse = minimum_overturning_acceleration(BLOCK, SINE, 0.85, points=20, threads=1)
+    coarse = minimum_overturning_acceleration(BLOCK, SINE, 0.85, samples=20, threads=1)
     assert coarse.resolution > 0.2
     np.testing.assert_allclose(coarse.acceleration, fine.acceleration, rtol=1e-11)
 
@@ -146,7 +146,7 @@ def test_what_is_suspicious():
 def test_more_samples_are_told_and_counted():
     """Progress tells of every history; the samples are at least the first ones, and none failed."""
     told = []
-    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, points=100, progress=told.append, threads=1)
+    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, samples=100, progress=told.append, threads=1)
     assert 100 <= found.samples < sum(told) < 1000
     assert found.failed == 0
 
@@ -155,19 +155,19 @@ def test_vertical_motion_lowers_the_start():
     """With a vertical part, which can lighten the body, the range begins at a tenth of what lifts it."""
     record = noise()
     lightened = record.changed("with vertical", vertical=0.5 * record.acceleration)
-    plain = minimum_overturning_acceleration(BLOCK, record, 0.8, points=50, threads=1)
-    both = minimum_overturning_acceleration(BLOCK, lightened, 0.8, points=50, threads=1)
-    assert plain.lowest == pytest.approx(9.80665 * math.tan(0.2), rel=1e-14, abs=0.0)
-    assert both.lowest == pytest.approx(0.1 * plain.lowest, rel=1e-14, abs=0.0)
+    plain = minimum_overturning_acceleration(BLOCK, record, 0.8, samples=50, threads=1)
+    both = minimum_overturning_acceleration(BLOCK, lightened, 0.8, samples=50, threads=1)
+    assert plain.min_pga == pytest.approx(9.80665 * math.tan(0.2), rel=1e-14, abs=0.0)
+    assert both.min_pga == pytest.approx(0.1 * plain.min_pga, rel=1e-14, abs=0.0)
 
 
 def test_failed_histories_are_counted():
     """Histories stopped for too many impacts are counted and set aside; if all are, that is an error."""
-    found = minimum_overturning_acceleration(BLOCK, noise(), 0.9, points=40, levels=0, most_events=3, threads=1)
+    found = minimum_overturning_acceleration(BLOCK, noise(), 0.9, samples=40, bisections=0, most_events=3, threads=1)
     assert 0 < found.failed < found.samples
     assert FAILED not in found.modes
     with pytest.raises(InvalidValueError, match="could be computed"):
-        minimum_overturning_acceleration(BLOCK, SINE, 0.9, lowest=1e13, highest=1e14, points=5, threads=1)
+        minimum_overturning_acceleration(BLOCK, SINE, 0.9, min_pga=1e13, max_pga=1e14, samples=5, threads=1)
 
 
 def quake(seed, which="point-source"):
@@ -183,7 +183,7 @@ def test_under_records_the_minimum_holds_against_many_more_samples(number):
     """
     block, motion = rk.Block(width=0.5, height=2.0), SyntheticSet("point-source", 6, 1, pga=3.0)[number]
     found = minimum_overturning_acceleration(block, motion, 0.9, threads=1)
-    scales = np.geomspace(found.lowest, found.minimum, 40_000, endpoint=False) / motion.peak
+    scales = np.geomspace(found.min_pga, found.minimum, 40_000, endpoint=False) / motion.peak
     falls = rk.simulate_many(block, motion, 0.9, scale=scales, threads=1)["outcome"].values[0, 0, :, 0] == 2
     assert 0.0 < found.resolution_below < 0.5 * found.resolution
     assert not falls[scales * motion.peak < found.minimum * (1.0 - found.resolution_below)].any()
@@ -192,8 +192,8 @@ def test_under_records_the_minimum_holds_against_many_more_samples(number):
 def test_what_lies_below_the_minimum_is_thinner_than_stated():
     """Under a long chaotic record a dense sampling finds overturning below the minimum in thinner stretches only."""
     block, motion = rk.Block(width=0.8, height=4.0), quake(2, "firm-ground")
-    found = minimum_overturning_acceleration(block, motion, 0.9, points=100, threads=1)
-    scales = np.geomspace(found.lowest, found.minimum, 20_000, endpoint=False) / motion.peak
+    found = minimum_overturning_acceleration(block, motion, 0.9, samples=100, threads=1)
+    scales = np.geomspace(found.min_pga, found.minimum, 20_000, endpoint=False) / motion.peak
     falls = rk.simulate_many(block, motion, 0.9, scale=scales, threads=1)["outcome"].values[0, 0, :, 0] == 2
     ends = np.flatnonzero(np.diff(np.concatenate([[0], falls.astype(int), [0]])))
     widest = (scales[ends[1::2] - 1] / scales[ends[::2]]).max(initial=1.0) - 1.0
@@ -204,7 +204,7 @@ def test_only_records_are_searched_again():
     """A pulse is sampled as before; a record has rounds below its minimum, which progress is told of."""
     for motion, rounds in ((SINE, 0), (quake(1), 2)):
         told = []
-        found = minimum_overturning_acceleration(BLOCK, motion, 0.85, levels=0, progress=told.append, threads=1)
+        found = minimum_overturning_acceleration(BLOCK, motion, 0.85, bisections=0, progress=told.append, threads=1)
         assert found.samples >= 400 * (1 + rounds)
         assert (found.samples < 2 * 400) == (rounds == 0)
         assert sum(told) >= found.samples
@@ -226,7 +226,7 @@ def test_samples_up_to_the_first_fall():
     assert list(found) == [0]
     assert found[0].tolist() == [1.0, 1.5, 1.8]
     assert below_minimum(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
-    assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=2.0, threads=1).resolution_below)
+    assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, max_pga=2.0, threads=1).resolution_below)
 
 
 def test_what_is_printed_says_where_it_overturns():
@@ -234,6 +234,6 @@ def test_what_is_printed_says_where_it_overturns():
     found = minimum_overturning_acceleration(BLOCK, SINE, "housner")
     low, high = found.overturning_intervals[0]
     assert repr(found).startswith(f"<Transitions: overturns from {low:.4g} to {high:.4g}")
-    little = minimum_overturning_acceleration(BLOCK, SINE, "housner", highest=1.01 * found.uplift_acceleration)
+    little = minimum_overturning_acceleration(BLOCK, SINE, "housner", max_pga=1.01 * found.uplift_acceleration)
     assert repr(little).startswith("<Transitions: stands; searched from ")
     assert "array" not in repr(found) + repr(rk.simulate(BLOCK, SINE.scaled(3.0), restitution="ked").contact)

@@ -122,9 +122,9 @@ def test_ends_of_a_search_are_those_that_have_a_result():
 
     sides = {f"{n}_{s}": np.array([0.2]) for n in ("alpha", "p", "r", "q") for s in ("right", "left")}
     case = Cases(sides, np.array([1.0]), np.array([1.0]), np.array([1.0]), np.array([8.0]), record=False)
-    (found,) = searched(case, Effort(points=9, levels=0, tolerance=1e-3), run)
+    (found,) = searched(case, Effort(samples=9, bisections=0, tolerance=1e-3), run)
     assert found.starts_overturned
-    assert found.lowest == found.certain >= 2.0
+    assert found.min_pga == found.certain >= 2.0
     assert found.failed > 0
 
 
@@ -163,7 +163,7 @@ def test_maps_spectra_and_searches_say_it():
             assert found.attrs["contact"] == contact_words(found["lost_contact"])
             assert ("would have to pull" in found.attrs["contact"]) is all_lost
         least = rk.minimum_overturning_acceleration(
-            LEANING, motions[0], 0.8, points=20, levels=1, lowest=2.8, highest=5.0
+            LEANING, motions[0], 0.8, samples=20, bisections=1, min_pga=2.8, max_pga=5.0
         )
         assert ("would have to pull" in least.contact) is all_lost
 

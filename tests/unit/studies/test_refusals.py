@@ -63,11 +63,12 @@ def product(sides=None, scales=(1.0, 2.0), motions=5):
 REFUSED = [
     # what is asked, with what, and the words of the refusal
     *[(minimum, {name: value}, words) for name, value, words in (
-        ("points", 1, "points"), ("points", 2.0, "points"), ("levels", 13, "levels"), ("lowest", 0.0, "lowest"),
+        ("samples", 1, "samples"), ("samples", 2.0, "samples"), ("bisections", 13, "bisections"),
+        ("min_pga", 0.0, "min_pga"),
         ("highest", math.inf, "highest"), ("tolerance", -1.0, "tolerance"), ("body", None, "body"),
         ("motion", 3, "motion"), ("motion", STILL, "peak above zero"),
     )],
-    (minimum, {"lowest": 9.0, "highest": 8.0}, "below highest"),
+    (minimum, {"min_pga": 9.0, "max_pga": 8.0}, "below max_pga"),
     *[(minimum_overturning_accelerations, {"bodies": bad, "motion": SINE}, "bod") for bad in ([], BLOCK, "block", 3)],
     *[(mapped, {name: value}, name) for name, value in (
         ("motion", 3.0), ("body", "block"), ("gravity", -1.0), ("nonsense", 1), ("threads", 0), ("progress", 3),

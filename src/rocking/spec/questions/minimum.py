@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 class MinimumTable(JobTable):
     """Where and how closely to look for the accelerations at which a body begins or ceases to overturn."""
 
-    lowest: Positive | None = key("where to begin; what lifts the body if not given [m/s2]")
-    highest: Positive | None = key("where to end; 50 times what lifts the body if not given [m/s2]")
-    points: int = key("first samples, in equal ratios", 400, ge=2, le=1_000_000)
-    levels: int = key("how often suspicious intervals are halved, 0 to 12", 4, ge=0, le=12)
+    min_pga: Positive | None = key("smallest PGA; that of uplift if not given [m/s2]")
+    max_pga: Positive | None = key("largest PGA; 50 times that of uplift if not given [m/s2]")
+    samples: int = key("number of first samples, in equal ratios", 400, ge=2, le=1_000_000)
+    bisections: int = key("number of bisections of suspicious intervals, 0 to 12", 4, ge=0, le=12)
     tolerance: float = key("width of the last brackets over the acceleration [-]", 1e-12, ge=0.0, le=0.1)
 
 
@@ -43,7 +43,7 @@ class MinimumQuestion(BodyQuestion):
     @property
     def sizes(self) -> list[int]:
         """Motions, bodies, first samples and restitutions."""
-        return [*super().sizes, self.minimum.points]
+        return [*super().sizes, self.minimum.samples]
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
         """Return the `Transitions` of one body under one motion."""
@@ -75,17 +75,17 @@ class MinimumQuestion(BodyQuestion):
             parameters = [[make(body, law, settings) for body in problem.bodies] for law in laws]
         sides = [sides_of(row) for row in parameters]
         with located("minimum"):
-            effort = Effort(table.points, table.levels, table.tolerance)
+            effort = Effort(table.samples, table.bisections, table.tolerance)
             cases = Cases.joined([
-                Cases.of(motions[k], each, settings, table.lowest, table.highest)
+                Cases.of(motions[k], each, settings, table.min_pga, table.max_pga)
                 for k in range(len(motions)) for each in sides
             ])  # fmt: skip
         shape = (len(motions), len(problem.restitutions), len(problem.bodies))
         names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
         options = {"settings": settings, "engine": self.settings.engine}
         search = MinimumSearch(cases, effort, motions, shape, parameters[0][0].law, options, names)
-        dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
-        scale = cases.grid(effort.points).reshape(*dims.values())
+        dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.samples), strict=True))
+        scale = cases.grid(effort.samples).reshape(*dims.values())
         coordinates = {
             "motion": labels_along("motion", names["motion"], "name of the motion"),
             "restitution": labels_along("restitution", names["restitution"], "restitution"),
@@ -93,8 +93,8 @@ class MinimumQuestion(BodyQuestion):
             "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
         }
         attributes = {
-            "points": effort.points,
-            "levels": effort.levels,
+            "samples": effort.samples,
+            "bisections": effort.bisections,
             "tolerance": effort.tolerance,
             "bodies": "; ".join(repr(body) for body in problem.bodies)[:4000],
         }

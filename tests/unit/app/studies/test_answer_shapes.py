@@ -43,7 +43,7 @@ STUDIES = {
         "motions": {"pulse": [f"sine:amplitude={a},period={p}" for a in (2.0, 4.0) for p in (0.4, 0.7)]},
     },
     "histories": {"histories": {"scales": [1.0, 9.0]}},
-    "minimum-acceleration": {"minimum": {"points": 20}},
+    "minimum-acceleration": {"minimum": {"samples": 20}},
 }
 ENDINGS = {
     "/api/table/{what}.{kind}": [("body", "csv"), ("body", "xlsx"), ("body", "mat"), ("body", "nc")],

@@ -97,7 +97,7 @@ def test_adaptive_studies_have_tables(result, map_job):
     refined = result(restitution={"model": "ked"}, map={**map_job()["map"], "refine": 1})
     assert set(refined["tables"]) == {"refined", "boundary"}
     assert all({"name", "unit", "words", "values"} == set(column) for column in refined["tables"]["boundary"])
-    assert set(result("minimum-acceleration", minimum={"points": 20})["tables"]) == {"crossings", "minima"}
+    assert set(result("minimum-acceleration", minimum={"samples": 20})["tables"]) == {"crossings", "minima"}
 
 
 def test_contours_part_what_overturns():
@@ -200,7 +200,7 @@ def test_lost_contact_stands_beside_the_verdicts(kind, result):
 
     def answer(low, high):
         own = {"fragility": {"levels": [low, high]}} if kind != "minimum-acceleration" else {
-            "minimum": {"points": 20, "levels": 1, "lowest": low, "highest": high}
+            "minimum": {"samples": 20, "bisections": 1, "min_pga": low, "max_pga": high}
         }  # fmt: skip
         return result(kind, motions={"pulse": pulses}, **own)
 

@@ -13,20 +13,20 @@ from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
 from rocking.studies.minimum_rounds import tables_of
 
 NAMES = {"motion": ["north", "south"], "restitution": ["0.9"]}
-EFFORT = Effort(points=7, levels=0, tolerance=0.01)
+EFFORT = Effort(samples=7, bisections=0, tolerance=0.01)
 ISLAND = Transitions(
     acceleration=np.array([4.0, 5.0, 6.0]), ratio=np.array([1.6, 2.0, 2.4]), scale=np.array([0.8, 1.0, 1.2]),
-    modes=np.array([[-1, 2], [3, -1], [-1, 0]]), width=np.array([0.01, 0.02, 0.03]), lowest=2.5, highest=30.0,
+    modes=np.array([[-1, 2], [3, -1], [-1, 0]]), width=np.array([0.01, 0.02, 0.03]), min_pga=2.5, max_pga=30.0,
     uplift_acceleration=2.5, resolution=0.51, starts_overturned=False, samples=19, failed=1, resolution_below=0.04,
 )  # fmt: skip
 STARTS = Transitions(
     acceleration=np.array([9.0]), ratio=np.array([3.0]), scale=np.array([1.8]), modes=np.array([[1, -1]]),
-    width=np.array([0.05]), lowest=3.5, highest=31.0, uplift_acceleration=3.0, resolution=0.44,
+    width=np.array([0.05]), min_pga=3.5, max_pga=31.0, uplift_acceleration=3.0, resolution=0.44,
     starts_overturned=True, samples=12, failed=0,
 )  # fmt: skip
 NONE = dataclasses.replace(
     STARTS, acceleration=np.empty(0), ratio=np.empty(0), scale=np.empty(0), modes=np.empty((0, 2), np.int64),
-    width=np.empty(0), lowest=4.5, starts_overturned=False, samples=7,
+    width=np.empty(0), min_pga=4.5, starts_overturned=False, samples=7,
 )  # fmt: skip
 NAN = float("nan")
 MINIMA = {
@@ -36,8 +36,8 @@ MINIMA = {
     "minimum": [4.0, NAN, NAN, NAN],
     "certain": [6.0, NAN, NAN, NAN],
     "uplift_acceleration": [2.5, 3.0, 3.0, 7.5],
-    "lowest": [2.5, 3.5, 4.5, 7.0],
-    "highest": [30.0, 31.0, 31.0, 70.0],
+    "min_pga": [2.5, 3.5, 4.5, 7.0],
+    "max_pga": [30.0, 31.0, 31.0, 70.0],
     "resolution": [0.51, 0.44, 0.44, NAN],
     "resolution_below": [0.04, NAN, NAN, NAN],
     "crossings": [3, 1, 0, 0],
@@ -57,7 +57,7 @@ CROSSINGS = {
     "mode_above": [2, -1, 0, -1],
 }
 UNITS = {
-    "minimum": "m/s2", "certain": "m/s2", "uplift_acceleration": "m/s2", "lowest": "m/s2", "highest": "m/s2",
+    "minimum": "m/s2", "certain": "m/s2", "uplift_acceleration": "m/s2", "min_pga": "m/s2", "max_pga": "m/s2",
     "acceleration": "m/s2", "width": "m/s2",
 }  # fmt: skip
 

@@ -39,7 +39,7 @@ MINIMUM = search(6, 0.05)
 VALUE = "[restitution]\nvalue = 0.9\n"
 DRAWN = MINIMUM.replace("values = [0.85, 0.93]", "[restitution.distribution]\nmean = 0.9\ndeviation = 0.03")
 BODIES = [rk.Block(width=0.5, height=2.0), rk.Block(width=0.3, height=1.5)]
-SEARCH = {"highest": 25.0, "points": 6, "levels": 1, "tolerance": 0.05}
+SEARCH = {"max_pga": 25.0, "samples": 6, "bisections": 1, "tolerance": 0.05}
 AXES = ("frequency_ratio", [1.5, 3.0, 4.5]), ("amplitude_ratio", [1.5, 4.0, 6.5])
 
 
@@ -155,7 +155,7 @@ def test_nothing_to_find(tmp_path):
     calm = text_of("map").replace("[1.5, 4.0, 6.5]", "[0.1, 0.2, 0.3]")
     folder = finished(tmp_path / "map", calm)
     assert xr.load_dataset(export(folder, tmp_path / "map.nc"), engine="h5netcdf").sizes["vertex"] == 0
-    weak = text_of("minimum").replace("highest = 25.0", "lowest = 0.1\nhighest = 0.5")
+    weak = text_of("minimum").replace("max_pga = 25.0", "min_pga = 0.1\nmax_pga = 0.5")
     folder = finished(tmp_path / "minimum", weak)
     assert export(folder, tmp_path / "c.csv").read_text().count("\n") == 1
     assert all(len(each) == 0 for each in answer(folder).value)
@@ -289,7 +289,7 @@ def test_round_of_another_study_is_refused(whole, tmp_path):
     ("kind", "old", "new"),
     [
         ("drawn", "seed = 0", "seed = 1"),
-        ("minimum", "points = 6", "points = 7"),
+        ("minimum", "samples = 6", "samples = 7"),
         ("map", "tolerance = 0.01", "tolerance = 0.1"),
     ],
 )
@@ -346,8 +346,8 @@ def test_forecast_is_of_the_first_round():
         ("map", "values = [1.5, 3.0, 4.5]", "values = [1.5]", r"map\.refine: frequency_ratio must have at least 2"),
         ("map", "value = 0.9", "values = [0.8, 0.9]", "one restitution"),
         ("map", "value = 0.9", "[restitution.distribution]\nmean = 0.9\ndeviation = 0.1", "drawn at random"),
-        ("minimum", "highest = 25.0", "lowest = 50.0\nhighest = 25.0", "minimum: lowest must be below highest"),
-        ("minimum", "levels = 1", "levels = 13", r"minimum\.levels"),
+        ("minimum", "max_pga = 25.0", "min_pga = 50.0\nmax_pga = 25.0", "minimum: min_pga must be below max_pga"),
+        ("minimum", "bisections = 1", "bisections = 13", r"minimum\.bisections"),
         ("minimum", "[minimum]", "[fragility]\n[minimum]", "does not go with"),
     ],
 )

@@ -27,8 +27,8 @@ pulse = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=1.1"]
 [restitution]
 values = [0.85, 0.93]
 [minimum]
-points = 20
-levels = 1
+samples = 20
+bisections = 1
 """
 STRIPES = """[motions]
 synthetic = "pulse-like"
@@ -43,8 +43,8 @@ levels = { from = 2, to = 12, count = 6 }
 def made(tmp_path_factory):
     """Campaigns that are through."""
     texts = {
-        "minimum": job("minimum-acceleration", BODY, MINIMUM, "highest = 20.0\n"),
-        "nothing": job("minimum-acceleration", BODY, MINIMUM, "highest = 2.6\n"),
+        "minimum": job("minimum-acceleration", BODY, MINIMUM, "max_pga = 20.0\n"),
+        "nothing": job("minimum-acceleration", BODY, MINIMUM, "max_pga = 2.6\n"),
         "map": job("overturning-map", BODY, TWO_MODELS, MAP),
         "one model": job("overturning-map", BODY, MAP),
         "histories": job("histories", BODY, TWO_MODELS, PULSE, "[histories]\nscales = [1, 2, 3]\n"),

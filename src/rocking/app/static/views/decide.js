@@ -63,7 +63,7 @@ const Decide = ({ app, questions }) => {
       <${Choice} label="Analysis" value=${what} options=${[["assess", "margin and retrofit measures"],
         ["predict", "overturning probability and main uncertainties"],
         ["overturning-pga", "PGA intervals with overturning"]]} />
-      ${what.value === "overturning-pga" ? html`<div class="fields">${["lowest", "highest", "points", "levels"].map((name) => html`
+      ${what.value === "overturning-pga" ? html`<div class="fields">${["min_pga", "max_pga", "samples", "bisections"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
         <p class="field-help">Uses the scaled motion of this project and the first restitution model.</p>` : html`
       <${Choice} label="Ground motions" value=${shaken} options=${FAMILIES} />
