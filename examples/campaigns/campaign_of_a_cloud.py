@@ -29,11 +29,11 @@ seed = 1
 [restitution]
 model = "ked"
 [fragility]
-measure = "pgv"
-factor = 3.0
-states = [0.3]
+im = "pgv"
+scale = 3.0
+limit_states = [0.3]
 [export]
-measures = ["pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(1.0)", "arias", "cav"]
+ims = ["pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(1.0)", "arias", "cav"]
 columns = ["magnitude", "ln distance_km"]
 """)
 
@@ -42,8 +42,8 @@ with TemporaryDirectory() as home:
     campaign.run()
     (found,) = analyses(campaign).values()
     ranked = measure_comparison(campaign)
-    # from the shell: rocking campaign export CAMPAIGN --output measures=cabinet_measures.csv
-    table = export(campaign, "cabinet_measures.csv", "measures")
+    # from the shell: rocking campaign export CAMPAIGN --output ims=cabinet_measures.csv
+    table = export(campaign, "cabinet_measures.csv", "ims")
 
 # %%
 # The regression, and what becomes of the cabinet at the median: the parts of the probability add up to one.
@@ -61,7 +61,7 @@ write(cloud_picture(found), "campaign_of_a_cloud.png")
 # Which measure says most: the one with the least scatter. The file says the same.
 
 for score in ranked.scores:
-    print(f"  {score.measure:20s} efficiency {score.efficiency:.2f}")
+    print(f"  {score.im:20s} efficiency {score.efficiency:.2f}")
 with table.open(encoding="utf-8") as file:
     rows = list(csv.DictReader(file))
 assert [float(row["efficiency"]) for row in rows] == [score.efficiency for score in ranked.scores]

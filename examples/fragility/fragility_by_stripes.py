@@ -20,7 +20,7 @@ from rocking.studies.fragility import model_of, to_csv, to_nrml
 cabinet = rk.Block(width=0.3, height=1.5)
 motions = SyntheticSet("point-source", count=60, seed=1)
 levels = np.linspace(0.15, 0.9, 11) * conventions.g
-found = fragility_analysis(cabinet, list(motions), levels, "ked", states=(0.2, 0.5))
+found = fragility_analysis(cabinet, list(motions), levels, "ked", limit_states=(0.2, 0.5))
 
 print(f"{found.trials.sum()} histories; {found.uplift.verdict}")
 assert found.uplift.contradictions == 0
@@ -50,5 +50,5 @@ write(fragility_picture(found), "fragility_by_stripes.png")
 # dispersion for all is fitted.
 
 model = model_of(found, "cabinet")
-to_nrml(model, "cabinet_for_openquake.xml", crossing="common-dispersion")
-to_csv(model, "cabinet_fema_p58.csv", "fema-p58", crossing="common-dispersion")
+to_nrml(model, "cabinet_for_openquake.xml", crossing_curves="common-dispersion")
+to_csv(model, "cabinet_fema_p58.csv", "fema-p58", crossing_curves="common-dispersion")

@@ -42,14 +42,14 @@ for height in (0.5, 4.0):
     print(f"height {height} m: {ranked[height].scores[0].rocked} of {len(motions)} rocked and stayed standing")
     for score in ranked[height].scores:
         p_values = ", ".join(f"p({name}) {value:.2g}" for name, value in score.sufficiency.items())
-        print(f"  {score.measure:20s} efficiency {score.efficiency:.2f}, {p_values}")
+        print(f"  {score.im:20s} efficiency {score.efficiency:.2f}, {p_values}")
 
 # %%
 # The peak decides over a small body; over a large one how much shaking there is says more. For one body the
 # dimensionless velocity is the velocity times a constant.
 
 assert (ranked[0.5].best, ranked[4.0].best) == ("pga", "arias")
-scores = {score.measure: score.efficiency for score in ranked[4.0].scores}
+scores = {score.im: score.efficiency for score in ranked[4.0].scores}
 assert abs(scores["p pgv/(g tan alpha)"] / scores["pgv"] - 1.0) < 1e-9
 
 # %%

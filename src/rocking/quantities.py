@@ -316,7 +316,7 @@ _STUDIES = (
     Quantity("largest_peak_ratio", "1", "largest peak ratio without overturning", label="peak / alpha"),
     Quantity("largest_overturned_period", "s", "largest 2 pi / p of a block that overturns", label="overturns up to"),
     Quantity("seed", "1", "random seed"),
-    Quantity("states", "1", "limit states: peak rotation over the slenderness angle"),
+    Quantity("limit_states", "1", "limit states: peak rotation over the slenderness angle"),
     Quantity("trials", "1", "number of histories at each level"),
     Quantity("reached", "1", "number of histories that reach a state"),
     Quantity("dispersion", "1", "logarithmic standard deviation", digits=".3g"),
@@ -597,15 +597,15 @@ def closely(**digits: str) -> dict[str, Quantity]:
 _PARTS = """
     adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body
     by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
-    components concerns converged crossing crossings curves decides definition designs died directions doubts edges
-    ends envelope errata event evidence examples facets file file_unit files finding first_corner folder forced from
-    growth hazard hierarchy identities ignored inputs intensity interfaces intervals inventory islands judged_by label
-    laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest lowest_uplift
-    mean measure measure_words messages method methods mirrored models motion motions_apart new not_assessed
-    not_objects not_read not_sampled note notes objects one_by_one outside overturning passed_over passes
-    plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies resolved
-    restitution_drawn results rigid rings scores section sensitivity sentence sentences sets sides slow software
-    solid source sources spacing spectrum stable stages standing starts_overturned stated stored tables target
+    components concerns converged crossing_curves crossings curves decides definition designs died directions doubts
+    edges ends envelope errata event evidence examples facets file file_unit files finding first_corner folder forced
+    from growth hazard hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory
+    islands judged_by label laboratories language last_state league left_out_groups level likelihood likelihood_scale
+    lowest lowest_uplift mean messages method methods mirrored models motion motions_apart new not_assessed
+    not_objects not_read not_sampled note notes objects one_by_one outside overturning passed_over passes plan
+    plane_is_weakest poses prediction progress reason reasons records refused reliability remedies resolved
+    restitution_drawn results rigid rings scores section sensitivity sentence sentences sets sides slow software solid
+    source sources spacing spectrum stable stages standing starts_overturned stated stored tables target
     target_spectrum test text threads title to too_sure traces unit uplift_threshold values varied verdict whole
     vertical_component with_friction words x y
 """

@@ -132,7 +132,7 @@ def test_studies_are_compared(open_page: Callable[..., Any], served: Any) -> Non
     pulses = {"pulse": [f"sine:amplitude=1,period={0.5 + 0.1 * k:.1f}" for k in range(6)]}
     stripes = {
         "motions": pulses,
-        "fragility": {"levels": [2.0, 3.0, 4.0, 6.0], "states": []},
+        "fragility": {"levels": [2.0, 3.0, 4.0, 6.0], "limit_states": []},
     }
     finished(served, "one model", restitution={"models": ["ked"]}, **stripes)
     finished(served, "two models", restitution={"models": ["ked", "housner"]}, **stripes)

@@ -30,7 +30,7 @@ def saved(page: Any, testid: str, folder: Path) -> Path:
 def test_nrml_needs_a_curve(open_page: Callable[..., Any], served: Any, shot: Any) -> None:
     """Where nothing overturns there is no curve: the button cannot be pressed, and a sentence says why."""
     few = {"motions": {"pulse": ["sine:amplitude=1,period=0.4", "sine:amplitude=1,period=0.7"]}}
-    made = finished(served, "nothing falls", fragility={"levels": [0.1, 0.2], "states": []}, **few)
+    made = finished(served, "nothing falls", fragility={"levels": [0.1, 0.2], "limit_states": []}, **few)
     page = open_page(view="studies")
     opened(page, made)
     expect(page.get_by_test_id("export-xml")).to_be_disabled()
@@ -44,7 +44,7 @@ def test_curves_that_cross_are_saved_with_one_dispersion(
 ) -> None:
     """Curves that cross are replaced on the page, with the reason, and NRML contains the curves of the page."""
     made = finished(
-        served, "curves that cross", fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "states": [0.5]},
+        served, "curves that cross", fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "limit_states": [0.5]},
         motions={"synthetic": "pulse-like", "count": 12, "seed": 7}, restitution={"model": "ked"},
     )  # fmt: skip
     page = open_page(view="studies")
@@ -60,7 +60,7 @@ def test_files_are_of_the_model_that_is_shown(open_page: Callable[..., Any], ser
     """NRML is of the restitution that was chosen, and differs from that of the first one."""
     pulses = [f"sine:amplitude=1,period={period}" for period in (0.4, 0.5, 0.7, 0.9, 1.2)]
     made = finished(
-        served, "two coefficients", fragility={"levels": [2.0, 4.0, 6.0, 8.0], "states": []},
+        served, "two coefficients", fragility={"levels": [2.0, 4.0, 6.0, 8.0], "limit_states": []},
         motions={"pulse": pulses}, restitution={"values": [0.98, 0.4]},
     )  # fmt: skip
     page = open_page(view="studies")
@@ -75,7 +75,7 @@ def test_files_are_of_the_model_that_is_shown(open_page: Callable[..., Any], ser
 def test_where_no_curve_fits_the_chart_says_so(open_page: Callable[..., Any], served: Any, shot: Any) -> None:
     """Uplift under a given PGA is certain or impossible: dots alone, no legend of a curve, and the reason."""
     same = {"motions": {"pulse": ["sine:amplitude=1,period=0.8", "sine:amplitude=1,period=0.82"]}}
-    made = finished(served, "a step", fragility={"levels": [0.5, 1.0, 40.0, 60.0], "states": [0.5]}, **same)
+    made = finished(served, "a step", fragility={"levels": [0.5, 1.0, 40.0, 60.0], "limit_states": [0.5]}, **same)
     page = open_page(view="studies")
     opened(page, made)
     why = page.get_by_test_id("no-curve").first

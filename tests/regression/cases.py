@@ -226,9 +226,9 @@ def _fragility() -> Any:
 
     motions = list(SyntheticSet("point-source", count=20, seed=1))
     g = conventions.g
-    stripes = fragility_analysis(BLOCK, motions, np.linspace(0.2, 1.2, 8) * g, "ked", states=(0.3,))
+    stripes = fragility_analysis(BLOCK, motions, np.linspace(0.2, 1.2, 8) * g, "ked", limit_states=(0.3,))
     other = fragility_analysis(
-        BLOCK, [motion.scaled(6.0) for motion in motions], restitution="ked", measure="pgv", analysis="cloud"
+        BLOCK, [motion.scaled(6.0) for motion in motions], restitution="ked", im="pgv", analysis="cloud"
     )
     growing = fragility_analysis(BLOCK, motions[:7], np.linspace(0.2, 1.6, 12) * g, "housner", analysis="incremental")
     return {
@@ -375,8 +375,8 @@ STUDIES: dict[str, dict[str, Any]] = {
     "overturning-map": {"map": AXES},
     "refined": {"map": {**AXES, "refine": 1}, "restitution": {"value": 0.9}},
     "rocking-spectrum": {"spectrum": {"slenderness_angles": [0.2, 0.3], "periods": [2.0, 4.0]}, "body": None},
-    "stripes": {"fragility": {"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "states": [0.5]}, "motions": SYNTHETIC},
-    "cloud": {"fragility": {"measure": "pgv"}, "motions": SYNTHETIC},
+    "stripes": {"fragility": {"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "limit_states": [0.5]}, "motions": SYNTHETIC},
+    "cloud": {"fragility": {"im": "pgv"}, "motions": SYNTHETIC},
     "incremental": {"fragility": {"levels": [2.0, 4.0, 8.0, 12.0]}, "motions": PULSES},
     "histories": {"histories": {"scales": [1.0, 4.0, 9.0]}, "motions": PULSES},
     "drawn": {
@@ -430,7 +430,7 @@ def campaigns() -> dict[str, Case]:
         ask("verify", "verify", "c", "--json")
         kept = trees.of_files(folder / "c")
         whats = [None, "histories", "fragility", "fragility-points", "fema-p58", "refined", "boundary", "crossings",
-                 "minima", "measures", "flips", "differences", "report"]  # fmt: skip
+                 "minima", "ims", "flips", "differences", "report"]  # fmt: skip
         for what in whats:
             for ending in ENDINGS:
                 target = f"o-{what}.{ending}"

@@ -77,17 +77,15 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, printed, tmp_path
     assert json.loads(printed(*pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
     file = tmp_path / "curves.xml"
     words = ("fragility", "--width", "0.4", "--height", "1.6", "--synthetic", "point-source", "--count", "30")
-    more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--output", str(file), "--crossing", "common-dispersion")
+    more = ("--im", "rms", "--levels", "0.2:1.4:25", "--output", str(file), "--crossing-curves", "common-dispersion")
     assert "rms" in printed(*words, *more)
     assert 'imt="RMS"' in file.read_text("utf-8")
     assert axis_label("rms") == "root mean square of the acceleration [m/s$^2$]"
     assert short_name("rms") == "RMS"
     assert {"name": "rms", "words": rms.words, "unit": "m/s2"} in listed_measures()
     shaken = [pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
-    found = fragility_analysis(
-        rk.Block(width=0.4, height=1.6), shaken, restitution=0.9, measure="rms", analysis="cloud"
-    )
-    assert {score.measure for score in compare_measures(found, ["rms", "pga"]).scores} == {"rms", "pga"}
+    found = fragility_analysis(rk.Block(width=0.4, height=1.6), shaken, restitution=0.9, im="rms", analysis="cloud")
+    assert {score.im for score in compare_measures(found, ["rms", "pga"]).scores} == {"rms", "pga"}
 
 
 def test_a_pulse_is_known_by_name_once_it_is_listed(monkeypatch):

@@ -48,7 +48,7 @@ def test_first_crossings_are_the_closed_boundaries(engine, agreement):
         pulses,
         levels,
         restitution=0.9,
-        measure=NORMALISED,
+        im=NORMALISED,
         tolerance=tolerance,
         linear=True,
         engine=engine,
@@ -68,7 +68,7 @@ def test_the_reported_formula_is_unconservative():
         pulse(rk.pulses.half_sine, 2.0, BLOCK),
         [1.5, 3.0],
         restitution=0.9,
-        measure=NORMALISED,
+        im=NORMALISED,
         linear=True,
         analysis="incremental",
     )
@@ -79,7 +79,7 @@ def test_the_reported_formula_is_unconservative():
 def test_resurrection_of_the_full_sine():
     """REF: overturning by one impact from 1.4036 to 3.4847, survival up to 3.6311, overturning without impact above."""
     found = fragility_analysis(
-        BLOCK, pulse(rk.pulses.sine, 3.0, BLOCK), np.linspace(1.0, 5.0, 41), restitution=0.9, measure=NORMALISED,
+        BLOCK, pulse(rk.pulses.sine, 3.0, BLOCK), np.linspace(1.0, 5.0, 41), restitution=0.9, im=NORMALISED,
         linear=True, tolerance=0.0, analysis="incremental",
     )  # fmt: skip
     first, second = found.intervals
@@ -104,7 +104,7 @@ def test_resurrection_of_the_nonlinear_full_sine():
     """REF: tan(alpha) = 1/3, r = 0.85, Omega = 3: overturned from 1.43079 to 3.46980, safe up to 3.68568."""
     block = rk.Block(width=0.5, height=1.5)
     found = fragility_analysis(
-        block, pulse(rk.pulses.sine, 3.0, block), np.linspace(1.0, 5.0, 41), restitution=0.85, measure=NORMALISED,
+        block, pulse(rk.pulses.sine, 3.0, block), np.linspace(1.0, 5.0, 41), restitution=0.85, im=NORMALISED,
         tolerance=0.0, analysis="incremental",
     )  # fmt: skip
     ends = [found.intervals[0].start, found.intervals[0].end, found.intervals[1].start]
@@ -130,15 +130,15 @@ def test_larger_blocks_under_slower_motions():
 def test_dimensionless_measures_know_the_size():
     """Against p PGV / (g tan alpha) the same two bodies have one curve; against PGV they do not (the control)."""
     size, medians = 4.0, {}
-    for measure, levels in (("p pgv/(g tan alpha)", np.linspace(0.2, 2.5, 8)), ("pgv", np.linspace(0.1, 2.0, 8))):
+    for im, levels in (("p pgv/(g tan alpha)", np.linspace(0.2, 2.5, 8)), ("pgv", np.linspace(0.1, 2.0, 8))):
         both = [
             fragility_analysis(
                 rk.Block(width=0.4 * s, height=1.6 * s), records(30, step=0.02 * math.sqrt(s)), levels,
-                restitution=0.9, measure=measure,
+                restitution=0.9, im=im,
             ).fits["overturned"].median
             for s in (1.0, size)
         ]  # fmt: skip
-        medians[measure] = both[1] / both[0]
+        medians[im] = both[1] / both[0]
     assert medians["p pgv/(g tan alpha)"] == pytest.approx(1.0, rel=1e-9, abs=0.0)
     assert medians["pgv"] > 1.5
 
@@ -197,9 +197,9 @@ def test_scaled_records():
 def test_gravity():
     """Gravity and motions times c, times divided by sqrt(c): the same fragility over g tan(alpha)."""
     c, levels = 2.5, np.linspace(1.1, 4.0, 8)
-    plain = fragility_analysis(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
+    plain = fragility_analysis(BLOCK, records(30), levels, restitution=0.9, im=NORMALISED)
     heavy = fragility_analysis(
-        BLOCK, records(30, step=0.02 / math.sqrt(c)), levels, restitution=0.9, measure=NORMALISED,
+        BLOCK, records(30, step=0.02 / math.sqrt(c)), levels, restitution=0.9, im=NORMALISED,
         gravity=c * conventions.g,
     )  # fmt: skip
     assert plain.responses.outcome.tolist() == heavy.responses.outcome.tolist()
@@ -224,7 +224,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
     boundary = HALF_SINE[2] * conventions.g * math.atan(0.25)
     unit = pulse(rk.pulses.half_sine, 2.0, BLOCK)
     pulses = [unit.scaled(boundary * f) for f in (0.8, 0.9, 1.0 - 1e-9, 1.0 + 1e-9, 1.1, 1.2)]
-    found = fragility_analysis(BLOCK, pulses, restitution=0.9, states=(), linear=True, analysis="cloud")
+    found = fragility_analysis(BLOCK, pulses, restitution=0.9, limit_states=(), linear=True, analysis="cloud")
     assert found.responses.overturned.tolist() == [False] * 3 + [True] * 3
     low, high = found.fits["overturned"].median_interval
     assert low < boundary < high
@@ -239,16 +239,16 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
 )
 def test_nrml_reproduces_the_curve(tmp_path, agreement):
     """Read by a parser of its own and evaluated by mpmath as OpenQuake does, the file gives P(im) to 1e-12."""
-    found = fragility_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
-    made = model_of(found, "block <1>", crossing="refuse")
+    found = fragility_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, limit_states=(0.2, 0.5))
+    made = model_of(found, "block <1>", crossing_curves="refuse")
     with pytest.raises(InvalidValueError, match="curves must not cross, but at"):
         to_nrml(made, tmp_path / "fragility.xml")
     assert not list(tmp_path.iterdir())
-    path = to_nrml(made, tmp_path / "fragility.xml", crossing="common-dispersion")
+    path = to_nrml(made, tmp_path / "fragility.xml", crossing_curves="common-dispersion")
     tag = "{http://openquake.org/xmlns/nrml/0.5}"
     root = ET.parse(path).getroot()
     params = root.findall(f".//{tag}params")
-    curves = model_of(found, "block <1>", crossing="common-dispersion").curves
+    curves = model_of(found, "block <1>", crossing_curves="common-dispersion").curves
     words = ["rotation_above_0_2_alpha", "rotation_above_0_5_alpha", "overturned"]
     assert root.find(f".//{tag}limitStates").text.split() == words
     assert [curve.state for curve in curves] == list(found.fits)
@@ -275,7 +275,7 @@ def test_both_definitions_on_one_set():
     pulses = [pulse(rk.pulses.sine, omega, BLOCK) for omega in np.linspace(2.0, 6.0, 41)]
     levels = np.linspace(1.05, 8.0, 140)
     found = fragility_analysis(
-        BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, linear=True, tolerance=1e-9, analysis="incremental"
+        BLOCK, pulses, levels, restitution=0.9, im=NORMALISED, linear=True, tolerance=1e-9, analysis="incremental"
     )
     by_intervals = np.array([sum(i.start <= level < i.end for i in found.intervals) / len(pulses) for level in levels])
     np.testing.assert_allclose(found.fractions, by_intervals, rtol=0.0, atol=1e-15)

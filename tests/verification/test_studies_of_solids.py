@@ -290,7 +290,7 @@ def test_fragilities():
     assert 0 < fell.sum() < fell.size
     assert found.uplift.threshold is None
     assert (
-        fragility_analysis(STATUE, motions, factor=5.0, friction=0.7, analysis="cloud").responses.overturned.sum()
+        fragility_analysis(STATUE, motions, scale=5.0, friction=0.7, analysis="cloud").responses.overturned.sum()
         == fell[:, 1].sum()
     )
     smooth = fragility_analysis(STATUE, motions, levels, friction=0.05)

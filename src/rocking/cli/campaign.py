@@ -112,13 +112,13 @@ def export(
             "picture; of an inventory .html, .pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the "
             "kind; WHAT=FILE says which: histories; picture; of fragility campaigns fragility, fragility-points, "
             "fema-p58 (.csv); of refined maps refined, boundary; of minimum accelerations crossings, minima; of "
-            "inventories report; of clouds measures; of several restitutions flips, differences."
+            "inventories report; of clouds ims; of several restitutions flips, differences."
         ),
     ],
     restitution: Annotated[
         str | None, typer.Option(help="Which restitution's fragility or measures, where the job has several.")
     ] = None,
-    crossing: Annotated[
+    crossing_curves: Annotated[
         str | None,
         typer.Option(
             help="Fragility curves that cross: keep-uplift, common-dispersion or refuse; that of the job if not given."
@@ -132,4 +132,4 @@ def export(
     from rocking.cli.campaign_export import write
 
     with campaign_output.codes(folder):
-        write(folder, output, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)
+        write(folder, output, restitution=restitution, crossing_curves=crossing_curves, inputs=inputs, as_json=as_json)

@@ -22,7 +22,7 @@ _SAFE = "the campaign itself is safe"
 
 
 def write(
-    folder: Path, out: list[str], *, restitution: str | None, crossing: Any, inputs: Path | None, as_json: bool
+    folder: Path, out: list[str], *, restitution: str | None, crossing_curves: Any, inputs: Path | None, as_json: bool
 ) -> None:
     """Write the results of a campaign into files, and say so; ``WHAT=FILE`` says what a file holds."""
     opened = JobFolder.open(folder, inputs)
@@ -33,7 +33,7 @@ def write(
             "{parameter} names {file} twice: the second would replace the first", parameter="--output", file=twice.name
         )
     for path, what in targets:
-        _check(opened, path, what, restitution, crossing)
+        _check(opened, path, what, restitution, crossing_curves)
     facts: list[dict[str, Any]] = []
     left_out: list[str] = []
     for path, what in targets:
@@ -48,7 +48,7 @@ def write(
             with _stored(path):
                 write_picture(campaign_picture(opened, restitution), path)
         else:
-            _file(opened, path, what, restitution, crossing, quiet=as_json)
+            _file(opened, path, what, restitution, crossing_curves, quiet=as_json)
         facts += [_facts(opened, each, what) for each in written]
     if as_json:
         print_json(*map(Answer, facts))
@@ -70,13 +70,13 @@ def _target(text: str, folder: JobFolder) -> tuple[Path, str]:
     return path, REPORT if is_inventory else exports_of(folder)[0]
 
 
-def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, crossing: Any) -> None:
+def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, crossing_curves: Any) -> None:
     """Refuse a file that could not be written, before any is."""
     if what == REPORT:
         from rocking.reports.inventory_folder import check_form
 
-        if folder.job.study.assess is None or restitution is not None or crossing is not None:
-            raise InvalidValueError("a report is of an inventory, without restitution and crossing")
+        if folder.job.study.assess is None or restitution is not None or crossing_curves is not None:
+            raise InvalidValueError("a report is of an inventory, without restitution and crossing_curves")
         if to.suffix:
             check_form(to)
             if not to.parent.is_dir():
@@ -89,8 +89,10 @@ def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, cros
             raise InvalidValueError(
                 "a picture is {endings}, got {ending!r}", endings=", ".join(PICTURES), ending=to.suffix or "no ending"
             )
-        if crossing is not None:
-            raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves that are written")
+        if crossing_curves is not None:
+            raise InvalidValueError(
+                "crossing_curves goes with fragility and fema-p58: it is about curves that are written"
+            )
         check_picture(folder, restitution)
         extra("matplotlib", "a picture")
     elif what not in ENDINGS:
@@ -98,7 +100,7 @@ def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, cros
             parameter="what", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=what
         )
     else:
-        checked(folder, to, what, restitution, crossing)
+        checked(folder, to, what, restitution, crossing_curves)
 
 
 def _words(what: str, facts: dict[str, Any]) -> str:
@@ -109,7 +111,9 @@ def _words(what: str, facts: dict[str, Any]) -> str:
     return f"{what} of {facts['histories']} histories in {facts['rounds']} rounds"
 
 
-def _file(folder: JobFolder, to: Path, what: str, restitution: str | None, crossing: Any, *, quiet: bool) -> None:
+def _file(
+    folder: JobFolder, to: Path, what: str, restitution: str | None, crossing_curves: Any, *, quiet: bool
+) -> None:
     total = folder.campaign.plan.count
     done = 0
     with bar(f"writing {to.name}", total, quiet=quiet) as tell:
@@ -119,7 +123,7 @@ def _file(folder: JobFolder, to: Path, what: str, restitution: str | None, cross
             done += count
             tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
 
-        jobs.export(folder, to, what, restitution=restitution, crossing=crossing, progress=step)
+        jobs.export(folder, to, what, restitution=restitution, crossing_curves=crossing_curves, progress=step)
 
 
 def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:

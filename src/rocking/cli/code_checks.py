@@ -63,7 +63,7 @@ def code_checks(
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
-    measure: Annotated[
+    im: Annotated[
         str, typer.Option(help="Intensity that the motions are brought to, as of rocking fragility.")
     ] = "pga/(g tan alpha)",
     levels: Annotated[
@@ -94,7 +94,7 @@ def code_checks(
 
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, *TABLES)
-    wanted = measure_of(measure)
+    wanted = measure_of(im)
     problem = _problem(arguments)
     if levels is None and not arguments.body_and_motions()[1]:
         levels = LEVEL if wanted.needs_body else None
@@ -102,7 +102,7 @@ def code_checks(
     with bar("histories", quiet=as_json) as progress:
         found, others = with_models(
             lambda one: compare_code_methods(
-                one.bodies, one.motions, one.restitution, levels=at, measure=wanted, threads=threads,
+                one.bodies, one.motions, one.restitution, levels=at, im=wanted, threads=threads,
                 progress=progress, **one.stated,
             ), problem,
         )  # fmt: skip

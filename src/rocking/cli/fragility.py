@@ -58,12 +58,12 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
 @options.takes(
     options.keys(
         FragilityTable,
-        "measure",
+        "im",
         "levels",
-        "states",
-        "factor",
+        "limit_states",
+        "scale",
         levels=f"{options.ROW}; with units, 0.05g:1g:20",
-        states=": 0.2,0.5 or 0.5,overturning",
+        limit_states=": 0.2,0.5 or 0.5,overturning",
     ),
     before="restitution",
 )
@@ -94,14 +94,14 @@ def fragility(
         str | None,
         typer.Option(help="Name of the body in the files; its kind if not given.", rich_help_panel=options.OUTPUT),
     ] = None,
-    crossing: Annotated[
+    crossing_curves: Annotated[
         str,
         typer.Option(
             help="Curves that cross: keep-uplift, one dispersion for all states but rocking; common-dispersion, one for"
             " all states, always; refuse, each state alone, and no files for FEMA P-58, PELICUN and OpenQuake.",
             rich_help_panel=options.OUTPUT,
         ),
-    ] = ExportTable.model_fields["crossing"].default,
+    ] = ExportTable.model_fields["crossing_curves"].default,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
@@ -114,11 +114,11 @@ def fragility(
     from rocking.studies.fragility.curves import Crossing
 
     exports = Exports.of(output, EXPORTS)
-    checks.one_of("--crossing", crossing, get_args(Crossing))
+    checks.one_of("--crossing-curves", crossing_curves, get_args(Crossing))
     length, written = None, ""
-    if problem := problem_in(context, body, "fragility", "name", "crossing"):
-        if not typed(context, "crossing"):
-            crossing = problem.document.export.crossing
+    if problem := problem_in(context, body, "fragility", "name", "crossing_curves"):
+        if not typed(context, "crossing_curves"):
+            crossing_curves = problem.document.export.crossing_curves
     else:
         arguments = Arguments(context, *TABLES, "fragility")
         length = arguments.length
@@ -127,7 +127,7 @@ def fragility(
     _check(problem, exports)
     with bar("histories", histories_in(problem), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
-    answer.name, answer.crossing = name, crossing
+    answer.name, answer.crossing_curves = name, crossing_curves
     # the numbers are shown even if a file cannot be made of them
     deliver(answer, as_json=as_json)
     if {"p58", "pelicun", "nrml"} & exports.names:
@@ -141,28 +141,28 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     """Return the table [fragility], and the unit that levels were written in, in which medians are printed."""
     from rocking import checks
     from rocking.motions.intensity import measure as measure_of
-    from rocking.studies.fragility.subject import checked_levels, limit_states
+    from rocking.studies.fragility.subject import checked_levels, limit_states_of
 
-    kind, levels, states, factor = (arguments.options[name] for name in ("analysis", "levels", "states", "factor"))
+    kind, levels, states, scale = (arguments.options[name] for name in ("analysis", "levels", "limit_states", "scale"))
     checks.one_of("--analysis", kind, ANALYSES)
     sets = arguments.sets.get("fragility", {})
-    measure = arguments.table("fragility", {"measure": arguments.options["measure"]}, keys={"measure"})
-    if not isinstance(measure["measure"], str):
-        raise InvalidValueError(parameter="fragility.measure", allowed="text", value=measure["measure"])
-    wanted = measure_of(measure["measure"])
+    im = arguments.table("fragility", {"im": arguments.options["im"]}, keys={"im"})
+    if not isinstance(im["im"], str):
+        raise InvalidValueError(parameter="fragility.im", allowed="text", value=im["im"])
+    wanted = measure_of(im["im"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
         raise InvalidValueError(
             "several --restitution are compared by --analysis stripes, not by {analysis}", analysis=kind
         )
-    own: dict[str, Any] = {**measure, "states": _states(states)}
-    limit_states(tuple(own["states"]))
-    if factor is not None:
+    own: dict[str, Any] = {**im, "limit_states": _states(states)}
+    limit_states_of(tuple(own["limit_states"]))
+    if scale is not None:
         if kind != "cloud":
             raise InvalidValueError(
                 "{parameter} is for --analysis cloud: {analysis} brings every motion to the levels",
-                parameter="--factor", analysis=kind,
+                parameter="--scale", analysis=kind,
             )  # fmt: skip
-        own["factor"] = factor
+        own["scale"] = scale
     written = "g" if wanted.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:
@@ -188,7 +188,7 @@ def _states(text: str) -> list[float | str]:
 
     words = [word.strip() for word in text.split(",")]
     names, numbers = [word for word in words if word in NAMED], [word for word in words if word not in NAMED]
-    between = row("--states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
+    between = row("--limit-states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
     return [*between, *names]
 
 
@@ -203,7 +203,7 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
             parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="rocking campaign takes more"
         )
     if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
-        bare = {key: own[key] for key in ("measure", "states")}
+        bare = {key: own[key] for key in ("im", "limit_states")}
         own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
     return of_body(arguments, kind, own, restitution, motions)
 
@@ -230,4 +230,4 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     if "nrml" in exports.names:
         from rocking.studies.fragility.export import intensity_type
 
-        intensity_type(problem.document.fragility.measure)
+        intensity_type(problem.document.fragility.im)

@@ -36,7 +36,7 @@ class FragilityAnswer:
     written: str  # unit that the levels were written in, empty if none; medians are printed in it
     length: str  # unit of lengths
     name: str | None = None  # of the body, in files
-    crossing: Any = "keep-uplift"  # treatment of curves that cross
+    crossing_curves: Any = "keep-uplift"  # treatment of curves that cross
     others: dict[str, Any] = field(default_factory=dict)  # analyses of the compared models
 
     @classmethod
@@ -73,14 +73,14 @@ class FragilityAnswer:
         from rocking.studies.fragility.curves import model_of
 
         name = self.name or type(self.problem.bodies[0]).__name__.lower()
-        return model_of(self.first, name, crossing=self.crossing)
+        return model_of(self.first, name, crossing_curves=self.crossing_curves)
 
     @cached_property
     def shown(self) -> "FragilityModel | None":
         """The curves that are shown in place of those of each state alone; None where there are none."""
         from rocking.studies.fragility.curves import shown_curves
 
-        return None if self.compared is not None else shown_curves(self.first, self.crossing)
+        return None if self.compared is not None else shown_curves(self.first, self.crossing_curves)
 
     def check_crossing(self) -> None:
         """Refuse curves that cross, of which FEMA P-58 and OpenQuake can make nothing."""
@@ -139,13 +139,15 @@ class FragilityAnswer:
             "gravity": self.problem.settings.gravity,
             "linear": self.problem.settings.linear,
             "analysis": self.kind,
-            "measure": first.subject.measure.name,
-            "measure_words": first.subject.measure_words,
-            "states": list(self.problem.document.fragility.states),
+            "im": first.subject.measure.name,
+            "im_description": first.subject.measure_words,
+            "limit_states": list(self.problem.document.fragility.limit_states),
             "uplift_threshold": first.subject.uplift_threshold,
             "lowest_uplift": first.subject.lowest_uplift,
             "levels": first.levels,
-            "crossing": {"method": self.crossing, "adjusted": "" if self.shown is None else self.shown.adjusted},
+            "crossing_curves": {
+                "method": self.crossing_curves, "adjusted": "" if self.shown is None else self.shown.adjusted
+            },
             "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
             "comparison": None if compared is None else {
                 "choices": compared.summary(),

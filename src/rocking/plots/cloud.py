@@ -106,7 +106,7 @@ def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
 
 def _parts(axes: "Axes", analysis: CloudAnalysis) -> None:
     """Draw what the total probability is made of, at the first rotation that counts as a state."""
-    rotations = [state.level for state in analysis.states if analysis.least < state.level < math.inf]
+    rotations = [state.level for state in analysis.limit_states if analysis.least < state.level < math.inf]
     rotation = rotations[0] if rotations else 0.5
     fine = np.geomspace(*axes.get_xlim(), 200)
     parts = analysis.parts(fine, rotation)
@@ -167,7 +167,7 @@ def measures_picture(found: MeasureComparison) -> "Figure":
             panel.axhline(row, color=PALE, linewidth=0.5, zorder=0)
         panel.tick_params(axis="y", length=0)
     _efficiency(axes[0], found)
-    axes[0].set_yticks(range(len(found.scores)), [short_name(score.measure) for score in found.scores])
+    axes[0].set_yticks(range(len(found.scores)), [short_name(score.im) for score in found.scores])
     axes[0].set_ylim(len(found.scores) - 0.5, -0.5)
     if columns:
         _sufficiency(axes[1], found, columns)

@@ -67,7 +67,7 @@ def test_a_giant_that_nothing_overturns(printed):
 
 def test_levels_in_another_measure(answered):
     """Levels of PGA in g bring every motion there, and what a wide body cannot be judged by is outside."""
-    found = answered("--width", 1, "--height", 0.6, *FAMILY, "--measure", "pga", "--levels", "0.2g")
+    found = answered("--width", 1, "--height", 0.6, *FAMILY, "--im", "pga", "--levels", "0.2g")
     assert found["levels"] == ["pga = 1.96133 m/s2"]
     assert found["methods"]["asce-43"]["called_safe"][0][0]["histories_known"] == 0
     assert found["methods"]["static"]["called_safe"][0][0] == {

@@ -43,8 +43,8 @@ def test_motions_follow_the_body(answered, tmp_path):
 
 def test_json_is_the_python_call(answered, motions):
     """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
-    answer = answered(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")
-    found = fragility_analysis(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), measure="pga", states=(0.2, 0.5))
+    answer = answered(*SIZE, *FAMILY, *LEVELS, "--limit-states", "0.2,0.5")
+    found = fragility_analysis(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), im="pga", limit_states=(0.2, 0.5))
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}
@@ -129,14 +129,14 @@ def test_resurrection_is_said(run, answered):
 
 def test_cloud(run, answered, motions):
     """A cloud takes the motions as they are, times a factor; its line is the study's."""
-    answer = answered(*SIZE, *FAMILY, "--analysis", "cloud", "--factor", "4", "--measure", "pgv")
-    found = fragility_analysis(BLOCK, motions, measure="pgv", factor=4.0, analysis="cloud")
+    answer = answered(*SIZE, *FAMILY, "--analysis", "cloud", "--scale", "4", "--im", "pgv")
+    found = fragility_analysis(BLOCK, motions, im="pgv", scale=4.0, analysis="cloud")
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert sum(result["trials"]) == 16
     assert result["regression"]["slope"] == found.regression.slope
     assert answer["uplift_threshold"] is None
-    page = run(*SIZE, *FAMILY, "--analysis", "cloud", "--factor", "4", "--measure", "pgv")[1]
+    page = run(*SIZE, *FAMILY, "--analysis", "cloud", "--scale", "4", "--im", "pgv")[1]
     assert f"slope {found.regression.slope:.3g} over ln(pgv)" in page
     assert "no level of this measure alone decides" in page
 
@@ -220,7 +220,7 @@ def test_every_file(run, tmp_path):
         ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("pelicun", "pelicun.csv"), ("nrml", "xml"),
         ("excel", "xlsx"), ("mat", "mat"), ("netcdf", "nc"))}  # fmt: skip
     words = [part for kind, path in paths.items() for part in ("--output", f"{kind}={path}")]
-    words += ["--name", "vase & stand", "--crossing", "common-dispersion"]
+    words += ["--name", "vase & stand", "--crossing-curves", "common-dispersion"]
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, *words)
     assert (code, err) == (0, "")
     assert [line[6:] for line in out.splitlines() if line.startswith("wrote ")] == [str(p) for p in paths.values()]
@@ -259,7 +259,7 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
     assert worst["alone"]["dispersion"] > 1.2 * least["alone"]["dispersion"]
     assert worst["dispersion"] == least["dispersion"]
     assert (worst["method"], worst["median_95"]) == ("common-dispersion", [None, None])
-    reason = answer["crossing"]["adjusted"]
+    reason = answer["crossing_curves"]["adjusted"]
     assert reason.startswith("Fitted alone, curves cross: at ")
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--output", f"p58={tmp_path / 'p.csv'}")
     assert (code, err) == (0, "")
@@ -276,40 +276,40 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
 
 def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
     """With refuse each state alone is shown, there is no NRML, and the option that helps is named."""
-    refuse = (*SIZE, *FAMILY, *LEVELS, "--crossing", "refuse")
+    refuse = (*SIZE, *FAMILY, *LEVELS, "--crossing-curves", "refuse")
     curves = answered(*refuse)["results"][0]["curves"]
     assert curves["overturned"]["dispersion"] > 1.2 * curves["rotation > 0.5 alpha"]["dispersion"]
     assert curves["overturned"]["alone"] is None
     code, _, err = run(*refuse, "--output", tmp_path / "n.xml")
     assert code == 2
     assert err.startswith("rocking: curves must not cross")
-    assert "--crossing keep-uplift fits one for all states but rocking" in err
+    assert "--crossing-curves keep-uplift fits one for all states but rocking" in err
     assert list(tmp_path.iterdir()) == []
     assert run(*refuse, "--output", tmp_path / "m.mat")[0] == 0
 
 
 def test_states_are_chosen(run, answered, tmp_path):
     """A state is left out of screen, JSON and files; a word that is no state is refused."""
-    whole, part = (answered(*SIZE, *FAMILY, *LEVELS, *more) for more in ((), ("--states", "overturning")))
+    whole, part = (answered(*SIZE, *FAMILY, *LEVELS, *more) for more in ((), ("--limit-states", "overturning")))
     assert list(part["results"][0]["reached"]) == list(part["results"][0]["curves"]) == ["overturned"]
     alone = whole["results"][0]["curves"]["overturned"]["alone"]
     assert part["results"][0]["curves"]["overturned"]["median"] == alone["median"]
-    assert part["crossing"]["adjusted"] == ""
+    assert part["crossing_curves"]["adjusted"] == ""
     file = tmp_path / "p.csv"
-    code, out, _ = run(*SIZE, *FAMILY, *LEVELS, "--states", "overturning", "--output", f"p58={file}")
+    code, out, _ = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", "overturning", "--output", f"p58={file}")
     assert code == 0
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
     assert [row["Damage State Description"] for row in rows] == ["overturned"]
     assert "rotation > 0.5" not in out
     # the outcomes of the lesser state form a step, which no common dispersion describes
-    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--states", "0.2,overturning", "--output", f"p58={file}")
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", "0.2,overturning", "--output", f"p58={file}")
     assert code == 2
     assert "They are kept, since no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
-    assert "leave one out with --states" in err
+    assert "leave one out with --limit-states" in err
     for bad in ("falling", "overturned", "0.5,0.2,rocking", "rocking,rocking", ""):
-        code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--states", bad)
+        code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", bad)
         assert code == 2, bad
-        assert "states" in err, bad
+        assert "limit-states" in err, bad
 
 
 def test_counts_as_csv(answered, tmp_path):
@@ -334,7 +334,7 @@ def test_pictures(run, tmp_path, analysis):
     path = tmp_path / "p.png"
     words = {
         "incremental": (*LEVELS, "--analysis", "incremental"),
-        "cloud": ("--analysis", "cloud", "--factor", "4"),
+        "cloud": ("--analysis", "cloud", "--scale", "4"),
         "comparison": (*LEVELS, "--restitution", "ked", "--restitution", "0.8"),
     }[analysis]
     assert run(*SIZE, *FAMILY, *words, "--output", path)[0] == 0

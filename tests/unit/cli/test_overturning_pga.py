@@ -82,8 +82,6 @@ def test_range_with_units(run):
     for low, high in (("0.3g", "0.34g"), (str(0.3 * G), str(0.34 * G))):
         _, out, _ = run(*SIZE, PULSE, "--restitution", "0.85", "--min-pga", low, "--max-pga", high, "--json")
         told = json.loads(out)
-        assert (told["min_pga"], told["max_pga"]) == pytest.approx(
-            (0.3 * G, 0.34 * G), rel=1e-14, abs=0.0
-        )
+        assert (told["min_pga"], told["max_pga"]) == pytest.approx((0.3 * G, 0.34 * G), rel=1e-14, abs=0.0)
         assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")
         assert (told["minimum_acceleration"], told["crossings"]) == (None, [])

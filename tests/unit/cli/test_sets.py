@@ -72,14 +72,14 @@ def test_step_and_scale_hold_along_every_axis(run):
 
 
 def test_a_file_says_how_curves_that_cross_are_written(refuses, run, monkeypatch):
-    """`[export] crossing` of a file holds unless `--crossing` says otherwise; what needs a campaign is refused."""
+    """`[export] crossing_curves` of a file holds unless the option says otherwise; a campaign alone takes the rest."""
     from rocking.cli.fragility_answer import FragilityAnswer
 
     seen = []
-    monkeypatch.setattr(FragilityAnswer, "check_crossing", lambda self: seen.append((self.crossing, self.name)))
-    export = '[export]\ncrossing = "common-dispersion"\n'
+    monkeypatch.setattr(FragilityAnswer, "check_crossing", lambda self: seen.append((self.crossing_curves, self.name)))
+    export = '[export]\ncrossing_curves = "common-dispersion"\n'
     Path("stripes.toml").write_text(STRIPES + export)
-    for more in ("", " --crossing refuse --name vase"):
+    for more in ("", " --crossing-curves refuse --name vase"):
         run(*f"fragility stripes.toml --output p58=curves.csv{more}".split())
     assert seen == [("common-dispersion", None), ("refuse", "vase")]
     Path("stripes.toml").write_text(f"{STRIPES}{export}bootstrap = 99\n")

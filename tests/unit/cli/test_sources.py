@@ -96,7 +96,7 @@ def test_curves_of_a_floor_are_not_of_the_ground(run, tmp_path):
         names.append(tmp_path / f"r{k}.txt")
         names[-1].write_text("\n".join(f"{t:.2f} {a:.6f}" for t, a in zip(times, wave, strict=True)), "utf-8")
     words = ("fragility", "--width", 0.25, "--height", 1.25, "--centre", "0.11,0.6", *names, "--units", "m/s2",
-             "--levels", "0.15g:1.2g:9", "--states", "overturning")  # fmt: skip
+             "--levels", "0.15g:1.2g:9", "--limit-states", "overturning")  # fmt: skip
     table, nrml = tmp_path / "pelicun.csv", tmp_path / "nrml.xml"
     for process, demand in (((), "Peak Ground Acceleration"), (("--set", FLOOR), "Peak Floor Acceleration")):
         code, page, err = run(*words, *process, "--output", f"pelicun={table}")

@@ -126,7 +126,7 @@ def test_separation_is_said():
     assert "no likeliest curve" in told.replace("\n", " ")
     assert told == "" or len(max(told.split("\n"), key=len)) <= 84
     # negative control: outcomes that overlap have no caption
-    assert caption(fragility_analysis(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
+    assert caption(fragility_analysis(BLOCK, PULSES, LEVELS, 0.9, limit_states=())) == ""
 
 
 def test_cloud_is_gathered(clouded):
@@ -235,7 +235,7 @@ def test_what_cannot_be_lifted_is_shaded():
 def test_nothing_is_shaded_where_nothing_is_certain():
     """Levels that all lift the body, and a measure that decides nothing, give no shade."""
     above = fragility_analysis(BLOCK, TWELVE, [3.0, 4.0, 5.0, 6.0], 0.9)
-    velocity = fragility_analysis(BLOCK, TWELVE, [0.1, 0.4, 0.8], 0.9, measure="pgv")
+    velocity = fragility_analysis(BLOCK, TWELVE, [0.1, 0.4, 0.8], 0.9, im="pgv")
     for found in (above, velocity):
         upper = fragility_picture(found).axes[0]
         assert _shaded(upper) == []
@@ -255,7 +255,7 @@ def test_levels_below_uplift_alone():
 def test_few_motions_have_no_band():
     """Four motions get no band, which would be too narrow; twelve get one."""
     for count, bands in ((4, 0.0), (12, 0.1)):
-        found = fragility_analysis(BLOCK, TWELVE[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, states=())
+        found = fragility_analysis(BLOCK, TWELVE[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, limit_states=())
         filled = [part for part in fragility_picture(found).axes[0].collections if isinstance(part, PolyCollection)]
         heights = [np.ptp(part.get_paths()[0].vertices[:, 1]) for part in filled]
         assert max(heights, default=0.0) >= bands

@@ -91,7 +91,7 @@ def cloudy():
         rk.pulses.half_sine(a, t)
         for a, t in zip(random.uniform(2.0, 9.0, 80), random.uniform(0.2, 1.0, 80), strict=True)
     ]
-    return fragility_analysis(BLOCK, pulses, restitution=0.9, measure="pga", states=(0.3,), analysis="cloud")
+    return fragility_analysis(BLOCK, pulses, restitution=0.9, im="pga", limit_states=(0.3,), analysis="cloud")
 
 
 def test_cloud(cloudy):

@@ -26,7 +26,7 @@ OBJECTS = [InventoryObject(name=n, width=w, depth=2 * w, height=1.0) for n, w in
     ("words", "analysis"),
     [
         ({"levels": LEVELS}, lambda: fragility_analysis(BLOCK, PULSES, LEVELS)),
-        ({"analysis": "cloud", "factor": 4.0}, lambda: fragility_analysis(BLOCK, PULSES, factor=4.0, analysis="cloud")),
+        ({"analysis": "cloud", "scale": 4.0}, lambda: fragility_analysis(BLOCK, PULSES, scale=4.0, analysis="cloud")),
         (
             {"analysis": "incremental", "levels": LEVELS, "tolerance": 1e-3},
             lambda: fragility_analysis(BLOCK, PULSES, LEVELS, tolerance=1e-3, analysis="incremental"),
@@ -39,7 +39,7 @@ def test_fragility_is_the_analysis_with_its_curves(words, analysis):
     labelled, found = rk.fragility(BLOCK, PULSES, **words), analysis()
     for name, values in found.dataset.data_vars.items():
         np.testing.assert_array_equal(labelled[name], values)
-    assert labelled["state"].values.tolist() == [state.name for state in found.states]
+    assert labelled["state"].values.tolist() == [state.name for state in found.limit_states]
     for state in labelled["state"].values.tolist():
         curve, fit = labelled.sel(state=state), found.fits.get(state)
         exists = fit is not None and fit.exists and fit.dispersion
@@ -120,19 +120,21 @@ def test_a_fragility_prints_its_curves(stripes):
     assert "180 histories over pga [m/s2]" in repr(stripes)
     for name, fit in stripes.fits.items():
         assert f"{name}: <LognormalFit: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}" in repr(stripes)
-        assert f"{name}: median {fit.median:.4g}" in repr(model_of(stripes, "leaning", crossing="refuse"))
+        assert f"{name}: median {fit.median:.4g}" in repr(model_of(stripes, "leaning", crossing_curves="refuse"))
     assert len(repr(stripes)) < 400
 
 
 def test_states_of_a_model_are_chosen(stripes):
     """Rocking of a body that leans hardly overlaps with rest: one dispersion is refused, with the way out."""
-    with pytest.raises(InvalidValueError, match=r"the states are rocking, .*: states= leaves some out"):
-        model_of(stripes, "leaning", crossing="common-dispersion")
-    chosen = model_of(stripes, "leaning", crossing="common-dispersion", states=["rotation > 0.5 alpha", "Overturned"])
+    with pytest.raises(InvalidValueError, match=r"the states are rocking, .*: limit_states= leaves some out"):
+        model_of(stripes, "leaning", crossing_curves="common-dispersion")
+    chosen = model_of(
+        stripes, "leaning", crossing_curves="common-dispersion", limit_states=["rotation > 0.5 alpha", "Overturned"]
+    )
     assert [curve.state for curve in chosen.curves] == ["rotation > 0.5 alpha", "overturned"]
     assert chosen.curves[0].dispersion == chosen.curves[1].dispersion
     with pytest.raises(InvalidValueError, match=r"states must be one of rocking, .* got 'rested'"):
-        model_of(stripes, "leaning", states=["rested"])
+        model_of(stripes, "leaning", limit_states=["rested"])
 
 
 def test_a_fit_without_a_curve_says_so(motions):

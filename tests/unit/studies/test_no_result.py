@@ -51,10 +51,12 @@ def test_fragilities_say_so(body):
     """Of failed histories it is not known whether they rocked or fell; counts, curves and shares leave them out."""
     records = [rk.GroundMotion(np.sin(np.arange(200) * w), 0.01) for w in (0.05, 0.08, 0.11, 0.14, 0.2)]
     levels = [1.0, 4.0, 6.0, 9.0, 14.0]
-    whole, cut = (fragility_analysis(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2}))
+    whole, cut = (
+        fragility_analysis(body, records, levels, 0.9, limit_states=(0.5,), **o) for o in ({}, {"most_events": 2})
+    )
     failed = cut.responses.outcome == NONE
     assert 0 < failed.sum() == cut.failed < failed.size
-    for state in cut.states:
+    for state in cut.limit_states:
         reached = cut.responses.exceed(state)
         assert np.array_equal(np.isnan(reached), failed)
         assert np.array_equal(reached[~failed], whole.responses.exceed(state)[~failed])

@@ -21,7 +21,7 @@ from rocking.studies import (
     overturning_map,
     rocking_spectrum,
 )
-from rocking.studies.fragility.subject import checked_levels, limit_states
+from rocking.studies.fragility.subject import checked_levels, limit_states_of
 from rocking.studies.inventory import InventoryObject
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.sensitivity.restitutions import named_restitutions
@@ -94,10 +94,10 @@ REFUSED = [
     )],
     (curves, {"analysis": "ida"}, "analysis must be one of stripes, cloud, incremental"),
     (curves, {"analysis": "cloud", "levels": LEVELS}, "levels are not for a cloud"),
-    (curves, {"factor": 2.0}, 'factor is for analysis="cloud" only, this is "stripes"'),
+    (curves, {"scale": 2.0}, 'scale is for analysis="cloud" only, this is "stripes"'),
     (curves, {"analysis": "cloud", "tolerance": 0.1}, 'tolerance is for analysis="incremental" only'),
-    (curves, {"measure": "arias"}, "which levels of arias"),
-    (curves, {"states": (0.5, 0.2)}, "states must increase from value to value; these decrease"),
+    (curves, {"im": "arias"}, "which levels of arias"),
+    (curves, {"limit_states": (0.5, 0.2)}, "limit_states must increase from value to value; these decrease"),
     (listed, {"motions": "firm-ground"}, "how strong is the shaking"),
     (listed, {"motions": "firm-ground", "pga": "0.3g", "pgv": 0.2}, "pga or pgv, not both"),
     (listed, {"motions": [RECORD], "count": 3}, "count is for synthetic motions"),
@@ -107,7 +107,7 @@ REFUSED = [
     *[(checked_levels, {"name": "levels", "values": bad, "unit": "m/s2"}, "levels must (be|increase)") for bad in (
         [], [1.5, 1.5], [3.0, 1.5], [0.0, 1.0], [[1.5, 3.0], [4.5, 6.0]], [[1.5], [3.0]],
     )],
-    *[(limit_states, {"levels": bad}, None) for bad in (
+    *[(limit_states_of, {"levels": bad}, None) for bad in (
         (0.5, 0.2), (0.0,), (-1.0,), (math.nan,), (math.inf,), (0.5, 0.5), "half", [[0.1], [0.2]],
     )],
     (synthetic, {"count": 0}, r"count must be a whole number in \[1"),

@@ -101,7 +101,12 @@ class OpenStudy:
 
 
 def written(
-    study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
+    study: OpenStudy,
+    kind: Kind,
+    target: Path,
+    what: str | None,
+    restitution: int,
+    crossing_curves: Crossing | None = None,
 ) -> None:
     """Write a finished study into a file: its curves if it is incremental, else a picture compares its restitutions."""
     labels = list(study.job.problem.restitutions)
@@ -132,7 +137,11 @@ def written(
         of_curves = what in {"fragility", "fema-p58"}
         try:
             export(
-                study.opened, target, what, restitution=labels[restitution] if of_curves else None, crossing=crossing
+                study.opened,
+                target,
+                what,
+                restitution=labels[restitution] if of_curves else None,
+                crossing_curves=crossing_curves,
             )
         except RockingError as error:
             raise without_paths(error, study.folder.path).without_folder(target.parent).copied(Refused) from error

@@ -214,21 +214,21 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
     measure = first.subject.measure
     unit = "" if measure.unit == "1" else measure.unit
     return {
-        "measure": {"name": measure.name, "unit": measure.unit, "words": measure.words},
+        "im": {"name": measure.name, "unit": measure.unit, "words": measure.words},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
         "analyses": [
-            {"restitution": label, **_analysis(one, question.export.crossing, unit)}
+            {"restitution": label, **_analysis(one, question.export.crossing_curves, unit)}
             for label, one in study.analyses.items()
         ],
     }
 
 
-def _analysis(analysis: Any, crossing: Crossing, unit: str) -> dict[str, Any]:
+def _analysis(analysis: Any, crossing_curves: Crossing, unit: str) -> dict[str, Any]:
     from rocking.plots.fragility import shares_of
 
-    shown = shown_curves(analysis, crossing)
+    shown = shown_curves(analysis, crossing_curves)
     shared = {} if shown is None else shown.shared
     levels = np.asarray(analysis.levels, dtype=np.float64)
     fits = {name: fit for name, fit in analysis.fits.items() if fit is not None}

@@ -152,12 +152,14 @@ async def export_study(
         Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
     ] = None,
     restitution: Annotated[Whole, Query(description="of curves, counted from 0")] = 0,
-    crossing: Annotated[Crossing | None, Query(description="what to do with fragility curves that cross")] = None,
+    crossing_curves: Annotated[
+        Crossing | None, Query(description="what to do with fragility curves that cross")
+    ] = None,
 ) -> Response:
     """Return a finished study as a file."""
     manager = _studies(request)
     name = safe_name(f"{manager.get(study)['name']}.{kind}", "study")
-    path = await heavy(request, _file, manager, study, kind, what, restitution, crossing)
+    path = await heavy(request, _file, manager, study, kind, what, restitution, crossing_curves)
     return FileResponse(
         path,
         media_type=MEDIA_TYPES[kind],
@@ -199,14 +201,14 @@ def _cell(manager: StudyManager, study: str, point: PointRequest) -> bytes:
 
 
 def _file(
-    manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int, crossing: Crossing | None
+    manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int, crossing_curves: Crossing | None
 ) -> Path:
     from rocking.app.studies.finished import written
 
     path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
     try:
         with _there(manager, study) as folder:
-            written(manager.open(folder), kind, path, what, restitution, crossing)
+            written(manager.open(folder), kind, path, what, restitution, crossing_curves)
     except BaseException:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise

@@ -110,7 +110,8 @@ def exports_of(folder: JobFolder) -> list[str]:
 
 def export(
     folder: JobFolder, path: str | os.PathLike[str], what: str | None = None, *, restitution: str | None = None,
-    crossing: Crossing | None = None, bootstrap: int | None = None, progress: Callable[[int], None] | None = None,
+    crossing_curves: Crossing | None = None, bootstrap: int | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> Path:  # fmt: skip
     """Write a finished campaign into a file, which is there as a whole or not at all.
 
@@ -127,10 +128,10 @@ def export(
         tables (.csv, .parquet, .mat, .xlsx): of refined maps ``refined``, all points, and ``boundary``, the vertices of
         the polylines; of minimum accelerations ``crossings`` and ``minima`` (both in one .nc); with several
         restitutions ``flips``, what each changes against the first, and ``differences``, cell by cell; of clouds
-        ``measures``, the ranking of intensity measures (.nc, too). The first of `exports_of` if not given.
+        ``ims``, the ranking of intensity measures (.nc, too). The first of `exports_of` if not given.
     restitution : str, optional
         Label of the restitution whose fragility or measures are meant, where there are several.
-    crossing : {"keep-uplift", "common-dispersion", "refuse"}, optional
+    crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}, optional
         Treatment of fragility curves that cross, the same in every file, as in `model_of`. That of the job if not
         given; "keep-uplift" if the job states none.
     bootstrap : int, optional
@@ -151,17 +152,17 @@ def export(
     CampaignIncompleteError
         If the campaign is not finished.
     """
-    target, what = checked(folder, path, what, restitution, crossing, bootstrap)
+    target, what = checked(folder, path, what, restitution, crossing_curves, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
     if what == "histories" and folder.job.document.axes:
         provenance |= {"safe_islands": _islands(folder)}
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"), written_whole(target) as unfinished:
         if what in ANALYSES:
-            _write_fragility(folder, unfinished, what, restitution, crossing, bootstrap)
+            _write_fragility(folder, unfinished, what, restitution, crossing_curves, bootstrap)
         elif what == MEASURES:
             ranking = measure_comparison(folder, restitution, progress)
-            provenance |= {"measures_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
+            provenance |= {"ims_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
             provenance |= {} if restitution is None else {"restitution": restitution}
             _write_tables([measures_table(ranking)], unfinished, attributes_of(folder, provenance))
         elif what in COMPARED:
@@ -206,7 +207,7 @@ def attributes_of(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, An
 
 def checked(
     folder: JobFolder, path: str | os.PathLike[str], what: str | None, restitution: str | None,
-    crossing: Crossing | None, bootstrap: int | None = None,
+    crossing_curves: Crossing | None, bootstrap: int | None = None,
 ) -> tuple[Path, str]:  # fmt: skip
     """Return the file and what it will hold, after refusing what `export` would."""
     target = target_of(path)
@@ -221,16 +222,16 @@ def checked(
             ending=suffix or "no ending", hint=hint,
         )  # fmt: skip
     if what not in _OF_ONE and restitution is not None:
-        raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
-    if what not in ANALYSES and crossing is not None:
-        raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves")
+        raise InvalidValueError("restitution goes with fragility, fema-p58 and ims; every history has its own")
+    if what not in ANALYSES and crossing_curves is not None:
+        raise InvalidValueError("crossing_curves goes with fragility and fema-p58: it is about curves")
     if what not in exports_of(folder):
         raise InvalidValueError(
             'nothing to export because a campaign of kind "{kind}" has no {content}{reason}',
             kind=folder.job.document.campaign.kind, content=what, reason=_WHY.get(what, ""),
         )  # fmt: skip
     if what in ANALYSES:
-        check_crossing("keep-uplift" if crossing is None else crossing)
+        check_crossing("keep-uplift" if crossing_curves is None else crossing_curves)
     if what in _OF_ONE:
         label_of(what, restitution, list(folder.job.problem.restitutions))
     if bootstrap is not None and what not in ANALYSES:
@@ -279,7 +280,12 @@ def _write_tables(tables: list[Table], path: Path, attributes: dict[str, Any]) -
 
 
 def _write_fragility(
-    folder: JobFolder, path: Path, what: str, restitution: str | None, crossing: Crossing | None, bootstrap: int | None
+    folder: JobFolder,
+    path: Path,
+    what: str,
+    restitution: str | None,
+    crossing_curves: Crossing | None,
+    bootstrap: int | None,
 ) -> None:
     """Write the curves of a finished campaign with goodness of fit; all random numbers have its seed."""
     from rocking.studies.fragility import export as files
@@ -291,7 +297,11 @@ def _write_fragility(
     analysis = every[restitution] if restitution else next(iter(every.values()))
     repetitions = stated.bootstrap if bootstrap is None else bootstrap
     model = model_of(
-        analysis, campaign.name, crossing=crossing or stated.crossing, bootstrap=repetitions, seed=campaign.seed
+        analysis,
+        campaign.name,
+        crossing_curves=crossing_curves or stated.crossing_curves,
+        bootstrap=repetitions,
+        seed=campaign.seed,
     )
     suffix = path.suffix.lower()
     if suffix == ".csv":

@@ -223,7 +223,7 @@ def measure_comparison(
     clouds = analyses(folder)
     cloud = clouds[label_of(MEASURES, restitution, list(clouds))]
     question: Any = document
-    names, columns = question.measures(), question.columns(folder.job.problem.motions)
+    names, columns = question.ims(), question.columns(folder.job.problem.motions)
     if question.export.columns is None:
         rocked = clearly_lifted(cloud.responses, cloud.least)
         columns = {name: values for name, values in columns.items() if np.unique(values[rocked]).size > 1}

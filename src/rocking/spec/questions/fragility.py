@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from rocking.studies.study_plan import Study
 
 ANALYSES = ("fragility", "fragility-points", "fema-p58")  # what can be exported of the curves of one restitution
-MEASURES = "measures"  # what the ranking of intensity measures is called among the exports
+MEASURES = "ims"  # what the ranking of intensity measures is called among the exports
 
 _USUAL_COLUMNS = ("magnitude", "ln distance_km")  # metadata of a sufficiency test, where all motions have them
 _LOGARITHM = "ln "
 _OF_ONE_KIND = {
     "export.columns": "cloud",
-    "export.measures": "cloud",
-    "fragility.factor": "cloud",
+    "export.ims": "cloud",
+    "fragility.scale": "cloud",
     "fragility.tolerance": "incremental",
 }
 
@@ -37,11 +37,11 @@ _OF_ONE_KIND = {
 class ExportTable(JobTable):
     """How files are written, how often a study is repeated for intervals, and which measures are compared."""
 
-    crossing: Literal["keep-uplift", "common-dispersion", "refuse"] = key(
+    crossing_curves: Literal["keep-uplift", "common-dispersion", "refuse"] = key(
         "treatment of curves that cross", "keep-uplift"
     )
     bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = key("how often a study is repeated", 0)
-    measures: Annotated[list[Text], Field(min_length=1)] | None = key("measures of intensity that are compared")
+    ims: Annotated[list[Text], Field(min_length=1)] | None = key("intensity measures that are compared")
     columns: list[Text] | None = key("columns of the comparison")
 
 
@@ -60,22 +60,22 @@ def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
 class FragilityTable(JobTable):
     """Measure, levels and limit states of a fragility analysis."""
 
-    measure: Text = key("measure of intensity: pga, pgv, arias, sa(0.5) and more", "pga")
+    im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = key("levels of the measure [its unit]")
-    states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
+    limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
         "limit states: rotations over the slenderness angle [-], with rocking and overturning; where one of these two "
         "names is given, the given states alone",
         [0.5],
     )
     tolerance: float | None = key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
-    factor: Positive | None = key("factor on all motions of a cloud [-]")
+    scale: Positive | None = key("scale factor of all motions of a cloud [-]")
 
 
 class AnalysisQuestion(BodyQuestion):
     """A fragility analysis of one body."""
 
     needs_motions: ClassVar[bool] = True
-    of_files: ClassVar[dict[str, set[str]]] = {"export": {"bootstrap", "measures", "columns"}}
+    of_files: ClassVar[dict[str, set[str]]] = {"export": {"bootstrap", "ims", "columns"}}
 
     fragility: FragilityTable = Field(default_factory=FragilityTable)
     export: ExportTable = Field(default_factory=ExportTable)
@@ -108,7 +108,7 @@ class AnalysisQuestion(BodyQuestion):
     @property
     def elements(self) -> dict[str, int]:
         """Limit states."""
-        return {"states": len(self.fragility.states)}
+        return {"states": len(self.fragility.limit_states)}
 
     def analysis(
         self, problem: "StudyProblem", restitution: Any, motions: "MotionSet | None" = None
@@ -119,8 +119,8 @@ class AnalysisQuestion(BodyQuestion):
 
         table, shaken = self.fragility, problem.motions if motions is None else motions
         return FragilityQuestion.of(
-            Subject.of(problem.bodies[0], shaken, restitution, table.measure, problem.options),
-            self.kind, self.levels, tuple(table.states), factor=table.factor, tolerance=table.tolerance,
+            Subject.of(problem.bodies[0], shaken, restitution, table.im, problem.options),
+            self.kind, self.levels, tuple(table.limit_states), scale=table.scale, tolerance=table.tolerance,
         )  # fmt: skip
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
@@ -131,7 +131,7 @@ class AnalysisQuestion(BodyQuestion):
         from rocking.studies.sensitivity import fragility_sensitivity
 
         options = {**problem.stated, "threads": threads, "progress": progress}
-        options |= {"measure": self.fragility.measure, "states": tuple(self.fragility.states)}
+        options |= {"im": self.fragility.im, "limit_states": tuple(self.fragility.limit_states)}
         return fragility_sensitivity(body, motions, self.levels, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
@@ -153,7 +153,7 @@ class AnalysisQuestion(BodyQuestion):
         if self.kind != "cloud":
             dims["level"] = levels.size
             scales = np.broadcast_to(merged.scales, (len(problem.motions), levels.size))
-            coordinates["factor"] = Column(scales, "1", "factor on the motion", dims=("motion", "level"))
+            coordinates["scale"] = Column(scales, "1", "scale factor of the motion", dims=("motion", "level"))
         if len(questions) > 1:
             dims["restitution"] = len(questions)
             coordinates["restitution"] = labels_along("restitution", questions, "restitution")
@@ -176,7 +176,7 @@ class AnalysisQuestion(BodyQuestion):
         from rocking.studies.fragility.curves import shown_curves
 
         analysis = finished.analysis(restitution)
-        return fragility_picture(analysis, curves=shown_curves(analysis, self.export.crossing))
+        return fragility_picture(analysis, curves=shown_curves(analysis, self.export.crossing_curves))
 
 
 class StripesQuestion(AnalysisQuestion):
@@ -219,21 +219,21 @@ class CloudQuestion(AnalysisQuestion):
 
         study = super().study(problem)
         with located("export"):
-            self.measures()
+            self.ims()
             if self.export.columns:
                 self.columns(MotionList(problem.motions[0]))  # of the motions only the first is asked
         return replace(study, exports=(*study.exports, MEASURES))
 
-    def measures(self) -> list[str]:
+    def ims(self) -> list[str]:
         """Return the measures of intensity that are compared: those of [export], or the usual ones and its own."""
         from rocking.motions.intensity import measure
         from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
 
-        named = self.export.measures
-        known = [measure(name).name for name in named or [*DEFAULT_MEASURES, self.fragility.measure]]
+        named = self.export.ims
+        known = [measure(name).name for name in named or [*DEFAULT_MEASURES, self.fragility.im]]
         twice = [name for name in known if known.count(name) > 1]
         if named is not None and twice:
-            raise InvalidValueError("measures: {name} is named twice", parameter="measures", name=twice[0])
+            raise InvalidValueError("ims: {name} is named twice", parameter="ims", name=twice[0])
         return list(dict.fromkeys(known))
 
     def columns(self, motions: "MotionSet") -> dict[str, FloatArray]:

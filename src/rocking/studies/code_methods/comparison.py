@@ -250,7 +250,7 @@ def compare_code_methods(
     restitution: Any = DEFAULT_RESTITUTION,
     *,
     levels: Any = None,
-    measure: Any = MEASURE,
+    im: Any = MEASURE,
     methods: Sequence[str] | None = None,
     **options: Any,
 ) -> CodeComparison:
@@ -271,7 +271,7 @@ def compare_code_methods(
         Of the histories.
     levels : array_like, optional
         To what every motion is brought; as they are if not given [unit of the measure].
-    measure : str or IntensityMeasure
+    im : str or IntensityMeasure
         The measure of the levels; of ``pga/(g tan alpha)`` 2 is the limit of the Italian linear check.
     methods : sequence of str, optional
         Names of `CODE_METHODS`; all if not given.
@@ -305,7 +305,7 @@ def compare_code_methods(
     gravity = options.get("gravity")
     sides = BodySides.of(several) if gravity is None else BodySides.of(several, gravity)
     kept = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
-    shaking, level = Shaking.of(kept), measure_of(measure)
+    shaking, level = Shaking.of(kept), measure_of(im)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
     cases = [Margins.of(body, kept, restitution, level, at, options) for body in several]
     return CodeComparison(

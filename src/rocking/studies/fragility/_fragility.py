@@ -27,9 +27,9 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     restitution: Any = DEFAULT_RESTITUTION,
     *,
     analysis: str = "stripes",
-    measure: Any = "pga",
-    states: Sequence[float | str] = (0.5,),
-    factor: float | None = None,
+    im: Any = "pga",
+    limit_states: Sequence[float | str] = (0.5,),
+    scale: float | None = None,
     least: float | None = None,
     tolerance: float | None = None,
     progress: Progress = None,
@@ -52,12 +52,12 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     analysis : {"stripes", "cloud", "incremental"}
         Multiple stripes; the motions as they are; or stripes and every level between them at which a motion begins or
         ceases to overturn the body.
-    measure : str or IntensityMeasure
+    im : str or IntensityMeasure
         A name of `rocking.motions.intensity.measures`, or ``sa(period)``; for levels one that grows with the motion.
-    states : sequence of float or str
+    limit_states : sequence of float or str
         Limit states: rotations over alpha [-], with rocking and overturning. Where ``"rocking"`` or
         ``"overturning"`` is given, the given states alone.
-    factor : float, optional
+    scale : float, optional
         One factor on all motions of a cloud; 1 if not given [-].
     least : float, optional
         Rotation over alpha below which a history of a cloud counts as barely lifted, and is left out of the line; .01
@@ -102,7 +102,7 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
             )
         options["tolerance"] = tolerance
     return _with_curves(fragility_analysis(
-        body, motions, levels, restitution, analysis=analysis, measure=measure, states=states, factor=factor,
+        body, motions, levels, restitution, analysis=analysis, im=im, limit_states=limit_states, scale=scale,
         least=least, progress=progress, **options,
     ))  # fmt: skip
 
@@ -114,9 +114,9 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     restitution: Any = DEFAULT_RESTITUTION,
     *,
     analysis: str = "stripes",
-    measure: Any = "pga",
-    states: Sequence[float | str] = (0.5,),
-    factor: float | None = None,
+    im: Any = "pga",
+    limit_states: Sequence[float | str] = (0.5,),
+    scale: float | None = None,
     least: float | None = None,
     progress: Progress = None,
     **options: Any,
@@ -163,7 +163,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     kind, threads = checks.one_of("analysis", analysis, ANALYSES), options.pop("threads", None)
     search = options.pop("tolerance", None) if kind == "incremental" else None
     question = FragilityQuestion.of(
-        Subject.of(body, motions, restitution, measure, options), kind, levels, states, factor=factor, least=least,
+        Subject.of(body, motions, restitution, im, options), kind, levels, limit_states, scale=scale, least=least,
         tolerance=search,
     )  # fmt: skip
     return question.computed(threads, progress)
@@ -171,7 +171,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
 
 def _with_curves(analysis: MultipleStripeAnalysis | CloudAnalysis) -> "xr.Dataset":
     """Return the dataset of an analysis with the curve of each state beside what was counted."""
-    names = [state.name for state in analysis.states]
+    names = [state.name for state in analysis.limit_states]
     curves = [name in analysis.fits and curve_of(name, analysis.fits[name]) for name in names]
     verdicts = [analysis.fits[name].verdict if name in analysis.fits else analysis.uplift.verdict for name in names]
     units, of_each = {"units": analysis.subject.label["units"]}, {"units": "1"}

@@ -68,7 +68,7 @@ class CloudAnalysis(FragilityAnalysis):
     @cached_property
     def counts(self) -> dict[str, IntArray]:
         """Number of motions that reach each state, by name of the state, at each level."""
-        return {s.name: self._counted(self.responses.exceed(s) == 1.0) for s in self.states}
+        return {s.name: self._counted(self.responses.exceed(s) == 1.0) for s in self.limit_states}
 
     def _counted(self, chosen: BoolArray) -> IntArray:
         return np.bincount(self._sorted[1][chosen], minlength=self.levels.size).astype(np.int64)

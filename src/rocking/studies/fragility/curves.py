@@ -25,7 +25,7 @@ Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
 COMMON = "common-dispersion"  # method of curves that share one dispersion
 ROCKING = NAMED["rocking"].name
-STATES = Option("export.states")
+STATES = Option("fragility.limit_states")
 TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
 
 
@@ -115,8 +115,8 @@ class FragilityModel:
     ----------
     name : str
         Name of the body, as in an inventory.
-    measure : str
-        Name of the measure.
+    im : str
+        Name of the intensity measure.
     unit : str
         Its unit; ``-`` if it has none.
     curves : tuple of FragilityCurve
@@ -145,7 +145,7 @@ class FragilityModel:
     """
 
     name: str
-    measure: str
+    im: str
     unit: str
     curves: tuple[FragilityCurve, ...]
     levels: FloatArray
@@ -172,7 +172,7 @@ class FragilityModel:
 
     def __repr__(self) -> str:
         curves = "; ".join(f"{c.state}: median {c.median:.4g}, dispersion {c.dispersion:.3g}" for c in self.curves)
-        return f"<FragilityModel {self.name!r} over {self.measure} [{self.unit}]: {curves or 'no curve'}>"
+        return f"<FragilityModel {self.name!r} over {self.im} [{self.unit}]: {curves or 'no curve'}>"
 
     @property
     def shared(self) -> "dict[str, FragilityCurve]":
@@ -202,19 +202,19 @@ class FragilityModel:
             "state": [c.state for c in self.curves],
             "counted_state": counted,
             "end": ["low", "high"],
-            "level": ("level", self.levels, {"units": unit, "long_name": self.measure}),
+            "level": ("level", self.levels, {"units": unit, "long_name": self.im}),
         }
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
         words |= {f"without_curve {state}": why for state, why in self.without.items()}
         words |= {"adjusted": self.adjusted} if self.adjusted else {}
-        about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
+        about = {"component": self.name, "im": self.im, "source": self.source, **words, **self.about}
         labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=plain_texts(about))
         return labelled
 
 
 def model_of(
-    analysis: Any, name: str, source: str = "", *, crossing: Crossing = "keep-uplift", bootstrap: int = 0,
-    seed: int = 0, states: Sequence[str] | None = None,
+    analysis: Any, name: str, source: str = "", *, crossing_curves: Crossing = "keep-uplift", bootstrap: int = 0,
+    seed: int = 0, limit_states: Sequence[str] | None = None,
 ) -> FragilityModel:  # fmt: skip
     """Return the curves of an analysis, ready for export.
 
@@ -226,7 +226,7 @@ def model_of(
         Name of the body, as in an inventory.
     source : str
         Where the data come from; the definition of the analysis, if not given.
-    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+    crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross. "keep-uplift": where they do, one dispersion for all states but rocking; the
         curve of rocking is not changed where uplift is impossible below a level, and is left out where it still
         crosses. "common-dispersion": one dispersion for all states, always. "refuse": the curve of each state alone,
@@ -235,7 +235,7 @@ def model_of(
         Repetitions of the study for intervals and bands beside the usual ones; none, if 0.
     seed : int
         Seed of all random numbers.
-    states : sequence of str, optional
+    limit_states : sequence of str, optional
         Names of the states to hand on; all if not given.
 
     Returns
@@ -247,25 +247,29 @@ def model_of(
     Raises
     ------
     InvalidValueError
-        If `crossing` or a state is unknown, no state has a curve, or "common-dispersion" finds none.
+        If `crossing_curves` or a state is unknown, no state has a curve, or "common-dispersion" finds none.
     """
-    check_crossing(crossing)
-    alone = _alone(analysis, name, source, states)
+    check_crossing(crossing_curves)
+    alone = _alone(analysis, name, source, limit_states)
     curves = [with_evidence(c, analysis.fits[c.state], analysis.levels, bootstrap, seed) for c in alone.curves]
-    return without_crossing(replace(alone, curves=tuple(curves)), crossing)
+    return without_crossing(replace(alone, curves=tuple(curves)), crossing_curves)
 
 
-def shown_curves(analysis: Any, crossing: Crossing = "keep-uplift") -> FragilityModel | None:
+def shown_curves(analysis: Any, crossing_curves: Crossing = "keep-uplift") -> FragilityModel | None:
     """Return the curves that files would contain, without their goodness of fit; None where there are none."""
     try:
-        return without_crossing(_alone(analysis, "body"), crossing)
+        return without_crossing(_alone(analysis, "body"), crossing_curves)
     except InvalidValueError:  # files are refused with the reason
         return None
 
 
-def _alone(analysis: Any, name: str, source: str = "", states: Sequence[str] | None = None) -> FragilityModel:
+def _alone(analysis: Any, name: str, source: str = "", limit_states: Sequence[str] | None = None) -> FragilityModel:
     """Return the curve of each state alone."""
-    wanted = list(analysis.fits) if states is None else [checks.one_of("states", s, analysis.fits) for s in states]
+    wanted = (
+        list(analysis.fits)
+        if limit_states is None
+        else [checks.one_of("limit_states", s, analysis.fits) for s in limit_states]
+    )
     subject: Subject = analysis.subject
     measure = subject.measure
     found = {s: curve_of(s, fit, measure.name, measure.unit) for s, fit in analysis.fits.items() if s in wanted}
@@ -312,9 +316,9 @@ def with_evidence(
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
 
 
-def without_crossing(model: FragilityModel, crossing: Crossing = "keep-uplift") -> FragilityModel:
+def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-uplift") -> FragilityModel:
     """Return the model with curves that do not cross, by one of the treatments; one curve and "refuse": as it is."""
-    match check_crossing(crossing):
+    match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
         case "keep-uplift" if (excess := crosses(model)) is not None:
@@ -330,8 +334,8 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
     try:
         found = with_common_dispersion(others) if crosses(others) is not None else others
     except InvalidValueError:
-        states = ", ".join(curve.state for curve in others.curves)
-        kept = Message("They are kept, since no common dispersion fits the states {states}.", {"states": states})
+        names = ", ".join(curve.state for curve in others.curves)
+        kept = Message("They are kept, since no common dispersion fits the states {states}.", {"states": names})
         return replace(model, adjusted=Message.joined([why, kept]))
     joined = replace(found, curves=(*decided, *found.curves))
     reasons = [why, found.adjusted]
@@ -348,7 +352,7 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
 
 def uplift_words(model: FragilityModel) -> str:
     """Return below which level no motion lifts the body."""
-    unit, size = _shown(model.measure, model.unit)
+    unit, size = _shown(model.im, model.unit)
     level = f"{(model.uplift_threshold or 0.0) * size:.4g} {unit}".rstrip()
     return Message("no motion lifts the body below {level}", {"level": level})
 
@@ -375,10 +379,10 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         hint = Message(f"the states are {names}: {{option}} leaves some out", {"option": STATES})
         error.hint = hint
         raise
-    unit, size = _shown(model.measure, model.unit)
-    states = ", ".join(curve.state for curve in model.curves)
+    unit, size = _shown(model.im, model.unit)
+    names = ", ".join(curve.state for curve in model.curves)
     text = "One dispersion was fitted to the states {states}, so that their curves do not cross."
-    adjusted: str = Message(text, {"states": states})
+    adjusted: str = Message(text, {"states": names})
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
         facts = {"median": f"{curve.median * size:.4g} {unit}".rstrip(), "dispersion": curve.dispersion}
@@ -440,7 +444,7 @@ class Excess:
 
     def words(self, model: FragilityModel) -> str:
         """Return where and by how much, in words."""
-        unit, size = _shown(model.measure, model.unit)
+        unit, size = _shown(model.im, model.unit)
         level = f"{self.level * size:.4g} {unit}".rstrip()
         facts = {"level": level, "worse": self.worse, "lesser": self.lesser, "size": self.size}
         return Message("at {level} '{worse}' would be likelier than '{lesser}' by {size:.2g}", facts)
@@ -467,15 +471,15 @@ def crosses(model: FragilityModel, highest: float | None = None) -> Excess | Non
     return None if worst is None or worst.size <= TOLERANCE else worst
 
 
-def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
+def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
     """Return curves that do not cross up to the highest level, by one of the treatments of those that do."""
-    model = without_crossing(model, crossing)
+    model = without_crossing(model, crossing_curves)
     if (worst := crosses(model, highest)) is None:
         return model
     if model.adjusted:
         hint = Message("no common dispersion fits these states: leave one out with {option}", {"option": STATES})
     else:
-        keep = Option("export.crossing", "keep-uplift")
+        keep = Option("export.crossing_curves", "keep-uplift")
         hint = Message("their dispersions differ: {option} fits one for all states but rocking", {"option": keep})
     raise InvalidValueError(
         "curves must not cross, but {crossing}, at most {limit:g} is allowed", crossing=worst.words(model),
@@ -483,6 +487,6 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
     )  # fmt: skip
 
 
-def check_crossing(crossing: Any) -> str:
+def check_crossing(crossing_curves: Any) -> str:
     """Return the way to treat curves that cross, or refuse what is none."""
-    return str(checks.one_of("crossing", crossing, get_args(Crossing)))
+    return str(checks.one_of("crossing_curves", crossing_curves, get_args(Crossing)))

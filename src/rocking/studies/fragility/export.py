@@ -35,7 +35,7 @@ TABLES = ("parameters", "points", "fema-p58")  # tables that can be written
 Destination = str | os.PathLike[str]
 
 
-def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> Table:
+def table(model: FragilityModel, which: str = "parameters", *, crossing_curves: Crossing = "refuse") -> Table:
     """Return one of the tables of a model."""
     match checks.one_of("table", which, (*TABLES, "pelicun")):
         case "parameters":
@@ -43,8 +43,8 @@ def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossin
         case "points":
             return _points(model)
         case "pelicun":
-            return _pelicun(model, crossing)
-    return fema_p58_table(model, crossing=crossing)
+            return _pelicun(model, crossing_curves)
+    return fema_p58_table(model, crossing_curves=crossing_curves)
 
 
 def _parameters(model: FragilityModel) -> Table:
@@ -59,7 +59,7 @@ def _parameters(model: FragilityModel) -> Table:
         "dispersion bootstrap 95 %": ("dispersion_bootstrap_95", "[-]"),
     }
     header = (
-        "component", "state", "measure", f"median {unit}", "dispersion [-]", "method", f"lowest level {unit}",
+        "component", "state", "im", f"median {unit}", "dispersion [-]", "method", f"lowest level {unit}",
         f"highest level {unit}", "histories", "source",
         *(f"{words} {end} {of}" for words, (_, of) in intervals.items() for end in ends),
         "intervals by", "verdict", *(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")),
@@ -69,7 +69,7 @@ def _parameters(model: FragilityModel) -> Table:
         header += (*(f"{words} {end} {of}" for words, (_, of) in repeated.items() for end in ends), "bootstrap")
         intervals |= repeated
     known: dict[str, Cell] = {
-        "component": model.name, "measure": model.measure, "method": "none", header[6]: float(model.levels[0]),
+        "component": model.name, "im": model.im, "method": "none", header[6]: float(model.levels[0]),
         header[7]: float(model.levels[-1]), "histories": int(np.sum(model.trials)), "source": model.source,
     }  # fmt: skip
     rows = []
@@ -95,7 +95,7 @@ def _points(model: FragilityModel) -> Table:
     fitted = {c.state: c.probability(model.levels) for c in model.curves}
     observed = {f"observed {name} [histories]": np.asarray(values) for name, values in model.reached.items()}
     columns = {
-        f"{model.measure} [{model.unit}]": model.levels,
+        f"{model.im} [{model.unit}]": model.levels,
         "histories": np.asarray(model.trials),
         **observed,
         **{f"fitted {name} [-]": values for name, values in fitted.items()},
@@ -115,7 +115,7 @@ def fema_p58_table(
     demand_parameter: str = "",
     quality: str = "Analytical",
     *,
-    crossing: Crossing = "refuse",
+    crossing_curves: Crossing = "refuse",
 ) -> Table:
     """Return the table of a component as FEMA P-58 asks for it, one row a damage state.
 
@@ -130,7 +130,7 @@ def fema_p58_table(
     quality : str
         What the data are: a derivation by analysis, unless said otherwise. How each curve was fitted, and what can be
         claimed of it, stands after it.
-    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+    crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross, as in `model_of`: no worse damage state may be likelier than a lesser one.
 
     Returns
@@ -142,7 +142,7 @@ def fema_p58_table(
     Raises
     ------
     InvalidValueError
-        If curves cross and `crossing` is "refuse".
+        If curves cross and `crossing_curves` is "refuse".
 
     Examples
     --------
@@ -157,9 +157,9 @@ def fema_p58_table(
         "Total Dispersion (Beta)", "Demand Parameter", "Demand Unit", "Damage State Relation",
         "Data Quality and Relevance", "Source of Data", "Number of Histories",
     )  # fmt: skip
-    model = nested(model, crossing)
-    demand, count = demand_parameter or words_on(_support(model), model.measure), int(np.sum(model.trials))
-    unit, size = exchange_unit(model.measure, model.unit)
+    model = nested(model, crossing_curves)
+    demand, count = demand_parameter or words_on(_support(model), model.im), int(np.sum(model.trials))
+    unit, size = exchange_unit(model.im, model.unit)
     unit = "dimensionless" if unit == "-" else unit
     about = (model.adjusted, "" if model.uplift_threshold is None else uplift_words(model))
     rows = tuple(
@@ -176,29 +176,29 @@ _PELICUN = "ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "D
 _LIMIT_STATE = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
 
 
-def _pelicun(model: FragilityModel, crossing: Crossing) -> Table:
+def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
     """Return the damage model of a component as PELICUN 3 reads it: one row, accelerations in g."""
     # layout, names of demands, and spectral|period as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv of
     # seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
-    spectral = spectral_period(model.measure)
-    if model.measure != "pga" and (spectral is None or spectral[1] != 0.05):
+    spectral = spectral_period(model.im)
+    if model.im != "pga" and (spectral is None or spectral[1] != 0.05):
         raise InvalidValueError(
             "for PELICUN curves stand against pga or sa(period) with 5 % damping, got {measure!r:.60}",
-            measure=model.measure,
+            measure=model.im,
         )  # fmt: skip
     on_floor = _support(model) != GROUND
     if on_floor and spectral is not None:
         raise InvalidValueError(
             "for PELICUN curves of motions of {support} stand against pga (written as Peak Floor Acceleration), got "
-            "{measure!r:.60}", support=_support(model), measure=model.measure,
+            "{measure!r:.60}", support=_support(model), measure=model.im,
         )  # fmt: skip
     peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
     demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
-    unit, size = exchange_unit(model.measure, model.unit)
+    unit, size = exchange_unit(model.im, model.unit)
     # Demand-Directional is 1, since the curve is of the motion in one direction: with 0 PELICUN takes the larger of
     # two directions times NonDirectionalMultipliers, 1.2 unless a user sets another (pelicun/model/demand_model.py)
     row: list[Cell] = [model.name, 0, demand, unit, 0, 1]
-    curves = nested(model, crossing).curves
+    curves = nested(model, crossing_curves).curves
     for curve in curves:
         row += ["lognormal", curve.median * size, curve.dispersion, ""]
     head = (*_PELICUN, *(f"LS{k}-{name}" for k in range(1, len(curves) + 1) for name in _LIMIT_STATE))
@@ -210,7 +210,7 @@ def to_csv(
     path: Destination,
     which: str | Table = "parameters",
     *,
-    crossing: Crossing = "refuse",
+    crossing_curves: Crossing = "refuse",
 ) -> Path:
     """Write a table of a model as comma-separated values, all digits kept.
 
@@ -222,7 +222,7 @@ def to_csv(
         The file.
     which : {"parameters", "points", "fema-p58", "pelicun"} or Table
         What to write; for PELICUN 3 a damage model of one component, against pga or sa(period), in g.
-    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+    crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross, as in `model_of`, in the tables of FEMA P-58 and PELICUN.
 
     Returns
@@ -230,17 +230,18 @@ def to_csv(
     Path
         The file. Words that a spreadsheet would take for a formula start with an apostrophe.
     """
-    chosen = which if isinstance(which, Table) else table(model, which, crossing=crossing)
+    chosen = which if isinstance(which, Table) else table(model, which, crossing_curves=crossing_curves)
     return table_to_csv(chosen, target_of(path))
 
 
-def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "refuse") -> Path:
+def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Crossing = "refuse") -> Path:
     """Write all tables of a model as a workbook, one sheet a table; words are stored as words, never as formulas.
 
     Parameters
     ----------
     model, path, crossing
-        As for `to_csv`. Where curves cross and `crossing` is "refuse", the sheet of FEMA P-58 contains the reason.
+        As for `to_csv`. Where curves cross and `crossing_curves` is "refuse", the sheet of FEMA P-58 contains the
+        reason.
 
     Returns
     -------
@@ -248,15 +249,15 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "
         The file.
     """
     target = target_of(path)
-    tables_to_excel([(name, _sheet(model, name, crossing)) for name in TABLES], target, model.about)
+    tables_to_excel([(name, _sheet(model, name, crossing_curves)) for name in TABLES], target, model.about)
     return target
 
 
-def _sheet(model: FragilityModel, name: str, crossing: Crossing) -> Table:
+def _sheet(model: FragilityModel, name: str, crossing_curves: Crossing) -> Table:
     """Return a table; a refusal to draw up one does not cost the others."""
-    check_crossing(crossing)
+    check_crossing(crossing_curves)
     try:
-        return table(model, name, crossing=crossing)
+        return table(model, name, crossing_curves=crossing_curves)
     except InvalidValueError as error:
         return Table.of_rows(name, (str(error),), ())
 
@@ -277,10 +278,10 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
     """
     structure = {
         "component": model.name,
-        "measure": model.measure,
+        "im": model.im,
         "unit": model.unit,
         "source": model.source,
-        "states": np.array([c.state for c in model.curves], dtype=object),
+        "limit_states": np.array([c.state for c in model.curves], dtype=object),
         **{word: np.array([getattr(c, word) for c in model.curves], dtype=object) for word in CLAIMS},
         "median": np.array([c.median for c in model.curves]),
         "dispersion": np.array([c.dispersion for c in model.curves]),
@@ -337,7 +338,7 @@ def to_nrml(
     loss_category: str = "contents",
     description: str = "",
     highest: float | None = None,
-    crossing: Crossing = "refuse",
+    crossing_curves: Crossing = "refuse",
 ) -> Path:
     """Write a model as an OpenQuake fragility model (NRML 0.5).
 
@@ -359,7 +360,7 @@ def to_nrml(
     highest : float, optional
         OpenQuake takes the measure for no larger than this; four dispersions above all medians and all levels, if
         not given [unit of the measure].
-    crossing : {"keep-uplift", "common-dispersion", "refuse"}
+    crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross between the ends of the file, as in `model_of`: no worse state may be likelier
         than a lesser one, or the file gives states negative probabilities.
 
@@ -378,17 +379,17 @@ def to_nrml(
     if _support(model) != GROUND:
         raise InvalidValueError(
             "OpenQuake takes {measure} as that of the ground; these motions are of {support}. Fit curves to motions "
-            "of the ground, or export to PELICUN or FEMA P-58", measure=model.measure, support=_support(model),
+            "of the ground, or export to PELICUN or FEMA P-58", measure=model.im, support=_support(model),
         )  # fmt: skip
-    imt, unit, size = intensity_type(model.measure)
-    model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
+    imt, unit, size = intensity_type(model.im)
+    model = nested(model, crossing_curves, None if highest is None else checks.positive("highest", highest, model.unit))
     top = model.highest if highest is None else highest
-    states = _identifiers([curve.state for curve in model.curves])
+    limit_states = _identifiers([curve.state for curve in model.curves])
     root = ET.Element("nrml", xmlns=NAMESPACE)
     about = {"id": _identifier(model.name), "assetCategory": asset_category, "lossCategory": loss_category}
     node = ET.SubElement(root, "fragilityModel", {k: _word(v) for k, v in about.items()})
     ET.SubElement(node, "description").text = _word(_description(model, description, unit))
-    ET.SubElement(node, "limitStates").text = " ".join(states)
+    ET.SubElement(node, "limitStates").text = " ".join(limit_states)
     function = ET.SubElement(
         node, "fragilityFunction", {"id": _word(model.name), "format": "continuous", "shape": "logncdf"}
     )
@@ -398,7 +399,7 @@ def to_nrml(
         "maxIML": checks.positive("highest", top, model.unit) * size,
     }
     ET.SubElement(function, "imls", {"imt": imt} | {name: repr(value) for name, value in levels.items()})
-    for state, curve in zip(states, model.curves, strict=True):
+    for state, curve in zip(limit_states, model.curves, strict=True):
         mean, deviation = moments_of_lognormal(curve.median * size, curve.dispersion)
         ET.SubElement(function, "params", {"ls": state, "mean": repr(mean), "stddev": repr(deviation)})
     ET.indent(root)
@@ -435,7 +436,7 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
 
 def _description(model: FragilityModel, description: str, unit: str) -> str:
     claims = [f"{c.state}: {'; '.join(filter(None, (c.method, c.verdict)))}" for c in model.curves if c.method]
-    about = [f"{model.measure} in {unit}", *([model.adjusted] if model.adjusted else [])]
+    about = [f"{model.im} in {unit}", *([model.adjusted] if model.adjusted else [])]
     return " | ".join([description or model.source or "fragility of a rocking body", *about, *claims])
 
 

@@ -30,7 +30,7 @@ DEFAULT_MEASURES = (
 class MeasureScore:
     """How well one measure predicts rocking and overturning."""
 
-    measure: str  # measure, unit: name and unit of the measure
+    im: str  # im, unit: name and unit of the measure
     unit: str
     # standard deviation of ln(theta/alpha) about its line over the ln of the measure, of histories that rocked and
     # stayed standing: the less, the fewer motions are needed [-]
@@ -60,7 +60,7 @@ class MeasureComparison:
     @property
     def best(self) -> str:
         """Name of the most efficient measure."""
-        return self.scores[0].measure
+        return self.scores[0].im
 
     def rows(self) -> list[dict[str, Any]]:
         """Return rank, the fields of `MeasureScore`, and ``p(name)`` for each column of the metadata."""
@@ -78,7 +78,7 @@ class MeasureComparison:
 
 def compare_measures(
     analysis: CloudAnalysis,
-    measures: Sequence[Any] = DEFAULT_MEASURES,
+    ims: Sequence[Any] = DEFAULT_MEASURES,
     metadata: Mapping[str, Any] | None = None,
     *,
     least: float | None = None,
@@ -94,7 +94,7 @@ def compare_measures(
     ----------
     analysis : CloudAnalysis
         The histories; all measures see the same ones.
-    measures : sequence of str or IntensityMeasure
+    ims : sequence of str or IntensityMeasure
         What to compare.
     metadata : mapping of str to array_like, optional
         Numbers that belong to the motions, such as magnitude, ln of the distance, duration; one a motion.
@@ -124,10 +124,10 @@ def compare_measures(
     >>> compare_measures(found, ["pga", "pgv", "pgv/pga"]).best
     'pgv'
     """
-    chosen = [measure(one) for one in measures]
+    chosen = [measure(one) for one in ims]
     names = [one.name for one in chosen]
     if not names or len(set(names)) < len(names):
-        raise InvalidValueError("measures must be at least one, none of them twice, got {names}", names=names)
+        raise InvalidValueError("ims must be at least one, none of them twice, got {names}", names=names)
     check_progress(progress)
     if least is not None:
         analysis = replace(analysis, least=checked_least(least))

@@ -39,16 +39,20 @@ class MultipleStripeAnalysis(FragilityAnalysis):
     @cached_property
     def counts(self) -> dict[str, IntArray]:
         """Number of motions that reach each state, by name of the state, at each level."""
-        return {s.name: np.sum(self.responses.exceed(s) == 1.0, axis=0, dtype=np.int64) for s in self.states}
+        return {s.name: np.sum(self.responses.exceed(s) == 1.0, axis=0, dtype=np.int64) for s in self.limit_states}
 
     @cached_property
     def dataset(self) -> "xr.Dataset":
         """All outcomes, counts and factors with their units, over motion and level."""
         both = ("motion", "level")
-        names = [state.name for state in self.states]
+        names = [state.name for state in self.limit_states]
         data: dict[str, Any] = {
             **self.responses.labelled(both),
-            "factor": (both, np.asarray(self.histories.scales), {"units": "1", "long_name": "factor on the motion"}),
+            "scale": (
+                both,
+                np.asarray(self.histories.scales),
+                {"units": "1", "long_name": "scale factor of the motion"},
+            ),
             "exceeded": (("state", "level"), np.array([self.counts[name] for name in names]), {"units": "1"}),
             "trials": ("level", self.trials, {"units": "1"}),
         }

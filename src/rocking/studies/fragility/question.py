@@ -17,7 +17,7 @@ from rocking.studies.fragility.incremental_dynamic_analysis import (
     overturning_intervals,
 )
 from rocking.studies.fragility.multiple_stripe_analysis import MultipleStripeAnalysis
-from rocking.studies.fragility.subject import LimitState, Progress, Responses, Subject, checked_levels, limit_states
+from rocking.studies.fragility.subject import LimitState, Progress, Responses, Subject, checked_levels, limit_states_of
 from rocking.studies.histories import Product, results_of
 
 ANALYSES = ("stripes", "cloud", "incremental")
@@ -33,7 +33,7 @@ class FragilityQuestion:
 
     subject: Subject
     analysis: str  # one of `ANALYSES`
-    states: tuple[LimitState, ...]
+    limit_states: tuple[LimitState, ...]
     levels: FloatArray  # to which every motion is brought; of a cloud that of each motion [unit of the measure]
     histories: Product
     least: float  # rotation over alpha below which a history of a cloud is barely lifted [-]
@@ -41,12 +41,13 @@ class FragilityQuestion:
 
     @classmethod
     def of(
-        cls, subject: Subject, analysis: str = "stripes", levels: Any = None, states: Sequence[float | str] = (0.5,), *,
-        factor: float | None = None, least: float | None = None, tolerance: float | None = None,
+        cls, subject: Subject, analysis: str = "stripes", levels: Any = None,
+        limit_states: Sequence[float | str] = (0.5,), *, scale: float | None = None, least: float | None = None,
+        tolerance: float | None = None,
     ) -> Self:  # fmt: skip
         """Return what is asked, as `rocking.fragility` says it; nothing is computed but intensities."""
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
-        odd = [name for name, value in (("factor", factor), ("least", least)) if value is not None]
+        odd = [name for name, value in (("scale", scale), ("least", least)) if value is not None]
         if odd and kind != "cloud":
             raise InvalidValueError(
                 '{parameter} is for analysis="cloud" only, this is "{kind}"', parameter=odd[0], kind=kind
@@ -56,8 +57,8 @@ class FragilityQuestion:
         if kind == "cloud":
             if levels is not None:
                 raise InvalidValueError("levels are not for a cloud, which takes the motions as they are")
-            factor = checks.positive("factor", 1.0 if factor is None else factor)
-            at, factors = measure.scaled(subject.intensities, factor), np.array([factor])
+            scale = checks.positive("scale", 1.0 if scale is None else scale)
+            at, factors = measure.scaled(subject.intensities, scale), np.array([scale])
         else:
             at = default_levels(subject) if levels is None else checked_levels("levels", levels, measure.unit)
             factors = measure.factors(subject.intensities, at)
@@ -65,13 +66,13 @@ class FragilityQuestion:
         histories = subject.product(factors)
         if kind == "incremental":
             check_repeatable(histories.law)
-        return cls(subject, kind, limit_states(states), at, histories, least, tolerance)
+        return cls(subject, kind, limit_states_of(limit_states), at, histories, least, tolerance)
 
     def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
         """Return the analysis of the results of the histories; the search of an incremental one is done here."""
         shape = (len(self.subject.motions), *(self.levels.shape if self.analysis != "cloud" else ()))
         responses = Responses.of(arrays, self.subject.parameters, shape)
-        known = self.subject, self.states, self.histories, responses, self.levels
+        known = self.subject, self.limit_states, self.histories, responses, self.levels
         if self.analysis == "cloud":
             return CloudAnalysis(*known, self.least)
         stripes = MultipleStripeAnalysis(*known)

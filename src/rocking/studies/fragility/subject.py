@@ -171,9 +171,9 @@ class Subject:
         """Return body, measure, restitution and settings as plain values, for the attributes of a file."""
         return {
             "software": SOFTWARE,
-            "measure": self.measure.name,
-            "measure_words": self.measure_words,
-            "measure_unit": self.measure.unit,
+            "im": self.measure.name,
+            "im_description": self.measure_words,
+            "im_unit": self.measure.unit,
             "restitution": self.parameters.label,
             **({} if self.support == GROUND else {"support": self.support}),
             "motion_provenance": self._provenance,
@@ -203,7 +203,7 @@ class LimitState:
 NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
 
 
-def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
+def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
     """Return limit states, from the least: rotations over alpha (increasing [-]), ``rocking``, ``overturning``.
 
     Numbers alone include rocking and overturning; where a name is among them, the states are those given.
@@ -212,11 +212,11 @@ def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ..
     names = [level for level in given if isinstance(level, str)] if isinstance(given, list | tuple) else []
     if unknown := [name for name in names if name not in NAMED]:
         raise InvalidValueError(
-            parameter="states", allowed=f"rotations over alpha, {' or '.join(NAMED)}", value=unknown[0]
+            parameter="limit_states", allowed=f"rotations over alpha, {' or '.join(NAMED)}", value=unknown[0]
         )
     if len(set(names)) < len(names):
         raise InvalidValueError(
-            "{parameter} must contain each name at most once, got {value}", parameter="states", value=levels
+            "{parameter} must contain each name at most once, got {value}", parameter="limit_states", value=levels
         )
     between = _rotations([level for level in given if not isinstance(level, str)] if names else given)
     chosen = names or NAMED
@@ -228,10 +228,10 @@ def limit_states(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ..
 
 def _rotations(levels: Any) -> tuple[LimitState, ...]:
     rotations = np.atleast_1d(np.asarray(levels))
-    rotations = checks.positive_array("states", rotations) if rotations.size else np.empty(0)
+    rotations = checks.positive_array("limit_states", rotations) if rotations.size else np.empty(0)
     if rotations.ndim != 1:
-        raise InvalidValueError(parameter="states", allowed="a row of rotations over alpha", value=levels)
-    checks.increasing("states", rotations)
+        raise InvalidValueError(parameter="limit_states", allowed="a row of rotations over alpha", value=levels)
+    checks.increasing("limit_states", rotations)
     return tuple(LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in rotations)
 
 
@@ -347,10 +347,10 @@ def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> 
 
 
 def fits_of(
-    subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
+    subject: Subject, limit_states: Sequence[LimitState], levels: FloatArray, responses: Responses
 ) -> dict[str, LognormalFit]:
     """Return the lognormal curve of each state, of histories at levels [unit of the measure]."""
-    uncertain = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
+    uncertain = [state for state in limit_states if state.level > 0.0 or subject.uplift_threshold is None]
     reached = [responses.exceed(state) == 1.0 for state in uncertain]
     counts = pooled(levels, responses.good, reached, subject.clusters)
     return {state.name: fit_counts(each) for state, each in zip(uncertain, counts, strict=True)}
@@ -361,7 +361,7 @@ class FragilityAnalysis(ABC):
     """What every fragility analysis has: histories of one subject, the states that they reached, and their curves."""
 
     subject: Subject
-    states: tuple[LimitState, ...]  # from rocking to overturned
+    limit_states: tuple[LimitState, ...]  # from rocking to overturned
     histories: Product  # what was computed
     responses: Responses
 
@@ -386,7 +386,7 @@ class FragilityAnalysis(ABC):
     @cached_property
     def fits(self) -> dict[str, LognormalFit]:
         """Lognormal curve of each state from the outcomes; none for rocking where a level decides it."""
-        return fits_of(self.subject, self.states, self.history_levels, self.responses)
+        return fits_of(self.subject, self.limit_states, self.history_levels, self.responses)
 
     def fit_of(self, name: str) -> LognormalFit:
         """Return the curve of ``rocking`` or ``overturning``, whether or not it is among the states."""
@@ -398,11 +398,11 @@ class FragilityAnalysis(ABC):
     @property
     def verdicts(self) -> dict[str, list[str]]:
         """What is to be known of curves that are not likeliest, with the states; intervals are told apart."""
-        states: dict[str, list[str]] = {}
+        limit_states: dict[str, list[str]] = {}
         for name, fit in self.fits.items():
             if fit.separation is not Separation.OVERLAP or not fit.exists:
-                states.setdefault(fit.verdict_in("", clusters=False), []).append(name)
-        return states
+                limit_states.setdefault(fit.verdict_in("", clusters=False), []).append(name)
+        return limit_states
 
     @cached_property
     def uplift(self) -> UpliftCheck:
@@ -423,7 +423,7 @@ class FragilityAnalysis(ABC):
         return {
             "analysis": self.kind,
             "definition": self.definition,
-            "measure": self.subject.measure.name,
+            "im": self.subject.measure.name,
             "unit": self.subject.measure.unit,
             "uplift": self.uplift.verdict,
             "failed": self.failed,

@@ -185,7 +185,7 @@ class Sensitivity:
                 value=state,
             )  # fmt: skip
         first, second = (_curve(result.fits[state]) for result in pair)
-        reached = [one.responses.exceed(next(s for s in one.states if s.name == state)) for one in pair]
+        reached = [one.responses.exceed(next(s for s in one.limit_states if s.name == state)) for one in pair]
         return curve_change((first, second), pair[0].levels, *reached, repetitions=self.repetitions, seed=self.seed)
 
     @property
@@ -454,7 +454,7 @@ def fragility_sensitivity(
     restitutions, baseline, repetitions, seed
         As for `sensitivity`; no repetitions, no intervals.
     **options
-        ``measure``, ``states`` and the other options of `rocking.studies.fragility_analysis`.
+        ``im``, ``limit_states`` and the other options of `rocking.studies.fragility_analysis`.
 
     Returns
     -------
@@ -464,12 +464,12 @@ def fragility_sensitivity(
     from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
-    measure, states = options.pop("measure", "pga"), options.pop("states", (0.5,))
+    im, limit_states = options.pop("im", "pga"), options.pop("limit_states", (0.5,))
     same_motions = _kept(motions)
 
     def study(*, restitution: Any) -> Any:
-        subject = Subject.of(body, same_motions, restitution, measure, options)
-        question = FragilityQuestion.of(subject, "stripes", levels, states)
+        subject = Subject.of(body, same_motions, restitution, im, options)
+        question = FragilityQuestion.of(subject, "stripes", levels, limit_states)
         return question.answer(results_of(sampled(question.histories), threads=threads, progress=progress))
 
     return sensitivity(study, restitutions, baseline, repetitions=repetitions, seed=seed)

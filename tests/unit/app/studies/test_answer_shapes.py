@@ -34,10 +34,10 @@ STUDIES = {
     "overturning-map": {},
     "rocking-spectrum": {"spectrum": {"slenderness_angles": [0.2, 0.3], "periods": [2.0, 4.0]}, "body": None},
     "stripes": {
-        "fragility": {"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "states": []},
+        "fragility": {"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "limit_states": []},
         "motions": {"synthetic": "pulse-like", "count": 12, "seed": 7},
     },
-    "cloud": {"fragility": {"measure": "pgv"}, "motions": {"synthetic": "pulse-like", "count": 12, "seed": 7}},
+    "cloud": {"fragility": {"im": "pgv"}, "motions": {"synthetic": "pulse-like", "count": 12, "seed": 7}},
     "incremental": {
         "fragility": {"levels": [2.0, 4.0, 8.0, 12.0]},
         "motions": {"pulse": [f"sine:amplitude={a},period={p}" for a in (2.0, 4.0) for p in (0.4, 0.7)]},

@@ -30,7 +30,7 @@ def stripes(computed, map_job):
     pulses = [f"sine:amplitude=1,period={p}" for p in (0.4, 0.5, 0.7, 0.9, 1.2)]
     return computed(map_job(
         campaign={"name": NAME, "kind": "stripes"}, map=None, motions={"pulse": pulses},
-        restitution={"values": [0.98, 0.4]}, fragility={"levels": [2.0, 4.0, 6.0, 8.0], "states": []},
+        restitution={"values": [0.98, 0.4]}, fragility={"levels": [2.0, 4.0, 6.0, 8.0], "limit_states": []},
     ))  # fmt: skip
 
 

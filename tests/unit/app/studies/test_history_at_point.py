@@ -138,7 +138,7 @@ TWO_TABLES = [{"pulse": PULSES[:1]}, {"pulse": PULSES[1:], "scale": 2.0}]
         ("rocking-spectrum", SPECTRUM, TWO_TABLES, (3, 2), 2),
         ("stripes", LEVELS, SYNTHETIC, (3, 2), 0),
         ("incremental", LEVELS, TWO_TABLES, (3, 2), 0),
-        ("cloud", {"fragility": {"measure": "pga"}}, SYNTHETIC, (3, 1), 0),
+        ("cloud", {"fragility": {"im": "pga"}}, SYNTHETIC, (3, 1), 0),
         ("histories", {"histories": {"scales": [1.0, 2.0, 3.0]}}, TWO_TABLES, (3, 1), 2),
     ],
 )

@@ -146,7 +146,7 @@ MANY = {
     "restitutions": {"restitution": {"values": [k / 100 for k in range(65)]}},
     "states": {
         "campaign": {"name": "x", "kind": "stripes"}, "map": None,
-        "fragility": {"levels": [1.0], "states": [k / 100 for k in range(1, 22)]},
+        "fragility": {"levels": [1.0], "limit_states": [k / 100 for k in range(1, 22)]},
     },
     "motions": {
         "campaign": {"name": "x", "kind": "cloud"}, "map": None, "fragility": {},
@@ -213,7 +213,7 @@ JOBS = [
         "body": {"units": "cm", "section": {"region": [{"outline": [[0, 0], [50, 0], [25, 100]], "density": 2400}]}},
         "motions": {"pulse": ["sine:amplitude=1,period=0.6", "ricker:amplitude=1,period=0.5"]},
         "restitution": {"distribution": {"mean": 0.9, "deviation": 0.05, "each": "history"}},
-        "fragility": {"measure": "pga", "levels": [1.0, 2.0], "states": [0.5]},
+        "fragility": {"im": "pga", "levels": [1.0, 2.0], "limit_states": [0.5]},
     },
     {
         "campaign": {"name": "r", "kind": "rocking-spectrum"},

@@ -134,10 +134,10 @@ def test_fragility_is_that_of_python(result):
     """
     levels = [2.0, 4.0, 6.0, 8.0, 10.0]
     answer = result(
-        "stripes", fragility={"levels": levels, "states": [0.5]}, restitution={"model": "ked"},
+        "stripes", fragility={"levels": levels, "limit_states": [0.5]}, restitution={"model": "ked"},
         motions={"synthetic": "pulse-like", "count": 20, "seed": 7},
     )  # fmt: skip
-    expected = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
+    expected = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", limit_states=(0.5,))
     (mine,) = answer["analyses"]
     exported = model_of(expected, "block")
     assert exported.shared
@@ -152,7 +152,7 @@ def test_fragility_is_that_of_python(result):
         assert mine["verdicts"][curve.state] == fit.verdict_in("m/s2")
     assert set(mine["common"]) == set(exported.shared)
     one = result(
-        "stripes", fragility={"levels": levels, "states": ["overturning"]}, restitution={"model": "ked"},
+        "stripes", fragility={"levels": levels, "limit_states": ["overturning"]}, restitution={"model": "ked"},
         motions={"synthetic": "pulse-like", "count": 20, "seed": 7},
     )["analyses"][0]  # fmt: skip
     fit = expected.fits["overturned"]
@@ -170,7 +170,7 @@ def test_fragility_is_that_of_python(result):
 @pytest.mark.parametrize(
     ("kind", "fragility", "own"),
     [
-        ("cloud", {"measure": "pgv"}, {"regression"}),
+        ("cloud", {"im": "pgv"}, {"regression"}),
         ("incremental", {"levels": [2.0, 4.0, 8.0, 12.0]}, {"first_crossings", "resurrection", "intervals"}),
     ],
 )

@@ -15,17 +15,17 @@ slenderness_angles = [0.15, 0.3]
 periods = { from = 1.5, to = 9, count = 6, spacing = "log" }
 """
 STRIPES = """[fragility]
-measure = "pga"
+im = "pga"
 levels = { from = 2, to = 10, count = 5 }
-states = [0.3]
+limit_states = [0.3]
 """
-INCREMENTAL = "[restitution]\nvalue = 0.9\n[fragility]\nlevels = [2.0, 4.0, 6.0, 9.0]\nstates = []\n"
+INCREMENTAL = "[restitution]\nvalue = 0.9\n[fragility]\nlevels = [2.0, 4.0, 6.0, 9.0]\nlimit_states = []\n"
 JOBS = {
     "overturning-map": BODY + PULSE + axes(),
     "rocking-spectrum": PULSES.replace("amplitude=1", "amplitude=4") + SPECTRUM,
     "stripes": BODY + SYNTHETIC + STRIPES,
     "incremental": BODY + PULSES + INCREMENTAL,
-    "cloud": BODY + SYNTHETIC + '[fragility]\nmeasure = "pgv"\nfactor = 2.0\n',
+    "cloud": BODY + SYNTHETIC + '[fragility]\nim = "pgv"\nscale = 2.0\n',
     "histories": BODIES + PULSES + TWO_MODELS + "[histories]\nscales = [2.5, 5.0, 8.0, 11.0]\n",
 }
 

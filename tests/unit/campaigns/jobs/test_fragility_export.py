@@ -19,7 +19,7 @@ from rocking.studies.fragility import model_of, to_csv, to_nrml
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
 STRIPES = job(
     "stripes", BODY, f"[motions]\npulse = {[f'sine:amplitude=1,period={period}' for period in PERIODS]}\n",
-    "[fragility]\nlevels = { from = 2, to = 8, count = 7 }\nstates = [0.3]\n", name="many states", seed=6,
+    "[fragility]\nlevels = { from = 2, to = 8, count = 7 }\nlimit_states = [0.3]\n", name="many states", seed=6,
 )  # fmt: skip
 ASKED = STRIPES + "[export]\nbootstrap = 99\n"
 
@@ -44,7 +44,7 @@ def from_python(bootstrap, seed):
     """Return the model of the same study by the Python calls."""
     motions = [rk.pulses.sine(1.0, period) for period in PERIODS]
     body = rk.Block(width=0.5, height=2.0)
-    found = fragility_analysis(body, motions, np.linspace(2.0, 8.0, 7), states=(0.3,))
+    found = fragility_analysis(body, motions, np.linspace(2.0, 8.0, 7), limit_states=(0.3,))
     return model_of(found, "many states", bootstrap=bootstrap, seed=seed)
 
 
@@ -86,7 +86,7 @@ def test_off_unless_asked_for(campaigns, tmp_path):
 def test_a_state_that_is_never_reached(tmp_path):
     """A state without a curve is a row that says why, in place of numbers."""
     short = ", ".join(f'"sine:amplitude=1,period=0.{k}"' for k in (15, 2, 25, 3))
-    low = re.sub(r"pulse = .*", f"pulse = [{short}]", STRIPES).replace("states = [0.3]", "states = [0.02]")
+    low = re.sub(r"pulse = .*", f"pulse = [{short}]", STRIPES).replace("limit_states = [0.3]", "limit_states = [0.02]")
     low = low.replace("to = 8", "to = 4")
     path = export(cut(tmp_path / "c", low), tmp_path / "r.csv", "fragility")
     with path.open(encoding="utf-8") as file:
@@ -154,7 +154,7 @@ def test_what_analyses_read(campaigns):
 
 
 SMALL = "a small stripes"
-COMMON = '[export]\ncrossing = "common-dispersion"\n'
+COMMON = '[export]\ncrossing_curves = "common-dispersion"\n'
 
 
 @pytest.fixture
@@ -172,34 +172,35 @@ def test_common_dispersion(crossed, tmp_path, what, name, write):
     """Refused on request; without and with the option, the bytes of the Python export with the same option."""
     folder = crossed()
     with pytest.raises(InvalidValueError, match="curves must not cross"):
-        export(folder, tmp_path / name, what, crossing="refuse")
+        export(folder, tmp_path / name, what, crossing_curves="refuse")
     assert not list(tmp_path.glob("r.*"))
     (analysis,) = analyses(folder).values()
-    for crossing in ("keep-uplift", "common-dispersion"):
-        found = export(folder, tmp_path / name, what, crossing=crossing).read_bytes()
-        assert found == write(model_of(analysis, SMALL, crossing=crossing), tmp_path / f"w{name}").read_bytes()
-        if crossing == "keep-uplift":
+    for crossing_curves in ("keep-uplift", "common-dispersion"):
+        found = export(folder, tmp_path / name, what, crossing_curves=crossing_curves).read_bytes()
+        model = model_of(analysis, SMALL, crossing_curves=crossing_curves)
+        assert found == write(model, tmp_path / f"w{name}").read_bytes()
+        if crossing_curves == "keep-uplift":
             assert found == export(folder, tmp_path / name, what).read_bytes()
 
 
 def test_the_job_may_say_crossing(crossed, tmp_path):
     """[export] in the job is what counts unless the call says otherwise."""
     folder = crossed(COMMON)
-    called = export(crossed(), tmp_path / "s.xml", "fragility", crossing="common-dispersion")
+    called = export(crossed(), tmp_path / "s.xml", "fragility", crossing_curves="common-dispersion")
     assert export(folder, tmp_path / "r.xml", "fragility").read_bytes() == called.read_bytes()
     with pytest.raises(InvalidValueError, match="curves must not cross"):
-        export(folder, tmp_path / "t.xml", "fragility", crossing="refuse")
+        export(folder, tmp_path / "t.xml", "fragility", crossing_curves="refuse")
 
 
 def test_refusals_of_crossing(crossed, text, tmp_path):
     """It is about curves only, and there are two ways."""
     folder = crossed()
     with pytest.raises(
-        InvalidValueError, match="crossing must be one of keep-uplift, common-dispersion, refuse, got 'maybe'"
+        InvalidValueError, match="crossing_curves must be one of keep-uplift, common-dispersion, refuse, got 'maybe'"
     ):
-        export(folder, tmp_path / "r.xml", "fragility", crossing="maybe")
+        export(folder, tmp_path / "r.xml", "fragility", crossing_curves="maybe")
     with pytest.raises(InvalidValueError, match="it is about curves"):
-        export(folder, tmp_path / "r.nc", crossing="refuse")
+        export(folder, tmp_path / "r.nc", crossing_curves="refuse")
     with pytest.raises(InvalidValueError, match=r"export\.crossing"):
         Job.of_text(text("stripes") + COMMON.replace("common-", "un"))
     with pytest.raises(InvalidValueError, match=r"\[export\] does not go with kind = .overturning-map"):

@@ -150,20 +150,20 @@ def test_spectrum_with_a_law_has_no_coefficient(finished, tmp_path, text):
 def test_stripes_are_multiple_stripes(finished, tmp_path):
     """Stripes of synthetic motions: outcomes, counts, curves and summary of the one call."""
     motions = SyntheticSet("pulse-like", 12, 4)
-    wanted = fragility_analysis(BLOCK, motions, np.linspace(2, 10, 5), states=(0.3,))
+    wanted = fragility_analysis(BLOCK, motions, np.linspace(2, 10, 5), limit_states=(0.3,))
     folder = finished("stripes", 9)
     found = analyses(folder)["ked"]
     assert np.array_equal(found.responses.rotation, wanted.responses.rotation, equal_nan=True)
     assert found.summary() == wanted.summary()
     file = opened(folder, tmp_path)
     assert np.array_equal(file["outcome"], wanted.responses.outcome)
-    assert np.array_equal(file["factor"], wanted.histories.scales)
+    assert np.array_equal(file["scale"], wanted.histories.scales)
     assert file["level"].attrs["units"] == "m/s2"
 
 
 def test_incremental_is_incremental(finished):
     """Incremental: the same intervals to the last bit, searched after the campaign."""
-    wanted = fragility_analysis(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, states=(), analysis="incremental")
+    wanted = fragility_analysis(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, limit_states=(), analysis="incremental")
     found = analyses(finished("incremental", 5))["0.9"]
     assert found.intervals == wanted.intervals
     assert len(found.intervals) >= 3
@@ -172,7 +172,7 @@ def test_incremental_is_incremental(finished):
 
 def test_cloud_is_cloud(finished, tmp_path):
     """Cloud: the same outcomes and summary, and the intensities of the scaled motions beside them."""
-    wanted = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 12, 4), measure="pgv", factor=2.0, analysis="cloud")
+    wanted = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 12, 4), im="pgv", scale=2.0, analysis="cloud")
     folder = finished("cloud", 5)
     assert analyses(folder)["ked"].summary() == wanted.summary()
     file = opened(folder, tmp_path)
@@ -186,7 +186,7 @@ def test_fragility_of_several_restitutions(finished, text):
     found = analyses(folder)
     for label in ("ked", "housner"):
         wanted = fragility_analysis(
-            BLOCK, SyntheticSet("pulse-like", 12, 4), np.linspace(2, 10, 5), label, states=(0.3,)
+            BLOCK, SyntheticSet("pulse-like", 12, 4), np.linspace(2, 10, 5), label, limit_states=(0.3,)
         )
         assert np.array_equal(found[label].responses.rotation, wanted.responses.rotation, equal_nan=True)
     assert not np.array_equal(found["ked"].responses.rotation, found["housner"].responses.rotation)
@@ -203,7 +203,7 @@ def test_drawn_restitution(finished, text, each):
     (found,) = analyses(folders[0]).values()
     motions = SyntheticSet("pulse-like", 12, 4)
     if each == "impact":
-        wanted = fragility_analysis(BLOCK, motions, restitution=law, measure="pgv", factor=2.0, analysis="cloud")
+        wanted = fragility_analysis(BLOCK, motions, restitution=law, im="pgv", scale=2.0, analysis="cloud")
         assert np.array_equal(found.responses.rotation, wanted.responses.rotation)
     assert not np.array_equal(found.responses.rotation, analyses(finished("cloud", 7))["ked"].responses.rotation)
 

@@ -28,10 +28,10 @@ synthetic = "point-source"
 count = {COUNT}
 seed = 1
 [fragility]
-measure = "pgv"
-factor = 1.5
+im = "pgv"
+scale = 1.5
 """
-EXPORT = f"[export]\nmeasures = {json.dumps(NAMES)}\ncolumns = ['magnitude', 'ln distance_km']\n"
+EXPORT = f"[export]\nims = {json.dumps(NAMES)}\ncolumns = ['magnitude', 'ln distance_km']\n"
 
 
 def text_of(*models, export_table=EXPORT, chunk=None):
@@ -54,7 +54,7 @@ def wanted():
         "ln distance_km": [math.log(float(motion.metadata["distance_km"])) for motion in motions],
     }
     found = fragility_analysis(
-        rk.Block(width=0.4, height=2.0), motions, restitution="ked", measure="pgv", factor=1.5, analysis="cloud"
+        rk.Block(width=0.4, height=2.0), motions, restitution="ked", im="pgv", scale=1.5, analysis="cloud"
     )
     return compare_measures(found, NAMES, metadata)
 
@@ -83,7 +83,7 @@ def test_the_ranking_of_the_python_call(campaign, wanted):
         rk.Block(width=0.4, height=2.0),
         list(SyntheticSet("point-source", COUNT - 1, 1)),
         restitution="ked",
-        factor=1.5,
+        scale=1.5,
         analysis="cloud",
     )
     assert compare_measures(fewer, NAMES).rows() != compare_measures(analyses(campaign)["ked"], NAMES).rows()
@@ -92,8 +92,8 @@ def test_the_ranking_of_the_python_call(campaign, wanted):
 def test_csv_and_excel(campaign, wanted, tmp_path):
     """Both hold every row, by rank: CSV to the last bit, a workbook to the 16 digits that are written into it."""
     openpyxl = pytest.importorskip("openpyxl")
-    export(campaign, tmp_path / "m.csv", "measures")
-    export(campaign, tmp_path / "m.xlsx", "measures")
+    export(campaign, tmp_path / "m.csv", "ims")
+    export(campaign, tmp_path / "m.xlsx", "ims")
     book = openpyxl.load_workbook(tmp_path / "m.xlsx")
     head, *lines = book["rank"].iter_rows(values_only=True)
     of_csv, of_excel = csv_rows(tmp_path / "m.csv"), [dict(zip(head, line, strict=True)) for line in lines]
@@ -104,7 +104,7 @@ def test_csv_and_excel(campaign, wanted, tmp_path):
     right = wanted.rows()[0]["efficiency"]
     assert not same(of_csv[0]["efficiency"], math.nextafter(right, 1.0))  # the control: one bit is seen
     beside = json.loads((tmp_path / "m.csv.provenance.json").read_text(encoding="utf-8"))
-    assert beside["measures_left_out"] == {}
+    assert beside["ims_left_out"] == {}
     assert beside["least_rotation_over_alpha"] == wanted.least
     assert "provenance" in [row[0] for row in book["provenance"].iter_rows(values_only=True)]
 
@@ -112,17 +112,17 @@ def test_csv_and_excel(campaign, wanted, tmp_path):
 def test_netcdf_and_matlab(campaign, wanted, tmp_path):
     """Both hold the columns under names that the languages take, and the provenance."""
     xarray = pytest.importorskip("xarray")
-    export(campaign, tmp_path / "m.nc", "measures")
-    export(campaign, tmp_path / "m.mat", "measures")
+    export(campaign, tmp_path / "m.nc", "ims")
+    export(campaign, tmp_path / "m.mat", "ims")
     rows = wanted.rows()
     with xarray.open_dataset(tmp_path / "m.nc", engine="h5netcdf") as found:
-        assert found["measure"].values.tolist() == [row["measure"] for row in rows]
+        assert found["im"].values.tolist() == [row["im"] for row in rows]
         for name, variable in (("efficiency", "efficiency"), ("p(ln distance_km)", "p_ln_distance_km")):
             assert found[variable].values.tolist() == [row[name] for row in rows]
         assert json.loads(found.attrs["provenance"])["kind"] == "cloud"
     table = loadmat(tmp_path / "m.mat", simplify_cells=True)["table"]
     assert table["columns"]["efficiency"].tolist() == [row["efficiency"] for row in rows]
-    assert table["columns"]["measure"].tolist() == [row["measure"] for row in rows]
+    assert table["columns"]["im"].tolist() == [row["im"] for row in rows]
     assert table["names"]["p_magnitude"] == "p(magnitude)"
     assert all(name.isidentifier() for name in table["columns"])
 
@@ -138,11 +138,11 @@ def test_resumed(campaign, tmp_path):
     with pytest.raises(CampaignInterrupted):
         folder.run(progress=stop)
     with pytest.raises(CampaignIncompleteError, match=r"nothing to export because .* chunks"):
-        export(folder, tmp_path / "early.csv", "measures")
+        export(folder, tmp_path / "early.csv", "ims")
     assert not (tmp_path / "early.csv").exists()
     resumed = JobFolder.open(tmp_path / "stopped")
     resumed.run()
-    first, second = export(resumed, tmp_path / "a.csv", "measures"), export(campaign, tmp_path / "b.csv", "measures")
+    first, second = export(resumed, tmp_path / "a.csv", "ims"), export(campaign, tmp_path / "b.csv", "ims")
     assert first.read_bytes() == second.read_bytes()
 
 
@@ -150,13 +150,13 @@ def test_what_the_job_does_not_say(tmp_path):
     """Without [export] the usual measures and that of the job are ranked, against magnitude and ln distance."""
     text = text_of(export_table="").replace('"pgv"', '"sa(0.3)"')
     found = measure_comparison(through(tmp_path / "c", text))
-    names = {score.measure for score in found.scores}
+    names = {score.im for score in found.scores}
     assert {"pga", "sa(0.3)", "cav", "housner"} <= names
     assert list(found.scores[0].sufficiency) == ["magnitude", "ln distance_km"]
     pulses = ", ".join(f'"half-sine:amplitude={a},period={t}"' for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4))
     body, _, rest = text.partition("[motions]")
     short = body + f"[motions]\npulse = [{pulses}]\n" + rest[rest.index("[fragility]") :]
-    short = short.replace("factor = 1.5", "factor = 1.0").replace("height = 2.0", "height = 1.6")
+    short = short.replace("scale = 1.5", "scale = 1.0").replace("height = 2.0", "height = 1.6")
     assert measure_comparison(through(tmp_path / "p", short)).scores[0].sufficiency == {}
 
 
@@ -164,14 +164,14 @@ def test_several_restitutions(tmp_path):
     """Each has a ranking of its own, which is that of a campaign with it alone; which one is meant must be said."""
     both = through(tmp_path / "both", text_of("housner", "ked"))
     assert exports_of(both) == [
-        "histories", "fragility", "fragility-points", "fema-p58", "measures", "flips", "differences",
+        "histories", "fragility", "fragility-points", "fema-p58", "ims", "flips", "differences",
     ]  # fmt: skip
     with pytest.raises(InvalidValueError, match="restitution must be one of housner, ked"):
-        export(both, tmp_path / "m.csv", "measures")
+        export(both, tmp_path / "m.csv", "ims")
     alone = through(tmp_path / "alone", text_of("housner"))
     assert measure_comparison(both, "housner").rows() == measure_comparison(alone).rows()
     assert measure_comparison(both, "housner").rows() != measure_comparison(both, "ked").rows()
-    export(both, tmp_path / "m.csv", "measures", restitution="housner")
+    export(both, tmp_path / "m.csv", "ims", restitution="housner")
     told = json.loads((tmp_path / "m.csv.provenance.json").read_text(encoding="utf-8"))
     assert told["restitution"] == "housner"
 
@@ -179,7 +179,7 @@ def test_several_restitutions(tmp_path):
 def test_progress(campaign, tmp_path):
     """What is told adds up to the histories of the campaign."""
     told: list[int] = []
-    export(campaign, tmp_path / "m.csv", "measures", progress=told.append)
+    export(campaign, tmp_path / "m.csv", "ims", progress=told.append)
     assert sum(told) == COUNT
     assert len(told) == len(NAMES)
 
@@ -188,24 +188,24 @@ def test_nothing_to_export(finished, tmp_path):
     """Other kinds, and clouds in which nothing rocks, say why there is nothing."""
     for kind in ("overturning-map", "stripes", "incremental", "rocking-spectrum", "histories"):
         made = finished(kind)
-        assert "measures" not in exports_of(made)
-        with pytest.raises(InvalidValueError, match=f'nothing to export because .*"{kind}" has no measures, .* cloud'):
-            export(made, tmp_path / "m.csv", "measures")
+        assert "ims" not in exports_of(made)
+        with pytest.raises(InvalidValueError, match=f'nothing to export because .*"{kind}" has no ims, .* cloud'):
+            export(made, tmp_path / "m.csv", "ims")
         with pytest.raises(InvalidValueError, match="nothing to export because measures are compared over a cloud"):
             measure_comparison(made)
-    weak = text_of().replace("factor = 1.5", "factor = 0.01")
+    weak = text_of().replace("scale = 1.5", "scale = 0.01")
     made = finished("cloud", words=weak)
     with pytest.raises(InvalidValueError, match=r"nothing to export because .* too few rocked"):
-        export(made, tmp_path / "m.csv", "measures")
+        export(made, tmp_path / "m.csv", "ims")
     assert list(tmp_path.glob("m.*")) == []
 
 
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ("measures = ['pga', 'pgx']", "export: measure must be one of"),
-        ("measures = ['sa(1)', 'sa(1.0)']", r"export: measures: sa\(1.0\) is named twice"),
-        ("measures = []", "export.measures"),
+        ("ims = ['pga', 'pgx']", "export: measure must be one of"),
+        ("ims = ['sa(1)', 'sa(1.0)']", r"export: ims: sa\(1.0\) is named twice"),
+        ("ims = []", "export.ims"),
         ("columns = ['depth']", "export: columns: 'depth' must be a number of every motion, there is none of motion 0"),
         ("columns = ['magnitude', 'magnitude']", "is named twice"),
         ("column = ['magnitude']", "unknown key 'column'; did you mean columns"),
@@ -219,8 +219,8 @@ def test_refusals_of_the_job(table, words):
 
 def test_only_of_clouds(text):
     """Other analyses take no list of measures."""
-    with pytest.raises(InvalidValueError, match=r'export\.measures goes with kind = "cloud" only'):
-        Job.of_text(text("stripes") + "[export]\nmeasures = ['pga']\n")
+    with pytest.raises(InvalidValueError, match=r'export\.ims goes with kind = "cloud" only'):
+        Job.of_text(text("stripes") + "[export]\nims = ['pga']\n")
 
 
 def test_names_that_look_alike(wanted):
@@ -239,6 +239,6 @@ def test_command_line(tmp_path, answered, monkeypatch):
     (tmp_path / "job.toml").write_text(text_of("housner", "ked"), encoding="utf-8")
     answered("campaign", "run", "job.toml", "--output", "c")
     for name in ("housner", "ked"):
-        told = answered("campaign", "export", "c", "--output", f"measures={name}.csv", "--restitution", name)
-        assert told["what"] == "measures"
+        told = answered("campaign", "export", "c", "--output", f"ims={name}.csv", "--restitution", name)
+        assert told["what"] == "ims"
     assert (tmp_path / "housner.csv").read_bytes() != (tmp_path / "ked.csv").read_bytes()

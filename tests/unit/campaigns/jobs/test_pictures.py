@@ -10,7 +10,7 @@ from rocking.spec.question import StudyQuestion
 from rocking.spec.questions import questions
 
 pytest.importorskip("matplotlib")
-NOTHING = {"restitution": None, "crossing": None, "inputs": None, "as_json": False}
+NOTHING = {"restitution": None, "crossing_curves": None, "inputs": None, "as_json": False}
 OTHERS = {
     "several maps": job("overturning-map", BODY, PULSE, TWO_MODELS, axes()),
     "refined": job("overturning-map", BODY, PULSE, axes(), "refine = 1\ntolerance = 0.01\n"),
@@ -62,7 +62,7 @@ def test_all_is_checked_before_anything_is_written(finished, tmp_path, kind, sec
     ("how", "words"),
     [
         ({"restitution": "ked"}, r"restitution must be one of 0\.9, got 'ked'"),
-        ({"crossing": "refuse"}, "crossing goes with"),
+        ({"crossing_curves": "refuse"}, "crossing_curves goes with"),
     ],
 )
 def test_options_of_a_picture(finished, tmp_path, how, words):

@@ -34,7 +34,7 @@ MOTIONS = records(80)
 
 @pytest.fixture(scope="module")
 def found():
-    return fragility_analysis(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5), analysis="cloud")
+    return fragility_analysis(BLOCK, MOTIONS, restitution=0.9, limit_states=(0.2, 0.5), analysis="cloud")
 
 
 @pytest.mark.verifies("second engine", "the reference engine, every tenth motion", within="1e-6")
@@ -147,7 +147,7 @@ def test_probability_follows_what_was_observed(found):
 
 def test_a_factor_is_a_scaled_set_of_motions(found):
     """One factor on all motions gives what motions multiplied beforehand give, level and outcome."""
-    scaled = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, factor=1.5, analysis="cloud")
+    scaled = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, scale=1.5, analysis="cloud")
     beforehand = fragility_analysis(BLOCK, [m.scaled(1.5) for m in MOTIONS], restitution=0.9, analysis="cloud")
     np.testing.assert_allclose(scaled.motion_levels, 1.5 * found.motion_levels, rtol=1e-14)
     np.testing.assert_allclose(scaled.motion_levels, beforehand.motion_levels, rtol=1e-14)
@@ -156,7 +156,7 @@ def test_a_factor_is_a_scaled_set_of_motions(found):
 
 def test_plan_and_failures(found):
     """Results computed elsewhere finish as the same analysis; a failed one leaves the fits and is counted."""
-    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), "cloud", states=(0.2, 0.5))
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), "cloud", limit_states=(0.2, 0.5))
     arrays = question.histories.run(0, 80)
     same = question.answer(arrays)
     assert same.fits["overturned"].median == found.fits["overturned"].median
@@ -175,7 +175,7 @@ def test_counts_by_level_are_those_of_the_motions(found):
 
 def test_rocking_gets_a_curve_where_no_level_decides():
     """Against PGV the probability of rocking is fitted, and overturning never exceeds it."""
-    by_velocity = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, measure="pgv", analysis="cloud")
+    by_velocity = fragility_analysis(BLOCK, MOTIONS, restitution=0.9, im="pgv", analysis="cloud")
     levels = np.array([0.1, 0.3, 1.0])
     rocks = by_velocity.probability_of_rocking(levels)
     assert np.all((rocks > 0.0) & (rocks <= 1.0))

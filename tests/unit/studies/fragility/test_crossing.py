@@ -14,7 +14,7 @@ from rocking.plots.fragility import fragility_picture
 from rocking.studies import SyntheticSet, fragility_analysis
 from rocking.studies.fragility import FragilityCurve, FragilityModel, fema_p58_table, model_of, to_nrml
 from rocking.studies.fragility.curves import crosses, shown_curves, without_crossing
-from rocking.studies.fragility.subject import limit_states
+from rocking.studies.fragility.subject import limit_states_of
 
 pytestmark = pytest.mark.verifies(room="studies")
 
@@ -156,11 +156,11 @@ def test_states_can_be_left_out():
         ("overturning", "rocking"): ["rocking", "overturned"],
     }
     for given, wanted in names.items():
-        assert [state.name for state in limit_states(given)] == wanted
-    assert [state.name for state in limit_states("overturning")] == ["overturned"]
+        assert [state.name for state in limit_states_of(given)] == wanted
+    assert [state.name for state in limit_states_of("overturning")] == ["overturned"]
     for bad in (("overturned",), ("rocking", "rocking"), (0.5, 0.2, "rocking"), ("rocking", -1.0), (math.nan,), "all"):
         with pytest.raises(InvalidValueError, match="states must"):
-            limit_states(bad)
+            limit_states_of(bad)
 
 
 def test_a_cloud_without_a_state_knows_its_parts():
@@ -168,21 +168,21 @@ def test_a_cloud_without_a_state_knows_its_parts():
     pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]
     block = rk.Block(width=0.4, height=1.6)
     whole, part = (
-        fragility_analysis(block, pulses, analysis="cloud", states=s, restitution="ked")
+        fragility_analysis(block, pulses, analysis="cloud", limit_states=s, restitution="ked")
         for s in ((0.5,), (0.5, "rocking"))
     )
     assert list(part.fits) == ["rotation > 0.5 alpha"]
     for name, values in whole.parts([2.9, 4.0], 0.5).items():
         np.testing.assert_array_equal(part.parts([2.9, 4.0], 0.5)[name], values)
-    assert rk.fragility(block, pulses, analysis="cloud", states=["overturning"])["state"].values.tolist() == [
+    assert rk.fragility(block, pulses, analysis="cloud", limit_states=["overturning"])["state"].values.tolist() == [
         "overturned"
     ]
 
 
 def test_one_state_has_no_common_dispersion(leaning):
     """A single curve crosses none: it keeps its own fit and interval by every treatment."""
-    for crossing in ("keep-uplift", "common-dispersion", "refuse"):
-        made = model_of(leaning, "cabinet", crossing=crossing, states=["overturned"])
+    for crossing_curves in ("keep-uplift", "common-dispersion", "refuse"):
+        made = model_of(leaning, "cabinet", crossing_curves=crossing_curves, limit_states=["overturned"])
         (curve,) = made.curves
         assert made.adjusted == ""
         assert (curve.median, curve.dispersion) == (
@@ -190,4 +190,4 @@ def test_one_state_has_no_common_dispersion(leaning):
             leaning.fits["overturned"].dispersion,
         )
         assert curve.median_95 is not None
-    assert "One dispersion" in model_of(leaning, "cabinet", crossing="common-dispersion").adjusted
+    assert "One dispersion" in model_of(leaning, "cabinet", crossing_curves="common-dispersion").adjusted

@@ -40,7 +40,7 @@ NASTY = "=HYPERLINK(\"x\") <statue> & 'co' é"
 def model(**change):
     """Two curves against PGA."""
     fields = {
-        "name": "statue 1", "measure": "pga", "unit": "m/s2", "curves": CURVES, "levels": [2.0, 4.0, 8.0],
+        "name": "statue 1", "im": "pga", "unit": "m/s2", "curves": CURVES, "levels": [2.0, 4.0, 8.0],
         "trials": np.array([10, 10, 9]), "reached": REACHED, "source": "ten records", "uplift_threshold": 2.1,
         "about": {"software": "rocking"},
     }  # fmt: skip
@@ -92,10 +92,10 @@ def test_pelicun_reads_a_row():
     assert row[1:7] == (0, "Peak Ground Acceleration", "g", 0, 1, "lognormal")
     assert row[11] == pytest.approx(4.7 / 9.80665, rel=1e-14)
     assert (row[8], row[12]) == (0.25, 0.4)
-    spectral = table(model(measure="sa(1.0)"), "pelicun")
+    spectral = table(model(im="sa(1.0)"), "pelicun")
     assert spectral.rows[0][2] == "Spectral Acceleration|1.0"
     with pytest.raises(InvalidValueError, match=r"PELICUN curves stand against pga or sa\(period\)"):
-        table(model(measure="pgv"), "pelicun")
+        table(model(im="pgv"), "pelicun")
 
 
 @pytest.mark.parametrize("word", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "  =1", "=cmd|'/c calc'!A0"])
@@ -114,7 +114,7 @@ def test_mat_reads_back(tmp_path):
     made = loadmat(to_mat(model(), tmp_path / "f.mat"), squeeze_me=True, struct_as_record=False)["fragility"]
     assert made.median.tolist() == [3.1, 4.7]
     assert made.dispersion.tolist() == [0.25, 0.4]
-    assert made.states.tolist() == ["rotation > 0.5 alpha", "overturned"]
+    assert made.limit_states.tolist() == ["rotation > 0.5 alpha", "overturned"]
     assert made.exceeded.tolist() == [0.0, 4.0, 9.0]
     assert made.probability.shape == (2, 3)
     assert json.loads(made.provenance) == {"software": "rocking"}
@@ -201,7 +201,7 @@ def test_nrml_refuses_what_openquake_does_not_know(tmp_path):
     """Normalised measures, other damping, other loss categories."""
     for name in ("pga/(g tan alpha)", "housner", "sa(0.3,0.1)"):
         with pytest.raises(InvalidValueError, match="OpenQuake knows"):
-            to_nrml(model(measure=name), tmp_path / "f.xml")
+            to_nrml(model(im=name), tmp_path / "f.xml")
     for bad in ("\x00", "\ud800", "bell\x07", ""):  # what XML cannot hold
         with pytest.raises(InvalidValueError):
             to_nrml(model(name=bad), tmp_path / "f.xml")
@@ -329,27 +329,27 @@ def test_curves_that_cross_are_refused(tmp_path):
     assert inside.level == pytest.approx(everywhere[difference.argmax()], rel=1e-3)
     assert largest_excess(crossed(), 3.3, 60.0) is None  # above the crossing the order is right
     assert largest_excess(claimed(curves=CROSSED[:1]), 0.0, 60.0) is None
-    with pytest.raises(InvalidValueError, match="crossing must be one of"):
-        to_nrml(crossed(), tmp_path / "f.xml", crossing="ignore")
+    with pytest.raises(InvalidValueError, match="crossing_curves must be one of"):
+        to_nrml(crossed(), tmp_path / "f.xml", crossing_curves="ignore")
 
 
 def test_one_dispersion_for_all_states_on_request(tmp_path):
     """The files hold the curves of the ordered fit instead, which never cross, and say how they were found."""
     made = crossed()
     fit = fit_ordered(made.levels, *made.reached.values(), made.trials, method="common-dispersion")
-    rows = fema_p58_table(made, crossing="common-dispersion")
+    rows = fema_p58_table(made, crossing_curves="common-dispersion")
     cells = [dict(zip(rows.header, row, strict=True)) for row in rows.rows]
     for cell, curve in zip(cells, (fit.rocked, fit.overturned), strict=True):
         assert cell["Median Demand"] == pytest.approx(curve[0] / 9.80665, rel=1e-14)
         assert cell["Total Dispersion (Beta)"] == curve[1]
         assert "common-dispersion" in cell["Data Quality and Relevance"]
-    path = to_nrml(made, tmp_path / "f.xml", crossing="common-dispersion")
+    path = to_nrml(made, tmp_path / "f.xml", crossing_curves="common-dispersion")
     params = ET.parse(path).getroot().findall(f".//{TAG}params")
     mean = moments_of_lognormal(fit.overturned[0] / 9.80665, fit.overturned[1])[0]
     assert float(params[1].attrib["mean"]) == pytest.approx(mean, rel=1e-12, abs=0.0)
-    to_csv(made, tmp_path / "f.csv", "fema-p58", crossing="common-dispersion")
+    to_csv(made, tmp_path / "f.csv", "fema-p58", crossing_curves="common-dispersion")
     with pytest.raises(InvalidValueError, match="counts of all states"):
-        to_nrml(claimed(), tmp_path / "g.xml", crossing="common-dispersion")
+        to_nrml(claimed(), tmp_path / "g.xml", crossing_curves="common-dispersion")
 
 
 def test_a_workbook_keeps_what_is_sound(tmp_path):
@@ -358,7 +358,7 @@ def test_a_workbook_keeps_what_is_sound(tmp_path):
     book = openpyxl.load_workbook(to_excel(crossed(), tmp_path / "f.xlsx"))
     assert "must not cross" in book["fema-p58"]["A1"].value
     assert book["parameters"]["D2"].value == 3.1
-    whole = openpyxl.load_workbook(to_excel(crossed(), tmp_path / "g.xlsx", crossing="common-dispersion"))
+    whole = openpyxl.load_workbook(to_excel(crossed(), tmp_path / "g.xlsx", crossing_curves="common-dispersion"))
     assert whole["fema-p58"].max_row == 3
 
 
@@ -398,9 +398,9 @@ def test_three_files_give_the_same_curves(tmp_path):
             assert (median, dispersion) == pytest.approx((curve.median, curve.dispersion), rel=1e-12, abs=0.0)
     units = [table(made, "pelicun").rows[0][3], fema_p58_table(made).rows[0][7]]
     assert units == ["g", "g"]
-    assert fema_p58_table(model(measure="pgv", unit="m/s")).rows[1][4:8:3] == (pytest.approx(470.0, rel=1e-14), "cm/s")
-    assert fema_p58_table(model(measure="sa(1.0,0.1)")).rows[0][7] == "g"
-    assert fema_p58_table(model(measure="p pgv/(g tan alpha)", unit="-")).rows[0][7] == "dimensionless"
+    assert fema_p58_table(model(im="pgv", unit="m/s")).rows[1][4:8:3] == (pytest.approx(470.0, rel=1e-14), "cm/s")
+    assert fema_p58_table(model(im="sa(1.0,0.1)")).rows[0][7] == "g"
+    assert fema_p58_table(model(im="p pgv/(g tan alpha)", unit="-")).rows[0][7] == "dimensionless"
 
 
 def test_texts_of_files_name_the_unit(tmp_path):

@@ -44,9 +44,9 @@ def test_every_number_against_independent_regressions(analysis, ranking):
     # PGV of a half sine that lasts half its period: a T / pi
     closed = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi, "pgv/pga": PERIODS / math.pi}
     for score in ranking.scores:
-        if score.measure not in closed:
+        if score.im not in closed:
             continue
-        x = np.log(closed[score.measure])[rocked]
+        x = np.log(closed[score.im])[rocked]
         line = stats.linregress(x, response)
         residuals = response - line.intercept - line.slope * x
         # the measures of pulses are sampled, right to 1e-6
@@ -61,9 +61,9 @@ def test_every_number_against_independent_regressions(analysis, ranking):
 
 def test_velocity_beats_acceleration_for_short_pulses(ranking):
     """Short pulses act by their impulse: PGV ranks above PGA, and PGA leaves out what the period knows."""
-    places = {score.measure: place for place, score in enumerate(ranking.scores)}
+    places = {score.im: place for place, score in enumerate(ranking.scores)}
     assert places["pgv"] < places["pga"]
-    by_name = {score.measure: score for score in ranking.scores}
+    by_name = {score.im: score for score in ranking.scores}
     assert by_name["pga"].sufficiency["ln period"] < 1e-6
     assert by_name["pga"].sufficiency["noise"] > 0.01  # the control: noise has nothing to say
     assert [s.efficiency for s in ranking.scores] == sorted(s.efficiency for s in ranking.scores)
@@ -80,7 +80,7 @@ def test_barely_lifted_histories_do_not_rank_measures():
     found = compare_measures(hurt, ["pga", "pgv"])
     assert found.least == 0.01
     for score in found.scores:
-        values = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi}[score.measure]
+        values = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi}[score.im]
         line = stats.linregress(np.log(values[kept]), np.log(hurt.responses.rotation[kept]))
         assert score.slope == pytest.approx(line.slope, rel=1e-5)  # sampled pulses are right to 1e-6
         assert score.rocked == kept.sum()
@@ -103,7 +103,7 @@ def test_the_table(ranking):
     """Rows by rank, with one p-value a column of metadata, as plain values and as a data frame."""
     frame = ranking.to_dataframe()
     assert frame.index.tolist() == [1, 2, 3, 4, 5]
-    assert frame.measure.iloc[0] == ranking.best
+    assert frame.im.iloc[0] == ranking.best
     assert {"p(ln period)", "p(noise)", "overturning_dispersion"} <= set(frame.columns)
     json.dumps(ranking.rows())
 
@@ -112,9 +112,9 @@ def test_overturning_dispersion_is_that_of_the_curve():
     """The dispersion of overturning is the one that a cloud analysis against that measure fits."""
     pulses = [rk.pulses.sine(a, t) for a in np.linspace(2.6, 9.0, 12) for t in (0.4, 0.55, 0.7, 0.85)]
     over = fragility_analysis(BODY, pulses, restitution=0.9, analysis="cloud")
-    scores = {s.measure: s for s in compare_measures(over, ["pga", "pgv"]).scores}
+    scores = {s.im: s for s in compare_measures(over, ["pga", "pgv"]).scores}
     for name in ("pga", "pgv"):
-        fit = fragility_analysis(BODY, pulses, restitution=0.9, measure=name, analysis="cloud").fits["overturned"]
+        fit = fragility_analysis(BODY, pulses, restitution=0.9, im=name, analysis="cloud").fits["overturned"]
         assert scores[name].overturning_dispersion == pytest.approx(fit.dispersion, rel=1e-12, abs=0.0)
         assert scores[name].overturned == over.responses.overturned.sum() > 0
 
@@ -123,7 +123,7 @@ def test_the_same_histories_serve_all_measures(analysis):
     """Another measure changes levels, never outcomes; a factor counts with the power of the measure."""
     other = replace_measure(analysis, "arias")
     assert other.responses is analysis.responses
-    doubled = replace_measure(fragility_analysis(BODY, MOTIONS, restitution=0.9, factor=2.0, analysis="cloud"), "arias")
+    doubled = replace_measure(fragility_analysis(BODY, MOTIONS, restitution=0.9, scale=2.0, analysis="cloud"), "arias")
     np.testing.assert_allclose(doubled.motion_levels, 4.0 * other.motion_levels, rtol=1e-13)
 
 
@@ -141,7 +141,7 @@ def test_a_measure_that_does_not_vary_is_left_out():
         BODY, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9, analysis="cloud"
     )
     found = compare_measures(same, ["pga", "pgv"])
-    assert [s.measure for s in found.scores] == ["pgv"]
+    assert [s.im for s in found.scores] == ["pgv"]
     assert list(found.left_out) == ["pga"]
     with pytest.raises(InvalidValueError, match="no measure can be ranked"):
         compare_measures(same, ["pga"])

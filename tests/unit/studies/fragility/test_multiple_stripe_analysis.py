@@ -13,7 +13,7 @@ from rocking.dynamics import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
 from rocking.studies import MotionSet, fragility_analysis
 from rocking.studies.fragility.question import FragilityQuestion
-from rocking.studies.fragility.subject import Responses, Subject, limit_states, uplift_check
+from rocking.studies.fragility.subject import Responses, Subject, limit_states_of, uplift_check
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 
@@ -29,7 +29,7 @@ MOTIONS, LEVELS = records(12), np.array([1.5, 3.0, 4.5, 6.0, 8.0, 10.0])
 
 @pytest.fixture(scope="module")
 def stripes():
-    return fragility_analysis(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+    return fragility_analysis(BLOCK, MOTIONS, LEVELS, restitution=0.9, limit_states=(0.2, 0.5))
 
 
 def test_counts_against_single_simulations(stripes):
@@ -82,7 +82,7 @@ def test_no_threshold_with_a_vertical_part_or_another_measure():
 
 def test_a_plan_computed_elsewhere_gives_the_same_analysis(stripes):
     """Histories run in two pieces and joined finish as the analysis that was computed at once."""
-    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, states=(0.2, 0.5))
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, limit_states=(0.2, 0.5))
     assert question.histories.key() == stripes.histories.key()
     halves = question.histories.run(0, 31), question.histories.run(31, question.histories.count)
     found = question.answer({name: np.concatenate([half[name] for half in halves]) for name in halves[0]})
@@ -93,7 +93,7 @@ def test_a_plan_computed_elsewhere_gives_the_same_analysis(stripes):
 
 def test_failed_histories_are_left_out_and_counted(stripes):
     """One failed history lowers the trials of its level by one and touches nothing else."""
-    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, states=(0.2, 0.5))
+    question = FragilityQuestion.of(Subject.of(BLOCK, MOTIONS, 0.9, "pga", {}), levels=LEVELS, limit_states=(0.2, 0.5))
     arrays = question.histories.run(0, question.histories.count)
     arrays["outcome"][4] = rk.Outcome.FAILED.code
     arrays["peak_rotation"][4] = math.nan
@@ -101,7 +101,7 @@ def test_failed_histories_are_left_out_and_counted(stripes):
     assert found.failed == 1
     assert found.trials.tolist() == [12, 12, 12, 12, 11, 12]
     lost = {name: int(stripes.counts[name][4] - counts[4]) for name, counts in found.counts.items()}
-    assert lost == {s.name: int(stripes.responses.exceed(s)[0, 4]) for s in stripes.states}
+    assert lost == {s.name: int(stripes.responses.exceed(s)[0, 4]) for s in stripes.limit_states}
     assert np.isnan(found.responses.rotation[0, 4])
 
 
@@ -109,7 +109,7 @@ def test_progress_and_threads_change_nothing(stripes):
     """The numbers of done histories add up, and one thread gives the same states."""
     done = []
     found = fragility_analysis(
-        BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5), threads=1, progress=done.append
+        BLOCK, MOTIONS, LEVELS, restitution=0.9, limit_states=(0.2, 0.5), threads=1, progress=done.append
     )
     assert sum(done) == found.histories.count == 72
     np.testing.assert_array_equal(found.responses.outcome, stripes.responses.outcome)
@@ -186,7 +186,7 @@ def test_rotation_is_over_the_alpha_of_its_side():
 def test_states_are_nested():
     """What reaches a state has reached all before it; of a failed one nothing is known."""
     found = Responses.of(ARRAYS, ROCKER, (5,))
-    reached = np.array([found.exceed(state) for state in limit_states((0.2, 0.5))])
+    reached = np.array([found.exceed(state) for state in limit_states_of((0.2, 0.5))])
     assert reached[:, :4].tolist() == [[0, 1, 1, 1], [0, 1, 1, 1], [0, 1, 0, 1], [0, 0, 0, 1]]
     assert np.isnan(reached[:, 4]).all()
     assert found.good.tolist() == [True] * 4 + [False]
@@ -195,8 +195,8 @@ def test_states_are_nested():
 
 def test_levels_may_be_absent_or_above_one():
     """No level leaves rocking and overturning; rotations beyond alpha that come back are states as well."""
-    assert [s.name for s in limit_states(())] == ["rocking", "overturned"]
-    assert limit_states((1.2,))[1].level == 1.2
+    assert [s.name for s in limit_states_of(())] == ["rocking", "overturned"]
+    assert limit_states_of((1.2,))[1].level == 1.2
 
 
 def test_results_of_another_study_are_refused():

@@ -25,8 +25,8 @@ export const Fragility = ({ study, found, chosen }) => {
 
 /** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
 const Analysis = ({ found, analysis }) => {
-  const unit = found.measure.unit === "1" ? "" : found.measure.unit;
-  const x = { label: found.measure.words, unit };
+  const unit = found.im.unit === "1" ? "" : found.im.unit;
+  const x = { label: found.im.words, unit };
   // without a curve the points still show what was found; the reason stands under them, and not once more below
   const isDrawn = (/** @type {string} */ state) => state in analysis.curves;
   const fitted = Object.entries(analysis.verdicts).filter(([state]) => isDrawn(state) || !(state in analysis.points));
