@@ -10,7 +10,7 @@ from rocking.motions import pulses
 from rocking.motions.intensity import MEASURES
 from rocking.motions.pipeline import steps_of
 from rocking.motions.synthetic import families
-from rocking.spec import bodies, reading
+from rocking.spec import bodies, schema
 from rocking.spec.documents.identification import IdentificationDocument
 from rocking.spec.documents.response import ResponseDocument
 from rocking.spec.questions import question_in
@@ -89,21 +89,18 @@ MAP = {
 def test_files_of_older_schemas_are_read(monkeypatch):
     """A made-up schema in which the table [map] was called [plane]: with or without its number, the file is read."""
 
-    def from_first(tables):
-        return {"map" if name == "plane" else name: table for name, table in tables.items()}
-
-    monkeypatch.setattr(reading, "SCHEMA", 2)
-    monkeypatch.setitem(reading.STEPS, 1, from_first)
+    monkeypatch.setitem(schema.RENAMED, 1, {"plane": "map", "map.x.name": "axis"})
     old = {"plane" if name == "map" else name: table for name, table in MAP.items()}
-    for tables in (old, {"schema": 1, **old}, {"schema": 2, **MAP}):
+    old["plane"] = {**MAP["map"], "x": {"name": "pga", "values": [1.0, 2.0]}}
+    for tables in (old, {"schema": 1, **old}, {"schema": 2, **MAP}, MAP):
         assert question_in(tables).map.x.size == 2
     with pytest.raises(InvalidValueError, match="unknown key 'plane'"):
         question_in({"schema": 2, **old})
 
 
-@pytest.mark.parametrize("number", [0, 2, "1", True, 1.0])
+@pytest.mark.parametrize("number", [0, 3, "1", True, 1.0])
 def test_unknown_schemas_are_refused(number):
-    with pytest.raises(InvalidValueError, match=r"schema must be a whole number from 1 to 1, got ") as refused:
+    with pytest.raises(InvalidValueError, match=r"schema must be a whole number from 1 to 2, got ") as refused:
         question_in({"schema": number, **MAP})
     assert (refused.value.parameter, refused.value.value) == ("schema", number)
-    assert ("later version" in str(refused.value)) == (number == 2)
+    assert ("later version" in str(refused.value)) == (number == 3)

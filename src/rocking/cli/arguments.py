@@ -17,6 +17,7 @@ from rocking.errors import BodyFileError, InvalidValueError, RecordError, Rockin
 from rocking.motions.pulses import catalogue
 from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.reading import is_pattern, tables_in
+from rocking.spec.schema import SCHEMA, migrated
 
 if TYPE_CHECKING:
     import typer
@@ -89,6 +90,7 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
 
 def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
     """Return the tables of a file with the keys that ``--set`` changes; lists: a table may stand as a list of one."""
+    tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options have the present keys
     changed = dict(tables)
     for table, keys in sets.items():
         name = "motions" if lists and table == "motion" else table

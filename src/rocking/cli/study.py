@@ -17,6 +17,7 @@ from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.question import StudyQuestion
 from rocking.spec.questions import question_in, questions
 from rocking.spec.reading import CommandFiles, InputFiles, tables_in
+from rocking.spec.schema import SCHEMA
 from rocking.spec.study import StudyProblem
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], *
     if stated := arguments.restitution(tables.pop("restitution", {})):
         tables["restitution"] = stated
     document = {
+        "schema": SCHEMA,
         "campaign": {"name": questions()[kind].own_table(), "kind": kind},
         "motions": motions,
         **settings,

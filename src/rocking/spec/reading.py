@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rocking.errors import InvalidValueError
+from rocking.spec.schema import migrated
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rocking.spec.fields import JobTable
 
     _Kind = TypeVar("_Kind", bound=JobTable)
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
 _PIECE = 1 << 20
 _SPECIAL = "*?["
 LARGEST_JOB = 16 * 2**20  # larger job files are refused [byte]
-
-SCHEMA = 1  # number of the present tables, which a file may state
-STEPS: "dict[int, Callable[[dict[str, Any]], dict[str, Any]]]" = {}  # from the tables of a number to those of the next
 
 
 @dataclass
@@ -133,19 +129,6 @@ def tables_of(text: str) -> dict[str, Any]:
         raise InvalidValueError(
             "is not TOML that can be read: {reason}", reason=str(error).partition(";")[0]
         ) from error
-
-
-def migrated(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a file of any schema as those of the present one; without a number it is 1."""
-    number = tables.get("schema", 1)
-    if type(number) is not int or not 1 <= number <= SCHEMA:
-        hint = "a later version of rocking reads this file" if type(number) is int and number > SCHEMA else ""
-        allowed = f"a whole number from 1 to {SCHEMA}"
-        raise InvalidValueError(parameter="schema", value=number, allowed=allowed, hint=hint)
-    tables = {name: table for name, table in tables.items() if name != "schema"}
-    for step in range(number, SCHEMA):
-        tables = STEPS[step](tables)
-    return tables
 
 
 def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":

@@ -16,6 +16,7 @@ from rocking.app.records import is_hash
 from rocking.bodies.formats.schema import BLOCK_KEYS
 from rocking.bodies.formats.words import from_pydantic
 from rocking.conventions import DEFAULT_RESTITUTION, Assumed
+from rocking.spec.schema import migrated
 from rocking.version import SOFTWARE
 
 FILE_NAME = "response.toml"  # what such a file is called
@@ -72,7 +73,7 @@ def inputs_as_toml(inputs: Inputs) -> str:
 
 def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     """Return what a file of inputs says."""
-    document = parsed_toml(text)
+    document = migrated(parsed_toml(text))
     unknown = sorted(set(document) - set(_TABLES))
     if unknown and "campaign" in document:
         raise Refused(

@@ -19,6 +19,7 @@ from rocking.app.security.request_body import check_json
 from rocking.app.studies.job_document import JobDocument
 from rocking.bodies.formats.words import from_pydantic
 from rocking.errors import RecordError, RockingError, located
+from rocking.spec.schema import migrated_document
 from rocking.version import __version__
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
     for study in whole.studies:
         JobDocument.of(study.job)  # before anything is kept
     _keep_files(state, archive, whole)
-    project = state.projects.create(whole.name, whole.document, "from a file")
+    project = state.projects.create(whole.name, migrated_document(whole.document), "from a file")
     try:
         for study in whole.studies:
             state.studies.create(study.name, study.job, project.id, brought=True)

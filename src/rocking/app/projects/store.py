@@ -17,6 +17,7 @@ from rocking.app.errors import Conflict, NoRoom, NotFound, Refused, TooLarge
 from rocking.app.plain_text import shown
 from rocking.app.settings import Limits
 from rocking.campaigns.disk import sync_folder
+from rocking.spec.schema import migrated_document
 
 MOST_PROJECTS = 1_000
 MOST_STATES = 2_000  # of a project; beyond them the oldest go
@@ -129,8 +130,7 @@ class ProjectStore:
             raise NotFound(
                 "the project has no state {number}", number=number, hint="its oldest ones are not kept for ever"
             )
-        document: dict[str, Any] = json.loads(zlib.decompress(row[0]))
-        return document
+        return migrated_document(json.loads(zlib.decompress(row[0])))
 
     def history(self, project: str) -> list[ProjectState]:
         """Return every state of a project that is kept, the last first."""

@@ -16,12 +16,13 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.messages import messages_of
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
+from rocking.spec.schema import SCHEMA
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
 from rocking.studies.islands import safe_islands
 from rocking.version import __version__
 
-NAME = f"result-{__version__}.json"  # another version may tell other things
+NAME = f"result-{__version__}-{SCHEMA}.json"  # another version may tell other things
 _LARGEST = 20_000
 _PACKED = 100_000  # values from which on a table of a map is told as bytes
 _WHOLE = ("uint8", "int8", "uint16", "int16", "int32")

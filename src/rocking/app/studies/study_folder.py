@@ -19,6 +19,7 @@ from rocking.campaigns import disk
 from rocking.campaigns.jobs.folder import status_of
 from rocking.campaigns.status import CampaignStatus
 from rocking.errors import InvalidValueError, RockingError
+from rocking.spec.schema import migrated
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
@@ -99,7 +100,7 @@ class StudyFolder:
 
     def asked(self) -> dict[str, Any]:
         """Return the tables of the job, with records by their hashes, as they were sent."""
-        tables = tomllib.loads((self.path / JOB).read_text(encoding="utf-8"))
+        tables = migrated(tomllib.loads((self.path / JOB).read_text(encoding="utf-8")))
         for motions in tables.get("motions", []):
             if "records" in motions:
                 motions["records"] = [Path(name).parent.name for name in motions["records"]]

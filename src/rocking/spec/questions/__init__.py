@@ -5,7 +5,8 @@ from pkgutil import iter_modules
 from typing import Any
 
 from rocking.spec.question import QUESTIONS, StudyQuestion
-from rocking.spec.reading import migrated, tables_of, validated
+from rocking.spec.reading import tables_of, validated
+from rocking.spec.schema import migrated
 
 
 def questions() -> dict[str, type[StudyQuestion]]:

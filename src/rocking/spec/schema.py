@@ -1,0 +1,80 @@
+"""The numbered schema of files with questions, and the keys that each number has renamed."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from rocking.errors import InvalidValueError
+
+SCHEMA = 2  # number of the present tables, which a file may state; without a number it is 1
+
+RENAMED: dict[int, dict[str, str]] = {
+    1: {
+        "export.crossing": "crossing_curves",
+        "export.measures": "ims",
+        "fragility.factor": "scale",
+        "fragility.measure": "im",
+        "fragility.states": "limit_states",
+        "minimum.highest": "max_pga",
+        "minimum.levels": "bisections",
+        "minimum.lowest": "min_pga",
+        "minimum.points": "samples",
+    },
+}
+"""New names of keys by the number of the schema that had the old ones: ``table.key``, or the path of a nested key."""
+
+_FORMS = {"range": "minimum", "unknown": "predict"}  # parts of the form of an assessment that are tables
+
+
+def migrated(tables: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of a file of any schema as those of the present one.
+
+    >>> migrated({"fragility": {"measure": "pgv"}}), migrated({"schema": 2, "fragility": {"measure": "pgv"}})
+    ({'fragility': {'im': 'pgv'}}, {'fragility': {'measure': 'pgv'}})
+    """
+    number = tables.get("schema", 1)
+    if type(number) is not int or not 1 <= number <= SCHEMA:
+        hint = "a later version of rocking reads this file" if type(number) is int and number > SCHEMA else ""
+        allowed = f"a whole number from 1 to {SCHEMA}"
+        raise InvalidValueError(parameter="schema", value=number, allowed=allowed, hint=hint)
+    tables = {name: table for name, table in tables.items() if name != "schema"}
+    for step in range(number, SCHEMA):
+        for path, new in RENAMED[step].items():
+            tables = _renamed(tables, path.split("."), new)
+    return tables
+
+
+def migrated_document(document: dict[str, Any]) -> dict[str, Any]:
+    """Return the document of a project with the present keys, in its inputs and in what was typed in its forms."""
+    inputs, forms = document.get("inputs"), document.get("forms")
+    if isinstance(inputs, dict):
+        document = {**document, "inputs": migrated(inputs)}
+    if isinstance(forms, dict) and isinstance(decide := forms.get("decide"), dict):
+        tables = migrated({table: decide[part] for part, table in _FORMS.items() if part in decide})
+        parts = {part: tables[table] for part, table in _FORMS.items() if table in tables}
+        document = {**document, "forms": {**forms, "decide": {**decide, **parts}}}
+    return document
+
+
+def _renamed(table: dict[str, Any], path: list[str], new: str) -> dict[str, Any]:
+    """Return a table with the last key of a path renamed; a list of tables counts as each of its tables."""
+    key, *inner = path
+    if key not in table:
+        return table
+    if not inner:
+        if new in table:
+            raise InvalidValueError("{old} and {new} are the same key. Remove {old}.", old=key, new=new)
+        return {new if name == key else name: value for name, value in table.items()}
+    value = table[key]
+    if isinstance(value, list):
+        value = [_renamed(one, inner, new) if isinstance(one, dict) else one for one in value]
+    elif isinstance(value, dict):
+        value = _renamed(value, inner, new)
+    return {**table, key: value}
+
+
+def renamed_keys() -> Iterator[tuple[str, str]]:
+    """Yield the old and the new path of every renamed key, in alphabetic order."""
+    for step in RENAMED.values():
+        for path, new in sorted(step.items()):
+            table, _, _ = path.rpartition(".")
+            yield path, f"{table}.{new}"
