@@ -445,8 +445,8 @@ _RESPONSE = (
     Quantity("friction_assumed", "1", "whether the coefficient of friction is assumed"),
     Quantity("friction_of_motion", "1", "friction demand while rocking", label="friction while rocking", digits=".3f"),
     Quantity("friction_of_impacts", "1", "friction demand at impacts", label="friction at impacts", digits=".3f"),
-    Quantity("bounce", "1", "coefficient of normal restitution"),
-    Quantity("bounce_law", "", "law of the coefficient of normal restitution"),
+    Quantity("normal_restitution", "1", "coefficient of normal restitution"),
+    Quantity("normal_restitution_law", "", "law of the coefficient of normal restitution"),
     Quantity("uplift_times", "s", "times of the uplifts from rest"),
     Quantity(
         "energy_closure", "1", "energy balance error over the largest energy", label="energy balance error",

@@ -187,7 +187,7 @@ def test_files_are_saved(answered: Callable[..., Any], name: str) -> None:
 
 def test_many_impacts_scroll_in_a_box(answered: Callable[..., Any]) -> None:
     """Let go from 0.9 of alpha a body impacts more often than a screen has lines: the table scrolls, not the page."""
-    page = answered(link(None, response={"free": 0.9}, restitution={"value": 0.98}))
+    page = answered(link(None, response={"initial_rotation": 0.9}, restitution={"value": 0.98}))
     table = page.get_by_test_id("impacts-table")
     expect(table.locator("tbody tr").nth(60)).to_be_attached()
     box = page.get_by_test_id("impacts").locator(".table-scroll")

@@ -343,7 +343,7 @@ def test_exports(studies: Any, tmp_path: Path) -> None:
 
 def test_what_is_refused_is_said(open_page: Callable[..., Any], record: Any) -> None:
     """A study without a motion is refused in a sentence beside the button."""
-    page = open_page(fragment({**PULSE, "motion": None, "response": {"free": 0.5}}))
+    page = open_page(fragment({**PULSE, "motion": None, "response": {"initial_rotation": 0.5}}))
     page.get_by_test_id("study-launch").click()
     assert "motion" in page.locator("#study-problem").inner_text()
 

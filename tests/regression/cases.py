@@ -83,7 +83,7 @@ def python() -> dict[str, Case]:
         for b in (BLOCK, STATUE)
     ]
     cases["contact"] = lambda _: [
-        doors.response_tree(doors.with_contact(STATUE, MOTIONS["both"], f, scale=0.7, bounce=e))
+        doors.response_tree(doors.with_contact(STATUE, MOTIONS["both"], f, scale=0.7, normal_restitution=e))
         for f, e in ((0.15, 0.0), (0.4, 0.0), (2.0, 0.2))
     ]
     cases["space"] = lambda _: [
@@ -260,8 +260,8 @@ ASKED = {
     "simulate files": "simulate statue.toml PULSE --restitution housner -o csv=o.csv -o picture=o.png --json",
     "simulate record": "simulate statue.toml record.txt --units cm,g --set motion.time_step=0.01 --scale 3 KED",
     "simulate record json": "simulate SIZE record.txt --units m,g --set motion.time_step=0.01 --scale 4 --json KED",
-    "simulate free": "simulate statue.toml --free 0.5 KED",
-    "simulate free json": "simulate SIZE --free -0.5 --json KED",
+    "simulate free": "simulate statue.toml --initial-rotation 0.5 KED",
+    "simulate free json": "simulate SIZE --initial-rotation -0.5 --json KED",
     "simulate contact": "simulate SIZE PULSE --friction 0.4 KED",
     "simulate contact json": "simulate statue.toml PULSE --friction 0.3 --json KED",
     "simulate solid": "simulate solid.toml PULSE --motion y=sine:amplitude=1,period=0.5 KED",
@@ -470,7 +470,7 @@ ASKED_OF_PAGE = {
         for name, body in BODY_TABLES.items() for other, motion in MOTION_TABLES.items()
     },
     "response free": ("/api/response", {
-        "body": BODY_TABLES["hollow"], "restitution": {"value": 0.9}, "response": {"free": 0.4},
+        "body": BODY_TABLES["hollow"], "restitution": {"value": 0.9}, "response": {"initial_rotation": 0.4},
     }),
 }  # fmt: skip
 MOVED = {"body": BODY_TABLES["hollow"], "motion": MOTION_TABLES["pulse"], "restitution": {"models": ["ked", "housner"]}}

@@ -36,7 +36,7 @@ OPTIONS: dict[str, tuple[Any, ...]] = {
     "linear": (0, 1, "no"),
     "engine": ("quick", 1),
     "friction": (-0.1,),
-    "bounce": (1.0, -0.1),
+    "normal_restitution": (1.0, -0.1),
     "start": (0.1, SpatialStart(0.1, math.nan), SpatialStart(2.0)),
 }
 DOORS: dict[str, Callable[..., Any]] = {

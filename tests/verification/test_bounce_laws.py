@@ -126,7 +126,7 @@ def test_compiled_engine_is_the_reference_engine(law, seed):
     rng = np.random.default_rng([17, seed])
     body, motion = section(rng), noise_motion(rng, vertical=bool(seed % 2))
     friction, e = rng.uniform(0.05, 2.2, 2).tolist(), float(rng.uniform(0.0, 0.6)) * (seed % 3 > 0)
-    options = {"friction": friction, "bounce": e, "bounce_law": law, "duration": 5.0}
+    options = {"friction": friction, "normal_restitution": e, "normal_restitution_law": law, "duration": 5.0}
     fast, slow = (
         rk.simulate_many(body, motion, ["housner", None], engine=engine, **options) for engine in ("fast", "reference")
     )
@@ -158,7 +158,8 @@ def test_dropped_flat_it_bounces_as_a_point(law):
     time = math.sqrt(2.0 * drop / 9.81) * (1.0 + e) / (1.0 - e)
     for duration, flying in ((0.99 * time, 1.0), (1.01 * time, 0.0)):
         found = rk.simulate_many(
-            rk.Block(width=1.0, height=4.0), still, [None], friction=0.5, bounce=e, bounce_law=law, start=start,
+            rk.Block(width=1.0, height=4.0), still, [None], friction=0.5, normal_restitution=e,
+            normal_restitution_law=law, start=start,
             duration=duration, gravity=9.81,
         ).squeeze()  # fmt: skip
         assert float(found["still_rocking"]) == flying

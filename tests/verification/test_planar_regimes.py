@@ -32,11 +32,16 @@ def _noise(count=400, vertical=0.0, seed=3, factor=1.0):
     return rk.GroundMotion(factor * row, 0.02, vertical=up)
 
 
-def _knock(block, friction, bounce=0.0, restitution=None):
+def _knock(block, friction, normal_restitution=0.0, restitution=None):
     """The impact of a block that turns onto its right foot."""
     start = Start(rotation=-1e-9, angular_velocity=1e-2)
     response = rk.free_rocking(
-        block, restitution=restitution, friction=friction, bounce=bounce, start=start, duration=1e-3
+        block,
+        restitution=restitution,
+        friction=friction,
+        normal_restitution=normal_restitution,
+        start=start,
+        duration=1e-3,
     )
     return response, response.impacts[0]
 
@@ -190,7 +195,7 @@ def test_landing_flat_bounces_as_a_point():
     """Dropped from 0.2 m the feet share the blow, m sqrt(2 g H) (1 + e), and the first bounce is e^2 H high."""
     drop, e = 0.2, 0.4
     response = rk.free_rocking(
-        SLENDER, restitution=None, friction=0.3, bounce=e, start=Start(height=drop), duration=1.0
+        SLENDER, restitution=None, friction=0.3, normal_restitution=e, start=Start(height=drop), duration=1.0
     )
     first = response.impacts[0]
     speed = math.sqrt(2.0 * G * drop)
@@ -207,7 +212,7 @@ def test_bounces_accumulate_to_rest():
     """A dropped body stands after sqrt(2 H / g) (1 + e) / (1 - e), and all its energy is booked as lost in impacts."""
     drop, e = 0.2, 0.5
     response = rk.free_rocking(
-        SLENDER, restitution=None, friction=0.3, bounce=e, start=Start(height=drop), duration=2.0
+        SLENDER, restitution=None, friction=0.3, normal_restitution=e, start=Start(height=drop), duration=2.0
     )
     stands = response.regimes[response.regimes["regime"] == "REST"]["start"][0]
     assert stands == pytest.approx(math.sqrt(2.0 * drop / G) * (1.0 + e) / (1.0 - e), rel=1e-6)
@@ -334,7 +339,7 @@ def _strong():
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_energy_adds_up(width, mu, bounce, agreement):
     """Kinetic + potential + lost = work + initial to 1e-10, through every regime; losses only grow."""
-    response = rk.simulate(rk.Block(width=width, height=2.0), _strong(), None, friction=mu, bounce=bounce)
+    response = rk.simulate(rk.Block(width=width, height=2.0), _strong(), None, friction=mu, normal_restitution=bounce)
     assert response.status is Status.GOOD
     agreement(response.energy.closure, 1e-10)
     for lost in (response.energy.lost_in_impacts, response.energy.lost_in_friction):
@@ -349,8 +354,8 @@ def test_mirror_is_exact(width, mu, bounce):
     """The body in a mirror under the motion in a mirror moves as the mirror shows, to the last bit."""
     body, motion = rk.Block(width=width, height=2.0), _strong()
     turned = rk.GroundMotion(-motion.acceleration, 0.02, vertical=motion.vertical)
-    one = rk.simulate(body, motion, None, friction=mu, bounce=bounce)
-    other = rk.simulate(body.mirrored(), turned, None, friction=mu, bounce=bounce)
+    one = rk.simulate(body, motion, None, friction=mu, normal_restitution=bounce)
+    other = rk.simulate(body.mirrored(), turned, None, friction=mu, normal_restitution=bounce)
     assert np.array_equal(one.rotation, -other.rotation)
     assert np.array_equal(one.displacement, -other.displacement)
     assert np.array_equal(one.rise, other.rise)

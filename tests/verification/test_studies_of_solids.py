@@ -155,7 +155,10 @@ def test_a_bad_row_touches_no_other(engine):
     [
         ({"friction": -0.1}, "friction must be in"),
         ({"friction": 2e6}, "friction must be"),
-        ({"friction": 0.3, "bounce": 0.2}, "bounce does not apply to a body in space with friction"),
+        (
+            {"friction": 0.3, "normal_restitution": 0.2},
+            "normal_restitution does not apply to a body in space with friction",
+        ),
         ({"friction": 0.3, "order": 6}, "order does not apply to a body in space with friction"),
         ({"friction": 0.3, "linear": True}, "linear does not apply to a body in space with friction"),
         (

@@ -31,12 +31,12 @@ def test_a_map_is_its_single_histories(restitution):
     """Cell by cell the reference engine, which follows one history, of a body without symmetry; time is stretched."""
     periods, amplitudes = [0.3, 0.6, 1.1], [5.0, 9.0, 14.0]
     found = overturning_map(
-        BODY, PULSE, ("period", periods), ("pga", amplitudes), restitution, friction=0.45, bounce=0.1
+        BODY, PULSE, ("period", periods), ("pga", amplitudes), restitution, friction=0.45, normal_restitution=0.1
     )
     for i, amplitude in enumerate(amplitudes):
         for j, period in enumerate(periods):
             pulse = rk.pulses.sine(amplitude=amplitude, period=period)
-            one = rk.simulate(BODY, pulse, restitution, friction=0.45, bounce=0.1)
+            one = rk.simulate(BODY, pulse, restitution, friction=0.45, normal_restitution=0.1)
             cell = found.isel(pga=i, period=j)
             assert int(cell.outcome) == one.outcome.code
             assert float(cell.impacts) == len(one.impacts)
@@ -156,8 +156,8 @@ def test_the_name_of_histories_knows_the_friction():
         for foot in ("left", "right")
         for name, value in (("alpha", 0.35), ("p", 3.0), ("r", 0.8), ("q", 0.75), ("share", 1.0))
     }
-    ways = [{}, {"friction": 0.5}, {"friction": 0.6}, {"friction": 0.5, "bounce": 0.3},
-            {"friction": 0.5, "bounce": 0.3, "bounce_law": "stronge"}]  # fmt: skip
+    ways = [{}, {"friction": 0.5}, {"friction": 0.6}, {"friction": 0.5, "normal_restitution": 0.3},
+            {"friction": 0.5, "normal_restitution": 0.3, "normal_restitution_law": "stronge"}]  # fmt: skip
     several = [Product(MotionList([PULSE]), sides, np.array([1.6]), settings=study_settings(None, way)) for way in ways]
     assert len({each.key() for each in several}) == len(ways)
     peaks = [abs(results_of(each)["peak_rotation"][0]) for each in several[:4]]
@@ -169,9 +169,9 @@ def test_the_name_of_histories_knows_the_friction():
     [
         ({"friction": -0.3}, "friction must be in"),
         ({"friction": 2e6}, "friction must be in"),
-        ({"friction": 0.3, "bounce": 1.0}, "bounce must be"),
-        ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
-        ({"bounce": 0.3}, "bounce does not apply to a body without friction,"),
+        ({"friction": 0.3, "normal_restitution": 1.0}, "normal_restitution must be"),
+        ({"friction": 0.3, "normal_restitution_law": "hertz"}, "normal_restitution_law must be one of"),
+        ({"normal_restitution": 0.3}, "normal_restitution does not apply to a body without friction,"),
         ({"friction": 0.3, "linear": True}, "linear does not apply to a plane body with friction"),
         ({"friction": 0.3, "order": 6}, "order does not apply to a plane body with friction"),
         ({"friction": 0.3, "engine": "reference"}, "studies with friction run on the compiled engine"),

@@ -78,8 +78,8 @@ CASES = {
     "points, record": ("points", {"record": "", "scale": 1.7}, "models", {}),
     "cabinet, record": ("cabinet", {"record": "", "scale": 1.3}, "sides", {"response": {"assumed_friction": 0.2}}),
     "statue, synthetic": ("statue", {"synthetic": "pulse-like", "seed": 5, "member": 2, "pga": 3.3}, "value", {}),
-    "statue, let go": ("statue", None, "sides", {"response": {"free": -0.7}}),
-    "cabinet, let go": ("cabinet", None, "both", {"response": {"free": 0.3, "assumed_friction": 0.25}}),
+    "statue, let go": ("statue", None, "sides", {"response": {"initial_rotation": -0.7}}),
+    "cabinet, let go": ("cabinet", None, "both", {"response": {"initial_rotation": 0.3, "assumed_friction": 0.25}}),
     "hollow, reference": (
         "hollow",
         {"pulse": "sine:amplitude=2.5,period=0.9"},

@@ -129,7 +129,7 @@ NUMBERS = {
     "points of a billion": ("/api/response", {**GOOD, "points": 10**9}),
     "points below nothing": ("/api/response", {**GOOD, "points": -1}),
     "models without end": ("/api/response", {**GOOD, "restitution": {"models": ["ked"] * 2000}}),
-    "rotation of 1e308": ("/api/response", {**GOOD, "motion": None, "response": {"free": 1e308}}),
+    "rotation of 1e308": ("/api/response", {**GOOD, "motion": None, "response": {"initial_rotation": 1e308}}),
     "study of ten million": ("/api/studies", job(motions={"synthetic": "pulse-like", "count": 10_000_000})),
     "chunk of a billion": ("/api/studies", job(campaign={"name": "a", "kind": "histories", "chunk": 10**9})),
     "key of nobody": ("/api/body", {"body": {**BLOCK, "__class__": "x"}}),

@@ -91,7 +91,7 @@ class ResponseAnswer:
         more: dict[str, Any] = {}
         if not isinstance(problem.body, Body):
             more["body"] = problem.body.answer()
-            if isinstance(start, SpatialStart) and problem.free is not None:
+            if isinstance(start, SpatialStart) and problem.initial_rotation is not None:
                 more |= {"initial_tilt": start.tilt, "initial_azimuth": start.azimuth}
         if problem.dropped:
             still = [0.0] * len(problem.axes)
@@ -144,10 +144,10 @@ class ResponseAnswer:
         motions = answer["motions"] if "motions" in answer else {"": answer["motion"]}
         moved = {axis: motion for axis, motion in self._components.items() if motion is not None}
         parts = [_motion_words(axis, motion, motions[axis], self.display) for axis, motion in moved.items()]
-        if not parts and self.problem.free is not None:
+        if not parts and self.problem.initial_rotation is not None:
             angle, name = self.problem.rotation, "initial_rotation"
             balance = self.display.text("slenderness_angle", self.problem.balance_angle)
-            return f"released at {self.display.text(name, angle)}, {self.problem.free:g} of {balance}"
+            return f"released at {self.display.text(name, angle)}, {self.problem.initial_rotation:g} of {balance}"
         words = ", ".join(parts) or "ground at rest"
         if self.problem.start_height:
             words += f", released {self.display.text('start_height', self.problem.start_height)} above the ground"
@@ -179,7 +179,8 @@ class ResponseAnswer:
         return right if coefficient["left"] == coefficient["right"] else f"{left} left, {right} right"
 
     def _contact(self, answer: Answer) -> list[str]:
-        names = ("friction", "bounce", "bounce_law") if answer.values.get("bounce") else ("friction",)
+        bounces = answer.values.get("normal_restitution")
+        names = ("friction", *(("normal_restitution", "normal_restitution_law") if bounces else ()))
         return [f"{name} {text}" for name, text in self.display.lines(answer.values, names)]
 
     def _compare(self, page: Page) -> None:

@@ -72,9 +72,9 @@ EXPORTS = {
 @options.takes(options.SIZES)
 @options.takes(
     options.keys(MotionKeys, "scale"),
-    options.keys(ResponseTable, "friction", "bounce", "start_height", "start_velocity"),
+    options.keys(ResponseTable, "friction", "normal_restitution", "start_height", "start_velocity"),
 )
-@options.takes(options.keys(ResponseTable, "free"), before="restitution")
+@options.takes(options.keys(ResponseTable, "initial_rotation"), before="restitution")
 def simulate(
     context: typer.Context,
     body: options.BodyFile = None,
@@ -117,8 +117,12 @@ def simulate(
             deliver(_each(arguments, words, display, quiet=as_json), as_json=as_json)
             return
         problem = _problem(arguments, in_space)
-    if problem.free is not None:
-        _check_share(problem.balance_angle, problem.free, "response.free" if file else "--free")
+    if problem.initial_rotation is not None:
+        _check_share(
+            problem.balance_angle,
+            problem.initial_rotation,
+            "response.initial_rotation" if file else "--initial-rotation",
+        )
     if in_space and problem.mechanics.name != "hull":
         raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
     with bar("history", quiet=as_json):
@@ -132,21 +136,21 @@ _TILTS = ("peak_rotation", "peak_tilt")
 def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     body, motions = arguments.body_and_motions()
     response = arguments.table("response", arguments.values(ResponseTable))
-    free = "free" in response
+    free = "initial_rotation" in response
     dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
-        raise InvalidValueError("give a motion or --free, not both; got {motion!r}", motion=motions[0][:100])
+        raise InvalidValueError(
+            "give a motion or --initial-rotation, not both; got {motion!r}", motion=motions[0][:100]
+        )
     stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
     if stated and not motions and (free or dropped):
-        name = "--free" if free else "a drop"
+        name = "--initial-rotation" if free else "a drop"
         raise InvalidValueError(
             "{option} has no motion, so it takes no {options}", option=name, options=", ".join(stated)
         )
     if not free and not dropped and not motions and not arguments.solid:
-        raise InvalidValueError(
-            "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
-        )
+        raise InvalidValueError("No ground motion. Add --motion or --initial-rotation.")
     with arguments.hinted():
         tables: dict[str, Any] = {
             "body": arguments.body_table(body),
@@ -171,8 +175,8 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
     from rocking.cli.study import in_lists
 
     body, _ = arguments.body_and_motions()
-    if arguments.options["free"] is not None:
-        raise InvalidValueError("give a motion or --free, not both; got {motion!r}", motion=words[0][:100])
+    if arguments.options["initial_rotation"] is not None:
+        raise InvalidValueError("give a motion or --initial-rotation, not both; got {motion!r}", motion=words[0][:100])
     files = CommandFiles(Path())
     with arguments.hinted():
         tables = {

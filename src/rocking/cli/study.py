@@ -183,7 +183,8 @@ def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str
     stated = settings.stated
     if "friction" not in stated:
         return []
-    bounce = f"; bounce {stated['bounce']:g} ({stated['bounce_law']})" if stated.get("bounce") else ""
+    e, law = stated.get("normal_restitution"), stated.get("normal_restitution_law")
+    bounce = f"; normal restitution {e:g} ({law})" if e else ""
     friction = "varied" if varied else f"{settings.friction:g}"
     moves = "slide, hop" if settings.friction < NEVER_SLIDES else "hop"
     return [("contact", f"friction {friction}{bounce}: it may {moves} and fly")]
@@ -197,7 +198,7 @@ def subject_lines(problem: StudyProblem, display: Display, *, varied: bool = Fal
     return [("body", line), *assumed_rows(body), *contact_lines(settings, varied=varied)]
 
 
-_GROUND = {"friction", "bounce", "bounce_law"}
+_GROUND = {"friction", "normal_restitution", "normal_restitution_law"}
 
 
 def subject_values(problem: StudyProblem) -> dict[str, Any]:

@@ -26,8 +26,8 @@ Called = TypeVar("Called", bound=Callable[..., Any])
 class IntegrationOptions(TypedDict, total=False):
     """Options of one history and of many: the ground, and how to integrate."""
 
-    bounce: float
-    bounce_law: str
+    normal_restitution: float
+    normal_restitution_law: str
     gravity: float
     engine: str
     linear: bool
@@ -119,12 +119,12 @@ def simulate(
         Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
         given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
         then does.
-    bounce : float
+    normal_restitution : float
         Coefficient of normal restitution of a plane body, in [0, 1), with friction [-].
-    bounce_law : {"newton", "poisson", "stronge"}
-        What `bounce` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared, the work of
-        the normal impulses (Stronge). They differ where sliding stops or turns during an impact. Where Newton's or
-        Poisson's would create energy, or has no solution, Stronge's stands in.
+    normal_restitution_law : {"newton", "poisson", "stronge"}
+        What `normal_restitution` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared,
+        the work of the normal impulses (Stronge). They differ where sliding stops or turns during an impact.
+        Where Newton's or Poisson's law would create energy, or has no solution, Stronge's law applies.
     gravity : float
         Acceleration of gravity [m/s2].
     engine : {"auto", "fast", "reference"}

@@ -63,8 +63,9 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     progress : callable, optional
         Called with the number of histories done since the last call.
     **options
-        bounce, bounce_law, gravity, engine, linear, rest_speed, most_events, longest_step, order and tolerance, as for
-        `simulate`; in space without friction the last five are those of `SpaceBatchSettings`.
+        normal_restitution, normal_restitution_law, gravity, engine, linear, rest_speed, most_events, longest_step,
+        order and tolerance, as for `simulate`; in space without friction the last five are those of
+        `SpaceBatchSettings`.
 
     Returns
     -------

@@ -27,7 +27,8 @@ Sample = tuple[list[Any], ImpactLaw, Settings]
 """Prepared motions, law and settings of histories that identify the last digits of an engine."""
 
 UNCHANGED: dict[str, tuple[Any, ...]] = {
-    "friction": (None,), "bounce": (0.0,), "bounce_law": ("newton",), "linear": (False,), "rest_speed": (None,),
+    "friction": (None,), "normal_restitution": (0.0,), "normal_restitution_law": ("newton",),
+    "linear": (False,), "rest_speed": (None,),
     "longest_step": (None,), "order": (None,), "tolerance": (None,), "engine": ("auto", "reference"), "stream": (0,),
     "start": (None,), "scale": (1.0,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,),
     "threads": (None,), "twin": (False,), "progress": (None,),

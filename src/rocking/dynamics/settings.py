@@ -24,6 +24,7 @@ NEVER_SLIDES = 1e6
 SHORTEST_STEP = 1e-6  # smallest `longest_step` of settings [-]
 
 
+_IDENTITY = {"normal_restitution": "bounce", "normal_restitution_law": "bounce_law"}
 _FIRST_IN_FILES = ("gravity", "linear", "rest_speed", "most_events")
 
 
@@ -89,6 +90,11 @@ class Settings:
     def names(cls) -> tuple[str, ...]:
         """Return the names of the settings."""
         return tuple(entry.name for entry in fields(cls))
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """Values by the names that identify histories on disk: renaming a setting leaves campaigns what they are."""
+        return {_IDENTITY.get(name, name): value for name, value in self.stated.items()}
 
     @property
     def stated(self) -> dict[str, Any]:

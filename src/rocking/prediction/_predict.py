@@ -45,8 +45,8 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     count: int = COUNT,
     shares: bool = True,
     seed: int = 0,
-    bounce: float = 0.0,
-    bounce_law: str = "newton",
+    normal_restitution: float = 0.0,
+    normal_restitution_law: str = "newton",
     gravity: float = conventions.g,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -93,7 +93,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         If True, compute the contribution of each input to the variance. This adds ``count / 2`` bodies per input.
     seed : int
         Random seed; results do not depend on the number of threads.
-    bounce, bounce_law
+    normal_restitution, normal_restitution_law
         Bounce of corners of plane bodies, as for `simulate`.
     gravity : float
         Acceleration of gravity [m/s2].
@@ -129,7 +129,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     half_count = checks.whole("count", count, 4, 1 << 24) // 2
     min_sliding = checks.positive("sliding_beyond", sliding_beyond, "m")
     motions = motion_sequence(motions, pga)
-    mechanics = _mechanics(body, motions, inputs, gravity, bounce, bounce_law)
+    mechanics = _mechanics(body, motions, inputs, gravity, normal_restitution, normal_restitution_law)
     design = SaltelliDesign(half_count, mechanics.widths, checks.whole("seed", seed))
     points = design.points if shares else design.points[: 2 * half_count]
     results = _counted(mechanics, points, min_sliding, threads, progress)
@@ -143,7 +143,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         for name in conventions.COMPARED_RESTITUTIONS:
             try:
                 other_mechanics = _mechanics(
-                    body, motions, {**inputs, "restitution": name}, gravity, bounce, bounce_law
+                    body, motions, {**inputs, "restitution": name}, gravity, normal_restitution, normal_restitution_law
                 )
             except RockingError:
                 continue  # the model does not apply to this body
@@ -174,22 +174,27 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
 
 
 def _mechanics(
-    body: Any, motions: Any, inputs: Mapping[str, Any], gravity: float, bounce: float, bounce_law: str
+    body: Any,
+    motions: Any,
+    inputs: Mapping[str, Any],
+    gravity: float,
+    normal_restitution: float,
+    normal_restitution_law: str,
 ) -> SampledBodies:
     """Return the sampled bodies of the engine for a body."""
     checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
     if not mechanics_for(body, None, study=True).in_plane:
         from rocking.prediction.space import SampledInSpace
 
-        if bounce:
+        if normal_restitution:
             raise InvalidValueError(
-                "{parameter} applies to plane bodies only, got {value}; 3D corners do not bounce", parameter="bounce",
-                value=bounce,
+                "{parameter} applies to plane bodies only, got {value}; 3D corners do not bounce",
+                parameter="normal_restitution", value=normal_restitution,
             )  # fmt: skip
         return SampledInSpace(body, motions, inputs, gravity)
     from rocking.prediction.plane import SampledInPlane, contact_settings
 
-    return SampledInPlane(body, motions, inputs, contact_settings(gravity, bounce, bounce_law))
+    return SampledInPlane(body, motions, inputs, contact_settings(gravity, normal_restitution, normal_restitution_law))
 
 
 def _counted(

@@ -201,6 +201,9 @@ def _whole(along: Any, upright: Any) -> Any:
     return along if upright is None else with_vertical(along, upright)
 
 
-def contact_settings(gravity: float, bounce: float, bounce_law: str) -> ContactSettings:
+def contact_settings(gravity: float, normal_restitution: float, normal_restitution_law: str) -> ContactSettings:
     """Return the settings of contact; each body has its own friction."""
-    return ContactSettings(gravity=gravity, friction=0.5, bounce=bounce, bounce_law=bounce_law)
+    return ContactSettings(
+        gravity=gravity, friction=0.5, normal_restitution=normal_restitution,
+        normal_restitution_law=normal_restitution_law,
+    )  # fmt: skip

@@ -47,7 +47,8 @@ class PredictionProblem:
         from rocking.assessment import assess
         from rocking.spec.restitution_tables import RestitutionTable
 
-        options = {name: value for name, value in self.options.items() if name not in {"bounce", "bounce_law"}}
+        ground = {"normal_restitution", "normal_restitution_law"}
+        options = {name: value for name, value in self.options.items() if name not in ground}
         if odd := sorted(set(self.options) - set(options)):
             raise InvalidValueError(
                 "{parameter} does not go with an assessment, whose histories do not bounce",

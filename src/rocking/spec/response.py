@@ -35,7 +35,7 @@ class ResponseProblem:
     settings: Settings = field(default_factory=PlaneSettings)  # how it moves, and how to integrate
     engine: str = "auto"
     assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
-    free: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
+    initial_rotation: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
     start_height: float = 0.0  # of the lowest point above the ground, with friction [m]
     start_velocity: tuple[float, ...] = ()  # of the lowest point: x and up in a plane, x, y and up in space [m/s]
     scale: float = 1.0  # factor on the motion [-]
@@ -43,14 +43,12 @@ class ResponseProblem:
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
         plausibility.warn(plausibility.of_friction(checks.positive("friction", self.assumed_friction)))
-        if self.free is not None:
-            checks.number("free", self.free)
-        if self.motion is not None and self.free is not None:
-            raise InvalidValueError("give either a motion or a first rotation (free), got both")
-        if self.motion is None and self.free is None and not self.dropped:
-            raise InvalidValueError(
-                "give either a motion or a first rotation (free), or a drop (start_height, start_velocity), got none"
-            )
+        if self.initial_rotation is not None:
+            checks.number("initial_rotation", self.initial_rotation)
+        if self.motion is not None and self.initial_rotation is not None:
+            raise InvalidValueError("Use a motion or initial_rotation, not both.")
+        if self.motion is None and self.initial_rotation is None and not self.dropped:
+            raise InvalidValueError("No ground motion. Add a motion, initial_rotation, start_height or start_velocity.")
         if self.start_velocity and len(self.start_velocity) != len(self.axes):
             raise InvalidValueError(
                 parameter="start_velocity", allowed=f"{len(self.axes)} numbers, {', '.join(self.axes)} [m/s]",
@@ -64,8 +62,8 @@ class ResponseProblem:
 
     @property
     def balance_angle(self) -> float:
-        """Rotation at which the body balances on the side of `free`, its slenderness angle [rad]."""
-        right = self.free is None or self.free > 0.0
+        """Rotation at which the body balances on the side of `initial_rotation`, its slenderness angle [rad]."""
+        right = self.initial_rotation is None or self.initial_rotation > 0.0
         if isinstance(self.body, Body):
             return self.body.side("right" if right else "left", self.settings.gravity).slenderness_angle
         space = SpatialBody.of(self.body)
@@ -76,7 +74,7 @@ class ResponseProblem:
     @property
     def rotation(self) -> float:
         """Rotation at the start, positive to the right [rad]."""
-        return 0.0 if self.free is None else float(self.free * self.balance_angle)
+        return 0.0 if self.initial_rotation is None else float(self.initial_rotation * self.balance_angle)
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -90,7 +88,7 @@ class ResponseProblem:
 
     @property
     def start(self) -> SpatialStart | Start:
-        """Initial position and velocity; in space the tilt is towards x, or -x where `free` is below zero."""
+        """Initial position and velocity; in space the tilt is towards x, or -x for an `initial_rotation` below zero."""
         velocity = self.start_velocity or (0.0,) * len(self.axes)
         if isinstance(self.body, Body):
             x, up = velocity
@@ -106,7 +104,7 @@ class ResponseProblem:
             options["engine"] = self.engine
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
-            if self.free is not None or self.dropped:
+            if self.initial_rotation is not None or self.dropped:
                 options["start"] = self.start
             if self.motion is None:
                 return free_rocking(self.body, restitution=law, **options)
@@ -119,7 +117,7 @@ def problem_of(
     """Return the problem of tables with its body and motion made; scale, if given, in place of the tables' own."""
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = mechanics_for(body, start.friction)
-    ground = start.model_dump(include={"friction", "bounce", "bounce_law"}, exclude_none=True)
+    ground = start.model_dump(include={"friction", "normal_restitution", "normal_restitution_law"}, exclude_none=True)
     with located("response"):
         mechanics.refuse_others(ground, {*mechanics.settings.names()})
         if start.dropped and not mechanics.slides:
@@ -145,7 +143,7 @@ def problem_of(
         settings,
         engine=tables.settings.engine,
         assumed_friction=start.assumed_friction,
-        free=start.free,
+        initial_rotation=start.initial_rotation,
         start_height=start.start_height or 0.0,
         start_velocity=tuple(start.start_velocity or ()),
         scale=scale if scale is not None else 1.0 if table is None else table.scale,

@@ -5,7 +5,8 @@ from typing import Any, Literal
 from rocking.spec.fields import JobTable, Positive, key
 
 BOUNCE_LAW = (
-    "with bounce: what it is the ratio of: normal velocities (newton), impulses, or, squared, energies (stronge)"
+    "definition of normal_restitution: ratio of normal velocities (newton), of impulses (poisson), or root of the "
+    "ratio of energies (stronge)"
 )
 
 
@@ -30,5 +31,5 @@ class StudySettingsTable(SettingsTable):
     """How to integrate: what is left out has its usual value. Friction is of studies; one history has its own table."""
 
     friction: float | None = key("coefficient of friction, with which bodies slide, hop and fly [-]", None, ge=0.0)
-    bounce: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
-    bounce_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
+    normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)

@@ -111,7 +111,7 @@ class Histories(ABC):
             "content": self.content(),
             "motions": {"class": full_name(type(self.motions)), **self.motions.description()},
             "law": described_law(self.law),
-            "settings": self.settings.stated,
+            "settings": self.settings.identity,
             "engine": self.engine,
         }
 
@@ -413,7 +413,7 @@ class JoinedHistories(Histories):
     def content(self) -> dict[str, Any]:
         """Return how many parts there are, and the hash of what makes them."""
         parts = [
-            {"count": part.count, "content": part.content(), "law": described_law(part.law)} | part.settings.stated
+            {"count": part.count, "content": part.content(), "law": described_law(part.law)} | part.settings.identity
             for part in self.parts
         ]
         motions = [each.description() for each in dict.fromkeys(part.motions for part in self.parts)]

@@ -79,7 +79,9 @@ DOCUMENTS = st.fixed_dictionaries(
     optional={
         "motion": PULSE | RECORD | SYNTHETIC | st.none(),
         "restitution": RESTITUTION,
-        "response": st.fixed_dictionaries({}, optional={"free": st.floats(-1.0, 1.0), "assumed_friction": POSITIVE}),
+        "response": st.fixed_dictionaries(
+            {}, optional={"initial_rotation": st.floats(-1.0, 1.0), "assumed_friction": POSITIVE}
+        ),
         "settings": st.fixed_dictionaries({}, optional={"gravity": POSITIVE, "linear": st.booleans()}),
     },
 )
@@ -192,7 +194,7 @@ def test_a_record_may_be_given_by_hash_or_name():
     [
         {},
         {"body": {"units": "mm", "width": 333.3, "height": 1234.5, "density": 777.7}},
-        {"motion": None, "response": {"free": -0.7}},
+        {"motion": None, "response": {"initial_rotation": -0.7}},
         {"motion": {"pulse": "ricker:amplitude=2.9,period=1.1", "scale": -1.1}, "restitution": {"value": 0.91}},
         {"settings": {"gravity": 9.79, "linear": True, "engine": "reference"}},
     ],

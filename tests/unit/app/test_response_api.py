@@ -123,7 +123,7 @@ def test_a_part_that_is_none_is_refused(client, window):
 
 def test_energy_adds_up_at_every_point(client):
     """Kinetic, potential and lost energy less work are what there was at the start, at the impacts too."""
-    series = asked(client, motion=None, response={"free": 0.6}, points=200)["answers"][0]["series"]
+    series = asked(client, motion=None, response={"initial_rotation": 0.6}, points=200)["answers"][0]["series"]
     kinetic, potential, lost, work = (
         np.array(series[name]) for name in ("kinetic_energy", "potential_energy", "energy_lost", "work_of_ground")
     )
@@ -134,7 +134,7 @@ def test_energy_adds_up_at_every_point(client):
 
 def test_state_before_an_impact_is_that_of_free_flight(client):
     """Before the first impact of a body let go, the kinetic energy is the potential that it had: nothing is lost."""
-    answer = asked(client, motion=None, response={"free": 0.6})["answers"][0]
+    answer = asked(client, motion=None, response={"initial_rotation": 0.6})["answers"][0]
     series, first = answer["series"], answer["impacts"][0]["time"]
     k = series["time"].index(first)
     assert series["energy_lost"][k] == 0.0
@@ -176,7 +176,7 @@ def test_a_restitution_that_creates_energy_has_an_error_of_its_own(client):
 
 REFUSED = {
     "nothing moves": ({"motion": None}, "what moves the body?"),
-    "both": ({"response": {"free": 0.5}}, "not both"),
+    "both": ({"response": {"initial_rotation": 0.5}}, "not both"),
     "nan": ({"motion": {**PULSE, "scale": 1e400}}, "larger than float64 holds"),
     "zero scale": ({"motion": {**PULSE, "scale": 0.0}}, "nothing would move"),
     "unknown key": ({"moton": PULSE}, "did you mean motion?"),

@@ -99,7 +99,7 @@ def test_the_end_does_not_wait_for_a_long_computation(tmp_path):
         assert process.stdout is not None
         told = json.loads(process.stdout.readline())
         key = Path(told["key_file"]).read_text(encoding="utf-8")
-        asked = {"body": {"units": "m", "width": 1, "height": 3}, "response": {"free": 0.5}}
+        asked = {"body": {"units": "m", "width": 1, "height": 3}, "response": {"initial_rotation": 0.5}}
         answers = []
 
         def ask():

@@ -43,9 +43,9 @@ def offered(line, shell="bash"):
         ("rocking models ked", {"ked", "ked-3d", "ked-3d-point"}, "housner"),
         ("rocking simulate b.toml ric", {"ricker:"}, "sine:"),
         ("rocking map --set settings.o", {"settings.order="}, "settings.gravity="),
-        ("rocking simulate --set res", {"response.free=", "restitution.value="}, "settings.order="),
+        ("rocking simulate --set res", {"response.initial_rotation=", "restitution.value="}, "settings.order="),
         ("rocking map --set ", {"map.refine=", "motion.scale="}, "restitution.value="),
-        ("rocking simulate --set response.f", {"response.free=", "response.friction="}, "map.x="),
+        ("rocking simulate --set response.f", {"response.initial_rotation=", "response.friction="}, "map.x="),
     ],
 )
 def test_names_are_completed(line, some, other):

@@ -61,7 +61,7 @@ def test_its_gravity_holds_unless_another_is_given(run, tmp_path):
         (TAKEN.replace("width = 50", "width = -50"), [], "width"),
         (TAKEN.replace("height = 200\n", ""), [], "height"),
         (TAKEN + "[campaign]\n", [], "campaign"),
-        ("[response]\nfree = 0.5\n", [], "body"),
+        ("[response]\ninitial_rotation = 0.5\n", [], "body"),
     ],
 )
 def test_what_cannot_be_meant_is_refused(run, tmp_path, text, words, said):

@@ -27,8 +27,8 @@ def folder(tmp_path, monkeypatch):
         Path(name).write_text("\n".join(f"{value:.6f}" for value in 3.2 * np.sin(rate * k)))
     Path("prism.toml").write_text(PRISM)
     Path("stripes.toml").write_text(STRIPES)
-    Path("odd.toml").write_text("body = 3\n[response]\nfree = 0.5\n[[settings]]\ngravity = 9.81\n")
-    Path("free.toml").write_text('[response]\nfree = 30\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n')
+    Path("odd.toml").write_text("body = 3\n[response]\ninitial_rotation = 0.5\n[[settings]]\ngravity = 9.81\n")
+    Path("free.toml").write_text('[response]\ninitial_rotation = 30\n[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n')
     return tmp_path
 
 
@@ -43,7 +43,7 @@ SAME = {
         f"simulate {SIZE} {PULSE} --set restitution.value=0.9", f"simulate {SIZE} {PULSE} --restitution 0.9",
     ),
     "sizes": ("restitution --set body.width=0.5 --set body.height=2", f"restitution {SIZE}"),
-    "let go": (f"simulate {SIZE} --set response.free=0.5", f"simulate {SIZE} --free 0.5"),
+    "let go": (f"simulate {SIZE} --set response.initial_rotation=0.5", f"simulate {SIZE} --initial-rotation 0.5"),
     "seed of a family": (
         f"fragility {SIZE} {FAMILY} --levels 1,4 --set motion.seed=3",
         f"fragility {SIZE} {FAMILY} --levels 1,4 --seed 3",

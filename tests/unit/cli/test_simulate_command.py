@@ -122,7 +122,7 @@ def test_own_model_from_a_file(answered, tmp_path):
 def test_free_rocking(answered):
     """Let go at a share of alpha it is Python's, to either side; there is no motion."""
     for share in (0.6, -0.6):
-        answer = answered(*SIZE, "--free", share, "--restitution", "0.9")
+        answer = answered(*SIZE, "--initial-rotation", share, "--restitution", "0.9")
         assert same(answer, rk.free_rocking(BLOCK, share * BLOCK.slenderness_angle, 0.9))
         assert answer["initial_rotation"] == pytest.approx(share * ALPHA, rel=1e-15, abs=0.0)
         assert answer["motion"] is None
@@ -186,7 +186,7 @@ def test_warnings_are_in_plain_words(run, answered):
 
 def test_a_model_that_does_not_fit_says_why(capsys):
     """Where a model has no coefficient for a body, the row and the JSON say so, and the verdict leaves it out."""
-    problem = ResponseProblem(BLOCK, None, free=0.4)
+    problem = ResponseProblem(BLOCK, None, initial_rotation=0.4)
     answer = ResponseAnswer(problem, problem.answer(), Display(), {"odd": "the impact would create energy"})
     answer.show(Page())
     out = capsys.readouterr().out
@@ -209,7 +209,7 @@ def test_files(run, printed, tmp_path):
     assert "angular" in paths["svg"].read_text(encoding="utf-8")
     assert paths["mat"].stat().st_size > 1000
     gif = tmp_path / "a.GIF"
-    assert run(*SIZE, "--free", "0.1", "--restitution", "0.1", "--output", gif)[0] == 0
+    assert run(*SIZE, "--initial-rotation", "0.1", "--restitution", "0.1", "--output", gif)[0] == 0
     with Image.open(gif) as film:
         assert film.format == "GIF"
 
@@ -252,7 +252,7 @@ def test_a_history_without_a_result_is_refused(run, monkeypatch):
     """Where an engine stops, the sentence says why, and no number is printed."""
     few = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, most_events=3)
     monkeypatch.setattr(ResponseProblem, "answer", lambda self: few)
-    code, out, err = run(*SIZE, "--free", "0.5")
+    code, out, err = run(*SIZE, "--initial-rotation", "0.5")
     assert (code, out) == (2, "")
     assert err == "rocking: there is no response: stopped: more impacts and changes of contact than allowed\n"
 
@@ -260,7 +260,7 @@ def test_a_history_without_a_result_is_refused(run, monkeypatch):
 def test_a_rival_that_creates_energy_is_told_and_left_out(run, monkeypatch):
     """A coefficient of 1 on either side of an asymmetric body creates energy on one of them: told, not computed."""
     monkeypatch.setattr(_coefficient_table, "default_models", lambda: [rk.restitution.model("fixed:r=1")])
-    code, out, err = run(STATUE, "--free", "0.3")
+    code, out, err = run(STATUE, "--initial-rotation", "0.3")
     assert (code, err) == (0, "")
     assert "not for this body" in out
     assert "would create energy" in out

@@ -18,11 +18,11 @@ SINE = "sine:amplitude=3.2,period=0.8"
 
 def test_json_is_python_to_the_last_digit(answered):
     """Body, friction, bounce, restitution, scale and gravity reach the engine: the same numbers as in Python."""
-    contact = ("--friction", "0.3", "--bounce", "0.1", "--restitution", "housner")
+    contact = ("--friction", "0.3", "--normal-restitution", "0.1", "--restitution", "housner")
     words = (*contact, "--scale", "-2", "--set", "settings.gravity=9.81")
     answer = answered(*SQUAT, SINE, *words)
     block, pulse = rk.Block(width=1.0, height=1.0), rk.pulses.sine(3.2, 0.8)
-    response = rk.simulate(block, pulse, "housner", friction=0.3, bounce=0.1, scale=-2.0, gravity=9.81)
+    response = rk.simulate(block, pulse, "housner", friction=0.3, normal_restitution=0.1, scale=-2.0, gravity=9.81)
     assert answer["outcome"] == response.outcome.name.lower()
     assert answer["summary"] == response.summary
     regimes = [(a, b, regime.lower(), *rest) for a, b, regime, *rest in response.regimes.tolist()]
@@ -35,7 +35,7 @@ def test_json_is_python_to_the_last_digit(answered):
 
 def test_complementarity_is_housner(answered):
     """Impacts by complementarity alone: let go at half of alpha, on rough ground they keep 1 - 3/2 sin^2 alpha."""
-    words = ("--free", "0.5", "--friction", "10", "--restitution", "complementarity")
+    words = ("--initial-rotation", "0.5", "--friction", "10", "--restitution", "complementarity")
     answer = answered(*SLENDER, *words)
     assert answer["coefficient"] is None
     assert answer["initial_rotation"] == pytest.approx(0.5 * math.atan(0.25), rel=1e-12, abs=0.0)

@@ -39,17 +39,17 @@ def test_the_landing_is_that_of_a_free_fall(answered, body):
 
 def test_options_file_and_python_give_one_answer(answered, body, tmp_path):
     """A tilted drop by options, by a file and by Python, of a solid and of a plane body; under a motion too."""
-    words = ("--free", "0.3", "--friction", "0.6", "--start-height", HEIGHT)
+    words = ("--initial-rotation", "0.3", "--friction", "0.6", "--start-height", HEIGHT)
     velocity = (0.2, -0.1, 0.4)
     found = answered(body, *words, "--start-velocity=0.2,-0.1,0.4")
     solid = rk.read_body(body)
     start = SpatialStart(found["initial_tilt"], height=HEIGHT, velocity=velocity)
     assert found["summary"] == rk.free_rocking(solid, restitution="ked", friction=0.6, start=start).summary
     file = tmp_path / "drop.toml"
-    table = f"free = 0.3\nfriction = 0.6\nstart_height = {HEIGHT}\nstart_velocity = {list(velocity)}\n"
+    table = f"initial_rotation = 0.3\nfriction = 0.6\nstart_height = {HEIGHT}\nstart_velocity = {list(velocity)}\n"
     file.write_text(f'[body]\nfile = "prism.toml"\n[response]\n{table}', encoding="utf-8")
     assert answered(file)["impacts"] == found["impacts"]
-    plane = answered(*BLOCK, "--free", "0.3", "--start-height", HEIGHT)
+    plane = answered(*BLOCK, "--initial-rotation", "0.3", "--start-height", HEIGHT)
     block = rk.Block(width=0.5, height=1.4)
     begin = Start(0.3 * block.slenderness_angle, height=HEIGHT)
     assert plane["summary"] == rk.free_rocking(block, restitution="ked", friction=0.6, start=begin).summary
@@ -65,4 +65,4 @@ def test_the_page_states_the_start(printed, body):
     out = printed(body, "--friction", "0.6", "--start-height", HEIGHT, "--start-velocity=0,0,-0.3")
     assert "released 0.08 m above the ground" in out
     assert "initial velocity (0, 0, -0.3) m/s" in out
-    assert "above the ground" not in printed(body, "--friction", "0.6", "--free", "0.3")
+    assert "above the ground" not in printed(body, "--friction", "0.6", "--initial-rotation", "0.3")

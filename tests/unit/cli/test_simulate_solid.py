@@ -143,7 +143,7 @@ def test_free_rocking_of_a_solid(answered, tmp_path, friction, free):
     path = tmp_path / "body.toml"
     path.write_text(LEANING, encoding="utf-8")
     answer = answered(
-        path, "--free", free, "--restitution", 0.5, *([] if friction is None else ["--friction", friction])
+        path, "--initial-rotation", free, "--restitution", 0.5, *([] if friction is None else ["--friction", friction])
     )
     lever = {0.5: 0.25 - CENTRE_X, -0.5: 0.25 + CENTRE_X}
     assert answer["initial_tilt"] == pytest.approx(0.5 * math.atan2(lever[free], CENTRE_Z), rel=1e-12)
@@ -160,11 +160,13 @@ def test_free_rocking_of_a_solid(answered, tmp_path, friction, free):
 
 def test_free_rocking_of_a_solid_in_words_and_files(printed, answered, body, tmp_path):
     """The page has tilt, direction and balance; a file says the same; a motion has no initial tilt."""
-    page = printed(body, "--free", "-0.5", "--friction", "0.8")
+    page = printed(body, "--initial-rotation", "-0.5", "--friction", "0.8")
     assert "released at -7.018 deg, -0.5 of 14.04 deg" in page
     document = tmp_path / "question.toml"
-    document.write_text('[body]\nfile = "prism.toml"\n[response]\nfree = -0.5\nfriction = 0.8\n', encoding="utf-8")
-    assert answered(document)["impacts"] == answered(body, "--free", "-0.5", "--friction", "0.8")["impacts"]
+    document.write_text(
+        '[body]\nfile = "prism.toml"\n[response]\ninitial_rotation = -0.5\nfriction = 0.8\n', encoding="utf-8"
+    )
+    assert answered(document)["impacts"] == answered(body, "--initial-rotation", "-0.5", "--friction", "0.8")["impacts"]
     assert "initial_tilt" not in answered(body, SINE)
 
 

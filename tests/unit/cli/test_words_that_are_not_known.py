@@ -67,16 +67,16 @@ def test_nothing_is_guessed_from_far():
 
 @pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 def test_share_of_the_slenderness_angle(run):
-    """`--free 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
-    code, _, err = run("simulate", *SIZE, "--free", "10")
+    """`--initial-rotation 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
+    code, _, err = run("simulate", *SIZE, "--initial-rotation", "10")
     alpha = Block(width=0.5, height=2.0).slenderness_angle
     share = 10.0 * 3.141592653589793 / 180.0 / alpha
     assert code == 2
-    assert f"An angle of 10 degrees is --free {share:.3g}" in err
-    assert run("simulate", *SIZE, "--free", f"{share:.3g}")[0] == 0
+    assert f"An angle of 10 degrees is --initial-rotation {share:.3g}" in err
+    assert run("simulate", *SIZE, "--initial-rotation", f"{share:.3g}")[0] == 0
     # 5 alpha is no right angle, and doubted all the same: it can only fall
-    code, _, err = run("simulate", *SIZE, "--free", "5")
-    assert (code, f"An angle of 5 degrees is --free {0.5 * share:.3g}" in err) == (0, True)
+    code, _, err = run("simulate", *SIZE, "--initial-rotation", "5")
+    assert (code, f"An angle of 5 degrees is --initial-rotation {0.5 * share:.3g}" in err) == (0, True)
 
 
 def test_models_in_space_are_listed_and_shown(printed):

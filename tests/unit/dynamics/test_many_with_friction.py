@@ -59,8 +59,8 @@ def test_peaks_have_the_sign_that_they_have_without_friction(scale):
 def test_files_say_what_was_computed():
     """Bounce and duration are attributes; the starts are coordinates, with what they have beside rotation."""
     start = rk.dynamics.Start(rotation=0.05, height=0.02)
-    found = rk.simulate_many(STATUE, MOTIONS[0], friction=0.5, bounce=0.3, start=start, duration=1.0)
-    assert (found.attrs["bounce"], found.attrs["duration"]) == (0.3, 1.0)
+    found = rk.simulate_many(STATUE, MOTIONS[0], friction=0.5, normal_restitution=0.3, start=start, duration=1.0)
+    assert (found.attrs["normal_restitution"], found.attrs["duration"]) == (0.3, 1.0)
     assert {name: found[f"initial_{name}"].item() for name in ("rotation", "angular_velocity", "height")} == {
         "rotation": 0.05, "angular_velocity": 0.0, "height": 0.02
     }  # fmt: skip
@@ -118,14 +118,14 @@ def test_a_history_without_a_result_is_neither():
         ({"friction": 0.3, "twin": True}, "twin does not apply to a plane body with friction"),
         ({"friction": 0.3, "threads": 0}, "threads must be a whole number"),
         ({"friction": 0.3, "engine": "quick"}, "engine must be one of"),
-        ({"friction": 0.3, "bounce_law": "hertz"}, "bounce_law must be one of"),
+        ({"friction": 0.3, "normal_restitution_law": "hertz"}, "normal_restitution_law must be one of"),
         ({"friction": 0.3, "linear": True}, "linear"),
         ({"friction": -0.3}, "friction must be"),
         ({"friction": [0.3, float("nan")]}, "friction must be"),
         ({"friction": []}, "friction must be"),
         ({"friction": 0.3, "start": 0.1}, r"start must be a Start\(...\)"),
         ({"friction": 0.3, "progress": 3}, "progress must be a function"),
-        ({"bounce": 0.5}, "bounce does not apply to a body without friction,"),
+        ({"normal_restitution": 0.5}, "normal_restitution does not apply to a body without friction,"),
         ({"duration": 3.0}, "duration does not apply to a body without friction,"),
     ],
 )

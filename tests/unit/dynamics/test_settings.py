@@ -178,13 +178,20 @@ def test_options_of_other_mechanics_are_refused(name: str) -> None:
     mechanics = mechanics_for(body, friction)
     known = {*mechanics.settings.names(), *mechanics.options}
     values: dict[str, Any] = {
-        "linear": True, "order": 8, "longest_step": 0.1, "bounce": 0.1, "bounce_law": "stronge", "stream": 3,
+        "linear": True, "order": 8, "longest_step": 0.1, "normal_restitution": 0.1, "normal_restitution_law": "stronge",
+        "stream": 3,
         "engine": "fast", "no_option": 1.0,
     }  # fmt: skip
     for option in values.keys() - known:
         with pytest.raises(InvalidValueError, match=rf"{option} does not apply to .*, got .*; options: .*gravity"):
             rk.simulate(body, PULSE, "housner", friction=friction, **{option: values[option]})  # type: ignore[misc]
-    unchanged: dict[str, Any] = {"linear": False, "order": None, "bounce": 0.0, "stream": 0, "engine": "auto"}
+    unchanged: dict[str, Any] = {
+        "linear": False,
+        "order": None,
+        "normal_restitution": 0.0,
+        "stream": 0,
+        "engine": "auto",
+    }
     assert rk.simulate(body, PULSE, "housner", friction=friction, **unchanged).outcome is not rk.Outcome.FAILED
 
 

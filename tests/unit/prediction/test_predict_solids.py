@@ -180,7 +180,7 @@ def test_a_body_given_at_a_slant_has_the_impacts_of_its_base():
         ({"polarity": 1.0}, "polarity applies to plane bodies"),
         ({"restitution": "plastic-winkler"}, "restitution of a 3D body must be one of measured"),
         ({"restitution": 1.4}, "restitution"),
-        ({"bounce": 0.3}, "bounce applies to plane bodies"),
+        ({"normal_restitution": 0.3}, "normal_restitution applies to plane bodies"),
         ({"base": 4.0}, "base"),
     ],
 )

@@ -65,7 +65,7 @@ class Evaluation:
     @cached_property
     def problem(self) -> ResponseProblem:
         """Body, motion, restitutions and settings."""
-        if self.inputs.motion is None and self.inputs.response.free is None:
+        if self.inputs.motion is None and self.inputs.response.initial_rotation is None:
             raise Refused("what moves the body? Choose a motion, or free rocking", needs=["motion"])
         problem = problem_from(self.inputs, self.records)
         if problem.motion is None or isinstance(problem.motion, dict):

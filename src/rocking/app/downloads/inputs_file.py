@@ -48,7 +48,7 @@ def record_name(inputs: Inputs) -> str | None:
 
 def commands(inputs: Inputs) -> list[str]:
     """Return what to type for the same result: with the file of inputs, and in words where that is possible."""
-    if inputs.motion is None and inputs.response.free is None:
+    if inputs.motion is None and inputs.response.initial_rotation is None:
         return []
     words = simulate_words(plain_inputs(inputs), record_name(inputs))
     return [f"rocking simulate {FILE_NAME}", *([] if words is None else [words])]
@@ -101,7 +101,7 @@ def _head(inputs: Inputs) -> list[str]:
     for word, command in zip(("the command line", "or in words"), commands(inputs), strict=False):
         lines.append(f"# {word + ':':<17} {plain_line(command, 4000)}")
     if not commands(inputs):
-        lines.append("# Nothing moves the body yet: add a table [motion], or free = 0.5 under [response].")
+        lines.append("# Nothing moves the body yet: add a table [motion], or initial_rotation = 0.5 under [response].")
     if inputs.motion is not None and inputs.motion.record is not None:
         lines.append(f"# record: {inputs.motion.record} {toml_value(inputs.motion.file_name or '')}")
     return lines
@@ -160,7 +160,8 @@ def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:
     motion, response = inputs.get("motion"), inputs.get("response") or {}
     friction = _sets("response", {"assumed_friction": response.get("assumed_friction")})
     if motion is None:
-        return None if response.get("free") is None else [*_options({"free": response["free"]}), *friction]
+        rotation = {"initial_rotation": response.get("initial_rotation")}
+        return [*_options(rotation), *friction] if _options(rotation) else None
     scale = _options({"scale": motion.get("scale")})
     if motion.get("pulse") is not None:
         return ["--motion", str(motion["pulse"]), *scale, *friction]

@@ -83,7 +83,7 @@ def run_compiled(
 ) -> dict[str, np.ndarray]:
     """Return results by name of histories of `NUMBERS`; motion: their numbers."""
     # touching: 1 for the left foot plus 2 for the right
-    bounce_law = BOUNCE_LAWS.index(settings.bounce_law)
+    bounce_law = BOUNCE_LAWS.index(settings.normal_restitution_law)
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, bounce_law, touching)
     numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
     choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
@@ -131,7 +131,7 @@ class RowsWithContact:
         table: dict[str, Any] = {
             "inertia": np.where(same & known, right["inertia"], np.nan), "height": right["height"],
             "left": left["half_width"], "right": right["half_width"],
-            "friction": friction, "bounce": self.settings.bounce,
+            "friction": friction, "bounce": self.settings.normal_restitution,
             "imposed_left": _imposed(values["r_left"]), "imposed_right": _imposed(values["r_right"]),
             "scale": values["scale"], "end": self._ends(motion, size),
         } | dict.fromkeys(NUMBERS[10:], 0.0)  # fmt: skip
@@ -215,7 +215,8 @@ def many_with_contact(cases: Combinations, settings: ContactSettings) -> "xr.Dat
         bodies, motions, {"scale": scales, "restitution": labels, "friction": cases.frictions, "start": starts},
         results, settings,
         {
-            "engine": ran, "bounce": settings.bounce, "bounce_law": settings.bounce_law,
+            "engine": ran, "normal_restitution": settings.normal_restitution,
+            "normal_restitution_law": settings.normal_restitution_law,
             "duration": np.nan if cases.duration is None else cases.duration,
         },
     )  # fmt: skip
@@ -271,7 +272,8 @@ class _Table:
             last = min(first + PIECE, count)
             body, motion, scale, choice, mu, start = np.unravel_index(np.arange(first, last), shape)
             values: dict[str, Any] = dict(zip(NUMBERS[:4], np.array(numbers)[body].T, strict=True))
-            values |= {"friction": self.friction[mu], "bounce": self.settings.bounce, "scale": self.scales[scale]}
+            values |= {"friction": self.friction[mu], "scale": self.scales[scale]}
+            values["bounce"] = self.settings.normal_restitution
             values |= dict(zip(("imposed_left", "imposed_right"), self.imposed[body, choice].T, strict=True))
             values |= dict(zip(NUMBERS[10:], state[body, start].T, strict=True))
             values = {name: np.broadcast_to(column, body.shape) for name, column in values.items()}

@@ -49,7 +49,7 @@ class PlaneContact(PlaneMechanics):
     def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
         return [
             (pulses, ConstantRestitution(), ContactSettings(gravity=9.8125, friction=0.3125)),
-            (upright, ConstantRestitution(), ContactSettings(gravity=9.8125, friction=0.75, bounce=0.25)),
+            (upright, ConstantRestitution(), ContactSettings(gravity=9.8125, friction=0.75, normal_restitution=0.25)),
         ]
 
     def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:

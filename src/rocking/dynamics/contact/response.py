@@ -256,8 +256,8 @@ class ContactResponse(ResponseBase):
         return {
             "body": self.body.answer(self.settings.gravity), "motion": motion_answer(self.motion, self.scale),
             "initial_rotation": float(self.rotation[0]), "friction": law.friction,
-            "friction_assumed": isinstance(law.friction, conventions.Assumed), "bounce": law.bounce,
-            "bounce_law": law.bounce_law, "restitution": self.restitution, "coefficient": imposed,
+            "friction_assumed": isinstance(law.friction, conventions.Assumed), "normal_restitution": law.bounce,
+            "normal_restitution_law": law.bounce_law, "restitution": self.restitution, "coefficient": imposed,
             "peak_rotation": self.peak_rotation,
             "sliding_distance": self.sliding_distance, "residual_displacement": float(self.displacement[-1]),
             "friction_usage": self.friction_usage, "energy_lost": float(energy.lost_in_impacts[-1]),
@@ -306,8 +306,8 @@ class ContactResponse(ResponseBase):
             "half_width_left": base.left,
             "half_width_right": base.right,
             "friction": law.friction,
-            "bounce": law.bounce,
-            "bounce_law": law.bounce_law,
+            "normal_restitution": law.bounce,
+            "normal_restitution_law": law.bounce_law,
             "restitution": "complementarity" if r is None else f"left {r[0]:.9g}, right {r[1]:.9g}",
             "motion": "none: ground at rest" if motion is None else motion.name,
             "motion_provenance": motion_provenance(motion),
@@ -338,9 +338,8 @@ def response_with_contact(
     # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest, and where the body then still rocks
     # 300 sqrt(R / g)
     base = PlaneBase.of_body(body)
-    law = GroundContact(
-        settings.friction, settings.bounce, imposed_on(body, restitution, settings), settings.bounce_law
-    )
+    imposed = imposed_on(body, restitution, settings)
+    law = GroundContact(settings.friction, settings.normal_restitution, imposed, settings.normal_restitution_law)
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, base, settings.gravity, duration)
     plausibility.warn(plausibility.of_scaled([motion], scale))

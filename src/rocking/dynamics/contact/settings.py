@@ -7,7 +7,7 @@ from typing import Any
 from rocking import checks
 from rocking.dynamics.settings import BOUNCE_LAWS, NEVER_SLIDES, Settings, checked, checked_friction, ranged
 
-_GROUND = {"friction", "bounce", "bounce_law"}
+_GROUND = {"friction", "normal_restitution", "normal_restitution_law"}
 _BOUNCE = "a ratio of velocities, impulses or, squared, of energies; at 1 bounces never end"
 
 
@@ -26,17 +26,17 @@ class ContactSettings(Settings):
         Bound on the last two terms of a Taylor step, over the angle alpha and the size R [-].
     friction : float
         Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for feet that never slide [-].
-    bounce : float
+    normal_restitution : float
         Coefficient of normal restitution, in [0, 1) [-].
-    bounce_law : {"newton", "poisson", "stronge"}
-        What `bounce` is the ratio of, as for `simulate`.
+    normal_restitution_law : {"newton", "poisson", "stronge"}
+        What `normal_restitution` is the ratio of, as for `simulate`.
     """
 
     rest_speed: float = ranged(1e-7, 1e-12, 0.1, hint="bounces accumulate: zero would never end")
     tolerance: float = ranged(1e-15, 1e-17, 1e-3)
     friction: float = checked(NEVER_SLIDES, checked_friction)
-    bounce: float = ranged(0.0, 0.0, 1.0, open_high=True, hint=_BOUNCE)
-    bounce_law: str = checked("newton", partial(checks.one_of, known=BOUNCE_LAWS))
+    normal_restitution: float = ranged(0.0, 0.0, 1.0, open_high=True, hint=_BOUNCE)
+    normal_restitution_law: str = checked("newton", partial(checks.one_of, known=BOUNCE_LAWS))
 
     @property
     def integration(self) -> dict[str, Any]:

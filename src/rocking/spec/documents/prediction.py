@@ -35,7 +35,8 @@ class PredictedBody(JobTable):
 
     @model_validator(mode="after")
     def _one_engine(self) -> "PredictedBody":
-        odd = sorted(self.settings.model_fields_set - {"gravity", "friction", "bounce", "bounce_law"})
+        known = {"gravity", "friction", "normal_restitution", "normal_restitution_law"}
+        odd = sorted(self.settings.model_fields_set - known)
         if odd:
             raise InvalidValueError(
                 "{parameter} does not go with a prediction, which has one engine", parameter=f"settings.{odd[0]}"

@@ -15,12 +15,12 @@ from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
 class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
-    free: float | None = key(
+    initial_rotation: float | None = key(
         "no motion: initial rotation over the slenderness angle, of a solid towards x; negative to the left, or -x [-]"
     )
     friction: float | None = key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
-    bounce: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
-    bounce_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
+    normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
     start_height: float | None = key(
         "with friction: initial height of the lowest point, from which the body drops [m]", None, ge=0.0
     )
@@ -56,10 +56,10 @@ class ResponseTables(JobTable):
 
 def check_start(moved: bool, start: ResponseTable) -> None:
     """Refuse a document in which nothing moves the body, and one with both a motion and an initial rotation."""
-    if moved and start.free is not None:
-        raise InvalidValueError("give a motion or response.free, not both")
-    if not moved and start.free is None and not start.dropped:
-        raise InvalidValueError("what moves the body? Give a motion, or response.free (such as 0.5) for free rocking")
+    if moved and start.initial_rotation is not None:
+        raise InvalidValueError("Use a motion or response.initial_rotation, not both.")
+    if not moved and start.initial_rotation is None and not start.dropped:
+        raise InvalidValueError("No ground motion. Add a motion, or response.initial_rotation such as 0.5.")
 
 
 class ResponseDocument(ResponseTables):

@@ -28,7 +28,7 @@ PULSE = {"pulse": "sine:amplitude=3,period=0.8", "scale": 2.0}
 MODELS = {"models": ["ked", "housner"], "values": [0.8]}
 MOVED = {"body": BLOCK, "motion": PULSE, "restitution": MODELS}
 SHORT = {"body": BLOCK, "motion": {"pulse": "sine:amplitude=12,period=0.4"}, "restitution": {"value": 0.5}}
-FREE = {"body": HOLLOW, "restitution": {"value": 0.9}, "response": {"free": 0.4}}
+FREE = {"body": HOLLOW, "restitution": {"value": 0.9}, "response": {"initial_rotation": 0.4}}
 SYNTHETIC = {"synthetic": "pulse-like", "seed": 3, "scale": 3.0}
 STUDIES = {
     "overturning-map": {},

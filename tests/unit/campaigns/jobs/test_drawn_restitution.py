@@ -97,7 +97,7 @@ def test_labels():
 
 def test_one_response():
     """The document of one response takes it too, drawn per impact."""
-    text = f"[response]\nfree = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
+    text = f"[response]\ninitial_rotation = 0.5\n{BODY}[restitution.distribution]\nposterior = true\nseed = 3"
     problem = response_problem(checked(ResponseDocument, tables_of(text)), InputFiles(Path()))
     (law,) = problem.restitutions.values()
     wanted = restitution_distribution(BLOCK).per_impact(3)

@@ -86,7 +86,7 @@ def test_map_with_friction(finished, tmp_path, text):
     words = text("overturning-map", 13) + "[settings]\nfriction = 0.3\nbounce = 0.1\n"
     found = opened(finished("overturning-map", 13, words), tmp_path)
     axes = ("frequency_ratio", np.linspace(1, 7, 9)), ("amplitude_ratio", np.linspace(1, 9, 7))
-    wanted = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *axes, friction=0.3, bounce=0.1)
+    wanted = overturning_map(BLOCK, rk.pulses.sine(3.0, 0.6), *axes, friction=0.3, normal_restitution=0.1)
     same(found, wanted, [*wanted.data_vars])
     attributes = {name: value for name, value in wanted.attrs.items() if not name.startswith("work_")}
     assert {name: found.attrs[name] for name in attributes} == attributes

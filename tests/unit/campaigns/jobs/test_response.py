@@ -53,12 +53,12 @@ def test_a_record_lies_beside_the_file(tmp_path):
 
 def test_free_rocking_starts_at_a_share_of_the_slenderness_angle():
     """A share below zero leans to the left, over the angle of the left side."""
-    question = ResponseProblem(rk.Block(width=1.0, height=4.0), None, free=-0.5)
+    question = ResponseProblem(rk.Block(width=1.0, height=4.0), None, initial_rotation=-0.5)
     assert math.isclose(question.rotation, -0.5 * math.atan(0.25))
     assert question.answer(0.9).rotation[0] == question.rotation
 
 
-@pytest.mark.parametrize("given", [{"motion": None}, {"motion": rk.pulses.sine(1.0, 1.0), "free": 0.5}])
+@pytest.mark.parametrize("given", [{"motion": None}, {"motion": rk.pulses.sine(1.0, 1.0), "initial_rotation": 0.5}])
 def test_a_question_has_one_start(given):
     """Neither or both of a motion and a first rotation are no question."""
     with pytest.raises(InvalidValueError, match="either a motion or a first rotation"):
@@ -93,9 +93,9 @@ def test_a_body_file_is_not_a_response(tmp_path):
 REFUSED = {
     "unknown table": (TEXT + "[friction]\n", "friction"),
     "unknown key": (TEXT.replace("scale", "scle"), "did you mean scale?"),
-    "no body": ("[response]\nfree = 0.5\n", "body is missing"),
+    "no body": ("[response]\ninitial_rotation = 0.5\n", "body is missing"),
     "nothing moves": (f"[response]\n{BODY}", "what moves the body?"),
-    "both": (TEXT.replace("assumed_friction = 0.4", "free = 0.5"), "not both"),
+    "both": (TEXT.replace("assumed_friction = 0.4", "initial_rotation = 0.5"), "not both"),
     "two sources": (TEXT + 'record = "a.at2"\n', "exactly one of pulse, record, synthetic"),
     "pulse with units": (TEXT + 'units = "g"\n', "pulse takes no units"),
     "zero": (TEXT.replace("1.2", "0.0"), "nothing would move"),

@@ -143,7 +143,9 @@ def test_settings_are_frozen_values():
 
 def test_too_many_events_are_a_status():
     """A history that is cut by its limit has no result."""
-    response = rk.free_rocking(BODY, restitution=None, friction=0.5, bounce=0.9, start=Start(height=0.1), most_events=5)
+    response = rk.free_rocking(
+        BODY, restitution=None, friction=0.5, normal_restitution=0.9, start=Start(height=0.1), most_events=5
+    )
     assert response.status is Status.TOO_MANY_EVENTS
     assert response.outcome is Outcome.FAILED
     assert "no result" in response.summary
@@ -212,18 +214,20 @@ def test_map_refuses_what_has_no_answer():
 @given(
     width=st.floats(0.3, 3.0),
     friction=st.sampled_from([0.0, 0.05, 0.2, 0.4, 0.7, 1.0]),
-    bounce=st.sampled_from([0.0, 0.2, 0.5]),
+    normal_restitution=st.sampled_from([0.0, 0.2, 0.5]),
     amplitude=st.floats(1.0, 12.0),
     period=st.floats(0.3, 1.5),
     restitution=st.sampled_from([None, "ked", "plastic-winkler"]),
 )
 def test_any_history_keeps_its_books_and_stays_above_the_ground(
-    width, friction, bounce, amplitude, period, restitution
+    width, friction, normal_restitution, amplitude, period, restitution
 ):
     """Random bodies and pulses: a result, energy closed to 1e-10, feet never under the ground, forces that press."""
     body = rk.Block(width=width, height=2.0)
     pulse = rk.pulses.sine(amplitude=amplitude, period=period)
-    response = rk.simulate(body, pulse, restitution, friction=friction, bounce=bounce, duration=period + 1.0)
+    response = rk.simulate(
+        body, pulse, restitution, friction=friction, normal_restitution=normal_restitution, duration=period + 1.0
+    )
     assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
     for lever in (-0.5 * width, 0.5 * width):

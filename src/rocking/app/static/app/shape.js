@@ -91,6 +91,6 @@ const CHECKS = {
   body: isTable,
   restitution: isRestitution,
   /** @param {any} table */
-  response: (table) => isTable(table) && eachOf(table, ["free", "assumed_friction"], isNumber),
+  response: (table) => isTable(table) && eachOf(table, ["initial_rotation", "assumed_friction"], isNumber),
   settings: isTable,
 };

@@ -22,7 +22,7 @@ import { t, userText } from "/app/words.js";
 export const mount = (section, app) => {
   const question = () => {
     const { body, motion, restitution, response, settings } = app.inputs.get();
-    const free = response?.free ?? null;
+    const free = response?.initial_rotation ?? null;
     if (!motion && free === null) return null;
     const own = readRestitution(restitution);
     const known = app.info.models.filter(complete).map(({ label }) => label);
@@ -204,7 +204,7 @@ const Margins = ({ app, margins }) => {
   const { questions } = margins;
   useEffect(() => void questions.look(), []);
   const inputs = app.inputs.get();
-  if (!inputs.motion || inputs.response?.free != null) return null;
+  if (!inputs.motion || inputs.response?.initial_rotation != null) return null;
   const asked = margins.question.value;
   const wrong = asked?.state === "refused" ? asked.message : "";
   return html`<div class="toolbar">

@@ -46,7 +46,7 @@ export const mount = (section, app) => {
   /** Makes a motion the motion; a motion and a free start exclude each other. @param {Server.MotionInput} next */
   const set = (next) => {
     const { scale } = inputs.get().motion || {};
-    inputs.set("response.free", undefined);
+    inputs.set("response.initial_rotation", undefined);
     inputs.set("motion", scale === undefined || next.scale !== undefined ? next : { ...next, scale });
   };
   /** Shows the editor of a way; its last choice becomes the motion if that was another.

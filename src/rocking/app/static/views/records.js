@@ -244,7 +244,7 @@ const use = async ({ app }, question) => {
     const name = `${question.name.split(",")[0].replace(/\.\w+$/, "")}-corrected.csv`;
     const sent = async () => app.call("records", { method: "POST", body: await fetchFile(`questions/${question.id}/record.csv`), query: { name } });
     const kept = await app.project.within(sent());
-    app.inputs.set("response.free", undefined);
+    app.inputs.set("response.initial_rotation", undefined);
     app.inputs.set("motion", { record: kept.record, file_name: kept.file_name });
     app.say(t("{name} is the motion of this project.", { name: kept.file_name }));
   } catch (error) {

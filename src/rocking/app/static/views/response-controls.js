@@ -13,13 +13,13 @@ const CALIBRATED = "The calibrated model is fitted to published measurements. Im
 /** Lets the body go from a lean, on ground that stands still. @param {App} app */
 export const lean = (app) => {
   rememberMotion(app, app.inputs.get().motion);
-  app.inputs.set("response.free", LEAN);
+  app.inputs.set("response.initial_rotation", LEAN);
   app.inputs.set("motion", undefined);
 };
 
 /** @param {App} app */
 const shake = (app) => {
-  app.inputs.set("response.free", undefined);
+  app.inputs.set("response.initial_rotation", undefined);
   app.inputs.set("motion", motionBefore(app));
 };
 
@@ -29,7 +29,7 @@ const clipped = (value) => Math.min(Math.max(Math.abs(value), 0.1), 10);
 /** The controls of the response. @param {{ app: App, inputs: Server.Inputs }} props */
 export const Controls = ({ app, inputs }) => {
   const { body, motion, restitution, response } = inputs;
-  const free = response?.free ?? null;
+  const free = response?.initial_rotation ?? null;
   return html`
     <div class="response-controls">
       <${Card} title="Parameters">
@@ -39,7 +39,7 @@ export const Controls = ({ app, inputs }) => {
         <${Switch} label="Start from an initial rotation" help="Free rocking without ground motion."
           value=${free !== null} on=${(yes) => (yes ? lean(app) : shake(app))} />
         <${Slider} label="Initial rotation / slenderness angle" min=${-0.99} max=${0.99} step=${0.01}
-          hidden=${free === null} value=${free ?? LEAN} on=${(value) => app.inputs.set("response.free", value || 0.01)} />
+          hidden=${free === null} value=${free ?? LEAN} on=${(value) => app.inputs.set("response.initial_rotation", value || 0.01)} />
         <${NumberField} label="Friction between body and ground" min=${0.01} max=${10} step=${0.05}
           help="A body with a larger friction demand would slide." value=${response?.assumed_friction ?? 0.5}
           on=${(value) => app.inputs.set("response.assumed_friction", value)} />

@@ -22,7 +22,7 @@ const FIGURES = ["rotation", "velocity", "ground", "energy", "force", "friction"
 export const mount = (section, app) => {
   const question = () => {
     const { body, motion, restitution, response, settings } = app.inputs.get();
-    const free = response?.free ?? null;
+    const free = response?.initial_rotation ?? null;
     if (!motion && free === null) return null;
     const points = dotsOf(section.querySelector("[data-testid=chart-rotation]") ?? section);
     return { body, motion: free === null ? motion : undefined, restitution, response, settings, points };
@@ -88,7 +88,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
     <div aria-live="polite" data-testid="response-refusal">
       ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
       ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${t(OLDER)}`} />`}
-      ${!motion && response?.free == null && html`<${NothingMoves} app=${app} />`}</div>
+      ${!motion && response?.initial_rotation == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
       <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[found.value.verdict.sentence, ...found.value.verdict.doubts].map((each) => inWords(each, answers))} />
       <${Cards} answers=${answers} lead=${lead} /></div>`}

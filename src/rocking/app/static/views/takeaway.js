@@ -38,7 +38,7 @@ export const mount = (section, app) => {
 /** @param {{ app: App, now: Signal<{ inputs: Server.Inputs, link: string }> }} props */
 const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
   const chooser = useRef(null);
-  const moves = Boolean(inputs.motion) || inputs.response?.free != null;
+  const moves = Boolean(inputs.motion) || inputs.response?.initial_rotation != null;
   /** @type {{ [needs: string]: boolean }} */
   const there = { motion: Boolean(inputs.motion), response: moves };
   /** @param {string} path @param {string} name @param {any} [needs] @param {string} [testid] */
