@@ -245,7 +245,7 @@ def test_a_list_is_put_right(open_page: Callable[..., Any], shot: Callable[..., 
     section.get_by_label("Number of motions").fill("10")
     section.get_by_text("List format").click()
     titles = "thing=name, across=width_cm, deep=depth_cm, tall=height_cm"
-    section.get_by_label("columns", exact=True).fill(titles)
+    section.get_by_label("map columns", exact=True).fill(titles)
     outcome = asked(page, "inventory")
     expect(outcome.get_by_test_id("verdict")).to_contain_text("1 not assessed")
     line = section.get_by_label("Line 3", exact=True)

@@ -237,7 +237,7 @@ def test_the_pose_that_a_body_stands_in_counts():
     pole = Solid(cylinder(0.05, 3.0))
     assert pole.settled().centre[2] == pytest.approx(1.5, rel=1e-9)
     # the negative control: without the pose that it stands in the body would lie down
-    lying = equilibria(found.hull_vertices, found.centre, found.mass, least_barrier=found.least_barrier)
+    lying = equilibria(found.hull_vertices, found.centre, found.mass, min_barrier=found.min_barrier)
     assert lying.settling((0.0, 0.0, -1.0)).height < 0.3
 
 
@@ -348,7 +348,7 @@ def test_an_ellipsoid_of_three_axes():
     """2, 2, 2, of a smooth one and of its corners where flats do not count; they do in the negative control."""
     assert counts(Solid(ellipsoid(1.0, 0.7, 0.5, cut_below=0.001)).equilibria()) == (2, 2, 2)
     corners = spread(3000) * np.array([1.0, 0.6, 0.35])
-    assert counts(equilibria(corners, np.zeros(3), 1.0, least_barrier=1e-3)) == (2, 2, 2)
+    assert counts(equilibria(corners, np.zeros(3), 1.0, min_barrier=1e-3)) == (2, 2, 2)
     flats = counts(equilibria(corners, np.zeros(3), 1.0))
     assert flats[0] > 2
     assert flats[0] - flats[1] + flats[2] == 2

@@ -36,9 +36,7 @@ def equilibria(
     body: options.BodyFile = None,
     density: options.Density = None,
     units: options.Units = None,
-    least_barrier: Annotated[
-        float | None, typer.Option(help="Poses that a smaller rise of the centre leaves, in m, do not count.")
-    ] = None,
+    min_barrier: Annotated[float | None, typer.Option(help="Ignore poses below this energy barrier [m].")] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
@@ -54,7 +52,7 @@ def equilibria(
         raise InvalidValueError(
             "equilibria are those of a body in space: give a mesh, a file with [[solid.part]], or a block or a section"
         )
-    found = subject.equilibria(least_barrier=least_barrier)
+    found = subject.equilibria(min_barrier=min_barrier)
     deliver(EquilibriaAnswer(subject, found, arguments.length or "m"), exports, as_json=as_json)
 
 

@@ -27,7 +27,7 @@ _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 
 @options.takes(
-    options.keys(InventoryTable, "columns"),
+    options.keys(InventoryTable, "map_columns"),
     options.keys(InventoryTable, "pga", "pgv", panel=_SHAKING),
     before="motion",
 )

@@ -63,8 +63,8 @@ def restitution(
             autocompletion=completion.every_model,
         ),
     ] = None,
-    identities: Annotated[
-        bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
+    check_identities: Annotated[
+        bool, typer.Option("--check-identities", help="Also try the identities of mechanics on every model.")
     ] = False,
     recommend: Annotated[
         bool, typer.Option("--recommend", help="Also say which model to use for this body, and how sure that is.")
@@ -86,12 +86,12 @@ def restitution(
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
-        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=identities)
+        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=check_identities)
         answer: Any = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
     else:
         from rocking.cli.solids import SolidAnswer
 
-        plane = {"--onto": onto != "both", "--identities": identities}
+        plane = {"--onto": onto != "both", "--check-identities": check_identities}
         plane["--output stages=FILE"] = "stages" in exports.names
         if stated := [name for name, there in plane.items() if there]:
             raise InvalidValueError(
@@ -122,7 +122,7 @@ def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> 
     In space: a plane body of known depth is one in space.
     """
     word, sets = arguments.options["body"], arguments.sets
-    beside = ("onto", "restitution", "identities", "least_barrier")
+    beside = ("onto", "restitution", "check_identities", "min_barrier")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         with located(word, "file"):
             made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)

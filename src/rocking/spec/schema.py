@@ -14,15 +14,16 @@ RENAMED: dict[int, dict[str, str]] = {
         "fragility.factor": "scale",
         "fragility.measure": "im",
         "fragility.states": "limit_states",
+        "inventory.columns": "map_columns",
+        "minimum.highest": "max_pga",
+        "minimum.levels": "bisections",
+        "minimum.lowest": "min_pga",
+        "minimum.points": "samples",
         "response.bounce": "normal_restitution",
         "response.bounce_law": "normal_restitution_law",
         "response.free": "initial_rotation",
         "settings.bounce": "normal_restitution",
         "settings.bounce_law": "normal_restitution_law",
-        "minimum.highest": "max_pga",
-        "minimum.levels": "bisections",
-        "minimum.lowest": "min_pga",
-        "minimum.points": "samples",
     },
 }
 """New names of keys by the number of the schema that had the old ones: ``table.key``, or the path of a nested key."""
@@ -53,10 +54,13 @@ def migrated_document(document: dict[str, Any]) -> dict[str, Any]:
     inputs, forms = document.get("inputs"), document.get("forms")
     if isinstance(inputs, dict):
         document = {**document, "inputs": migrated(inputs)}
-    if isinstance(forms, dict) and isinstance(decide := forms.get("decide"), dict):
-        tables = migrated({table: decide[part] for part, table in _FORMS.items() if part in decide})
-        parts = {part: tables[table] for part, table in _FORMS.items() if table in tables}
-        document = {**document, "forms": {**forms, "decide": {**decide, **parts}}}
+    if isinstance(forms, dict):
+        forms = {**forms, **migrated({"inventory": forms["inventory"]} if "inventory" in forms else {})}
+        if isinstance(decide := forms.get("decide"), dict):
+            tables = migrated({table: decide[part] for part, table in _FORMS.items() if part in decide})
+            parts = {part: tables[table] for part, table in _FORMS.items() if table in tables}
+            forms = {**forms, "decide": {**decide, **parts}}
+        document = {**document, "forms": forms}
     return document
 
 

@@ -127,17 +127,17 @@ def test_columns_are_said_alike_at_every_door(answered, refuses, tmp_path):
     columns = "Ding=name, Maß 1=width_cm, Maß 2=depth_cm, Maß 3=height_cm"
     few = ("--synthetic", "point-source", "--count", "5")
     refuses((tmp_path / "objects.csv", "--pga", "0.3g", *few), "the first line must name the columns")
-    by_option = answered(tmp_path / "objects.csv", "--columns", columns, "--pga", "0.3g", *few)
-    table = f'objects = "objects.csv"\npga = "0.3g"\ncolumns = "{columns}"'
+    by_option = answered(tmp_path / "objects.csv", "--map-columns", columns, "--pga", "0.3g", *few)
+    table = f'objects = "objects.csv"\npga = "0.3g"\nmap_columns = "{columns}"'
     motions = '[[motions]]\nsynthetic = "point-source"\ncount = 5\nseed = 1'
     (tmp_path / "job.toml").write_text(f"[inventory]\n{table}\n{motions}\n", encoding="utf-8")
     assert answered(tmp_path / "job.toml")["objects"] == by_option["objects"]
-    shares = rk.inventory(tmp_path / "objects.csv", "point-source", pga="0.3g", count=5, columns=columns)
+    shares = rk.inventory(tmp_path / "objects.csv", "point-source", pga="0.3g", count=5, map_columns=columns)
     assert shares["overturned"].isel(restitution=0, object=0).values.tolist() == [
         each["overturned"] for each in by_option["objects"][0]["directions"]
     ]
-    with pytest.raises(InvalidValueError, match="leave them out beside objects"):
-        rk.inventory([], "point-source", pga="0.3g", columns=columns)
+    with pytest.raises(InvalidValueError, match="map_columns"):
+        rk.inventory([], "point-source", pga="0.3g", map_columns=columns)
 
 
 def test_a_museum_list_in_one_command(printed, tmp_path):

@@ -465,7 +465,7 @@ REFUSED = {
         "prism.toml --motion x=PULSE --motion x=PULSE": "one motion along x, please",
         "prism.toml --initial-rotation 10": "--initial-rotation is a share of the slenderness angle, here 14 degrees",
         "prism.toml PULSE --initial-rotation 0.5": "give a motion or --initial-rotation, not both",
-        "prism.toml --initial-rotation 0.5 --friction 0.4 --normal-restitution 0.2": "does not apply to a body in space",
+        "prism.toml --initial-rotation 0.5 --friction 0.4 --normal-restitution 0.2": "does not apply to a body",
         "prism.toml PULSE --width 1": "give a body file or dimensions, not both",
         "prism.toml PULSE --friction 0.4 --normal-restitution 0.2": "does not apply to a body in space with friction",
         "prism.toml PULSE --set settings.linear=true": "so it takes no linear",

@@ -48,7 +48,7 @@ class Equilibria:
         Circles of equilibria of a body of revolution, which are not counted among the others.
     notes : tuple of str
         What the numbers leave out, and what hangs on the last digits, in words.
-    least_barrier : float
+    min_barrier : float
         Poses that a smaller rise of the centre leaves are not counted [m].
     hull : Polytope
         Facets, edges and vertices of the convex hull about the centre of mass.
@@ -76,7 +76,7 @@ class Equilibria:
     summits: tuple[Equilibrium, ...]
     rings: tuple[Ring, ...]
     notes: tuple[str, ...]
-    least_barrier: float
+    min_barrier: float
     hull: Polytope = field(repr=False)
     surface: FloatArray = field(repr=False)  # points of the surface, from the centre, shape (n, 3) [m]
     basins: dict[int, int] = field(repr=False)  # the pose to which every stable facet leads
@@ -290,7 +290,7 @@ def equilibria(
     mass: float,
     *,
     faces: IntArray | None = None,
-    least_barrier: float = 0.0,
+    min_barrier: float = 0.0,
     standing: ArrayLike | None = None,
 ) -> Equilibria:
     """Return all equilibria of a body of which the surface, the centre of mass and the mass are known.
@@ -308,7 +308,7 @@ def equilibria(
     faces : ndarray of int, shape (m, 3), optional
         Triangles of the surface, each of three numbers of points, counter-clockwise seen from outside: a surface that
         is convex is its own hull, and the answer comes sooner.
-    least_barrier : float
+    min_barrier : float
         Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own, and
         summits that stand out by less no summits [m]. Facets of more than 100 corners, which are flats of round
         bodies, are left as they are.
@@ -336,7 +336,7 @@ def equilibria(
     (4, 6, 4)
     """
     kilograms = checks.positive("mass", mass, "kg")
-    least = checks.within("least_barrier", least_barrier, 0.0, checks.LARGEST, unit="m")
+    least = checks.within("min_barrier", min_barrier, 0.0, checks.LARGEST, unit="m")
     surface, middle = checks.real_array("points", points, "m"), checks.real_array("centre", centre, "m")
     if surface.ndim != 2 or surface.shape[1:] != (3,) or not np.isfinite(surface).all():
         raise InvalidValueError(

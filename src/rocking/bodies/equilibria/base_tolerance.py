@@ -98,7 +98,7 @@ def _row(found: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance
     turned = np.concatenate([corners, touching])
     turned[turned[:, 2] + pose.height <= max(most, found.flatness), 2] = -pose.height
     down = np.array([0.0, 0.0, -1.0])
-    flat = equilibria(turned, np.zeros(3), found.mass, least_barrier=found.least_barrier, standing=down).settling(down)
+    flat = equilibria(turned, np.zeros(3), found.mass, min_barrier=found.min_barrier, standing=down).settling(down)
     nearest = int(np.argmin(flat.edge_distances))
     chord = np.roll(flat.support, -1, axis=0)[nearest] - flat.support[nearest]
     distance = float(flat.edge_distances[nearest])

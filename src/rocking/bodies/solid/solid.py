@@ -345,12 +345,12 @@ class Solid:
         parts = [part.scaled(size=factor, density=density) for part in self.local_parts]
         return self._copy(parts, np.eye(3), factor, density)
 
-    def equilibria(self, *, least_barrier: float | None = None) -> Equilibria:
+    def equilibria(self, *, min_barrier: float | None = None) -> Equilibria:
         """Return in how many ways the body can stand or be balanced on level ground, exact on its convex hull.
 
         Parameters
         ----------
-        least_barrier : float, optional
+        min_barrier : float, optional
             Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own [m];
             by default 0, and 1e-4 of the size with round faces, which are taken as those of 360 corners.
 
@@ -368,7 +368,7 @@ class Solid:
         """
         moments = self.local_moments
         placed = replace(moments, centre=self.centre)
-        found = equilibria_of(self.parts, placed, self._size, least_barrier)
+        found = equilibria_of(self.parts, placed, self._size, min_barrier)
         stands = next((pose for pose in found.stable if pose.down[2] < _UPRIGHT - 1.0), None)
         base = self.base
         if stands and isinstance(base, SupportPolygon) and _area(base.vertices) < _WHOLE * _area(stands.support):

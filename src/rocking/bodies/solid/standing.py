@@ -28,15 +28,13 @@ _CHORD = 0.02
 _AHEAD = 1e-9
 
 
-def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, least_barrier: float | None) -> Equilibria:
+def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, min_barrier: float | None) -> Equilibria:
     """Return the equilibria of parts that are one rigid body."""
     corners = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
     rounded = any(isinstance(part.shape, Turned) for part in parts)
-    least = _ROUND * size * rounded if least_barrier is None else least_barrier
+    least = _ROUND * size * rounded if min_barrier is None else min_barrier
     faces = parts[0].shape.faces if len(parts) == 1 and isinstance(parts[0].shape, Polyhedron) else None
-    found = equilibria(
-        corners, moments.centre, moments.mass, faces=faces, least_barrier=least, standing=(0.0, 0.0, -1.0)
-    )
+    found = equilibria(corners, moments.centre, moments.mass, faces=faces, min_barrier=least, standing=(0.0, 0.0, -1.0))
     whole = [
         placed_points(p.shape.vertices, p.rotation, p.translation)
         for p in parts

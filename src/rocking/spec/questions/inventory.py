@@ -35,7 +35,7 @@ class InventoryTable(JobTable):
 
     objects: Text = key("list as .xlsx, .ods or CSV: name, width, depth, height and more, each with its unit", ...)
     encoding: Text | None = key("encoding of a CSV file, such as cp1252; told from the file if left out")
-    columns: Text | dict[str, str] | None = key(
+    map_columns: Text | dict[str, str] | None = key(
         'what columns are, by their titles: "Objekt=name, Maß B=width_cm, Rahmenbreite="; nothing leaves one out; '
         "a title with a comma in quotation marks: '\"Höhe, gesamt\"=height_cm'"
     )
@@ -102,7 +102,7 @@ class InventoryQuestion(StudyQuestion):
                 problem.inputs.file(table.objects),
                 table.encoding,
                 lambda name: problem.inputs.file((folder / name).as_posix()),
-                table.columns,
+                table.map_columns,
                 table.language,
             )
             texts = {"PGA": table.pga, "PGV": table.pgv}

@@ -51,7 +51,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     thresholds: Thresholds | None = None,
     gravity: float = g,
     friction: float | None = None,
-    columns: str | Mapping[str, str] | None = None,
+    map_columns: str | Mapping[str, str] | None = None,
     **options: Any,
 ) -> "xr.Dataset":
     """Return which objects of a list stay standing at a level of shaking, the worst first.
@@ -81,7 +81,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         Coefficient of friction where a row has none of its own: objects slide, rock and fall in three dimensions, each
         under every motion along its width and along its depth. Without one a box rocks in a plane, and a body of a file
         does not slide [-].
-    columns : str or mapping of str to str, optional
+    map_columns : str or mapping of str to str, optional
         What columns of a list are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm"``.
     **options
         ``threads`` of the fast engine, and ``progress``, told how many histories have been computed since it was last
@@ -109,9 +109,9 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> ranking["object"].values[[0, -1]].tolist(), ranking["light"].values[[0, -1]].tolist()
     (['tall clock', 'low stone chest'], ['red', 'green'])
     """
-    if columns is not None and not isinstance(objects, (str, Path)):
-        raise InvalidValueError("columns are those of a file: leave them out beside objects")
-    everything = read_inventory(objects, columns=columns) if isinstance(objects, (str, Path)) else objects
+    if map_columns is not None and not isinstance(objects, (str, Path)):
+        raise InvalidValueError("map_columns applies to files only. Remove map_columns.")
+    everything = read_inventory(objects, map_columns=map_columns) if isinstance(objects, (str, Path)) else objects
     hazard = _hazard(motions, pga, pgv, count, seed)
     how = {"restitution": restitution, "thresholds": thresholds, "gravity": gravity, "friction": friction}
     assessment = assess(everything, hazard, **how, **options)

@@ -489,7 +489,7 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
         if odd := next((ours for _, mark, ours in parts if not mark), ""):
             raise InvalidValueError(
                 '{parameter} must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {value}',
-                parameter="columns", value=odd.strip(),
+                parameter="map_columns", value=odd.strip(),
             )  # fmt: skip
         text = {own: ours for own, _, ours in parts}
     found = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
@@ -497,7 +497,7 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
         if not own or (ours and _column(own, (ours,), "en") is None):
             raise InvalidValueError(
                 "{parameter}: {own!r:.60} cannot be {value}; ours are {texts}, and with a unit, as in width_cm: "
-                "{measures}, or an order: height x width x depth cm", parameter="columns", own=own, value=ours,
+                "{measures}, or an order: height x width x depth cm", parameter="map_columns", own=own, value=ours,
                 texts=", ".join((*TEXTS, "count", "friction")), measures=", ".join(_MEASURES),
             )  # fmt: skip
     return found

@@ -84,7 +84,7 @@ def read_inventory(
     path: str | Path,
     encoding: str | None = None,
     find: Callable[[str], Path] | None = None,
-    columns: str | Mapping[str, str] | None = None,
+    map_columns: str | Mapping[str, str] | None = None,
     language: str | None = None,
 ) -> Inventory:
     """Return the inventory in a workbook or a CSV file.
@@ -98,7 +98,7 @@ def read_inventory(
         it is Unicode.
     find : callable, optional
         Where a body file or a photo is that the list names; beside the list if not given.
-    columns : str or mapping of str to str, optional
+    map_columns : str or mapping of str to str, optional
         What columns are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm, Rahmenbreite="``; one
         that is nothing is not read.
     language : str, optional
@@ -121,7 +121,7 @@ def read_inventory(
         raise InvalidValueError(
             "an inventory must be below {limit} MiB", limit=MOST_BYTES >> 20, hint="another kind of file?"
         ).at(path.name)
-    content, mapped = path.read_bytes(), mapping_of(columns)
+    content, mapped = path.read_bytes(), mapping_of(map_columns)
     find = find or (lambda name: path.parent / name)
     sheets = sheets_in(content, path.name)
     if sheets is None:
@@ -144,7 +144,7 @@ def parse_inventory(
     text: str,
     source: str = "objects",
     find: Callable[[str], Path] | None = None,
-    columns: str | Mapping[str, str] | None = None,
+    map_columns: str | Mapping[str, str] | None = None,
     language: str | None = None,
 ) -> Inventory:
     r"""Return the inventory in a text.
@@ -158,7 +158,7 @@ def parse_inventory(
         What to call it.
     find : callable, optional
         Where a body file or a photo is that a row names; without it none may be named.
-    columns : str or mapping of str to str, optional
+    map_columns : str or mapping of str to str, optional
         As for `read_inventory`.
     language : str, optional
         Language of the report, as of ISO 639-1; that of the header if not given.
@@ -180,7 +180,7 @@ def parse_inventory(
     >>> found.objects[0].width, found.objects[0].approximate, found.not_assessed[0].row, found.language
     (0.125, {'depth': 0.006}, 3, 'de')
     """
-    return _of_texts([(text, "")], source, mapping_of(columns), find, language)
+    return _of_texts([(text, "")], source, mapping_of(map_columns), find, language)
 
 
 def _of_texts(
@@ -211,7 +211,7 @@ def _no_header(source: str, tried: Sequence[tuple[FoundHeader | None, Sequence[R
         titles = ", ".join(f"{each.title!r:.40} as {each.stem}" for each in best.columns if each)
         return InvalidValueError(
             "no {missing} in the header, only {titles}", missing=" and no ".join(best.missing), titles=titles,
-            hint='say what another column is, as in columns "Maß B=width_cm"',
+            hint='say what another column is, as in map_columns "Maß B=width_cm"',
         ).at(source)  # fmt: skip
     first = next((text_of(cell) for _, rows in tried for _, row in rows[:1] for cell in row), "")
     return InvalidValueError(
@@ -236,7 +236,7 @@ class _Reader:
         names = {*itertools.chain.from_iterable(names_of(self.found.titles))}
         if odd := [own for own in self.mapped if plain(own) not in names]:
             raise InvalidValueError(
-                "{parameter}: no {value} among {titles}", parameter="columns", value=odd[0],
+                "{parameter}: no {value} among {titles}", parameter="map_columns", value=odd[0],
                 titles=", ".join(filter(None, titles))[:300],
             ).at(source)  # fmt: skip
         below = self.sheet.rows[self.found.end :]

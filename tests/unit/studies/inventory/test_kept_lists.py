@@ -162,10 +162,12 @@ def test_columns_keep_the_language_of_the_list():
     for own, code in (("Ding;Maß 1;Maß 2;Maß 3", "de"), ("Cosa;Misura A;Misura B;Misura C", "it")):
         titles = own.split(";")
         columns = dict(zip(titles, ("name", "width_cm", "depth_cm", "height_cm"), strict=True))
-        found, rows = rows_of(f"{own}\nUrne;12,5;20;90", columns=columns)
+        found, rows = rows_of(f"{own}\nUrne;12,5;20;90", map_columns=columns)
         assert (found.language, rows) == (code, [(2, "", "Urne", 12.5, 20, 90)])
     text = "Nr.;Objekt;Korpus (cm);;\n;;X;Y;Z\n1;Urne;12;20;90"
-    assert rows_of(text, columns="X=width_cm, Y=depth_cm, Korpus (cm) Z=height_cm")[1] == [(3, "1", "Urne", 12, 20, 90)]
+    assert rows_of(text, map_columns="X=width_cm, Y=depth_cm, Korpus (cm) Z=height_cm")[1] == [
+        (3, "1", "Urne", 12, 20, 90)
+    ]
 
 
 @pytest.mark.parametrize("own", ["Breite", "Maße (cm)"])
@@ -173,9 +175,9 @@ def test_a_title_above_several_columns_names_none_of_them(own):
     """What a user states of a title that two columns have is refused by the whole titles, and not passed over."""
     text = "Nr.;Objekt;Maße (cm);;;Transportkiste (cm);\n;;Breite;Tiefe;Höhe;Breite;Tiefe\n1;Uhr;60;50;220;70;60"
     with pytest.raises(InvalidValueError, match=r"columns: no '.*' among Nr\., Objekt, Maße \(cm\): Breite, "):
-        rows_of(text, columns={own: "depth_cm"})
+        rows_of(text, map_columns={own: "depth_cm"})
     columns = {"Maße (cm): Breite": "depth_cm", "Maße (cm): Tiefe": "width_cm"}
-    assert rows_of(text, columns=columns)[1] == [(3, "1", "Uhr", 50, 60, 220)]
+    assert rows_of(text, map_columns=columns)[1] == [(3, "1", "Uhr", 50, 60, 220)]
 
 
 def test_rows_that_are_no_objects_have_a_reason():

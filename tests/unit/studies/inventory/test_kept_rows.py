@@ -119,10 +119,10 @@ def test_a_pedestal_refuses_no_list(title):
 def test_titles_with_commas_are_quoted():
     """A title in quotation marks may have commas; without them they part it."""
     text = 'Objekt;"Maß, B";"Tiefe, innen cm";Tiefe cm;Höhe cm\na;40;20;30;120'
-    found = parse_inventory(text, columns='"Maß, B"=width_cm, "Tiefe, innen cm"=')
+    found = parse_inventory(text, map_columns='"Maß, B"=width_cm, "Tiefe, innen cm"=')
     assert (found.objects[0].width, found.objects[0].depth, found.ignored) == (0.4, 0.3, ("Tiefe, innen cm",))
     with pytest.raises(InvalidValueError, match="own title = ours"):
-        parse_inventory(text, columns="Maß, B=width_cm")
+        parse_inventory(text, map_columns="Maß, B=width_cm")
 
 
 def test_risk_is_the_consequence_in_every_language():

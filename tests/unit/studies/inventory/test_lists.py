@@ -141,8 +141,8 @@ def test_user_says_what_columns_are():
         parse_inventory(text)
     ours = "Ding=name, Maß 1=width_cm, Maß 2=depth_cm, Maß 3=height_cm"
     with pytest.raises(InvalidValueError, match="'Rahmenbreite' is not known but looks like a measure"):
-        parse_inventory(text, columns=ours)
-    found = parse_inventory(text, columns=f"{ours}, Rahmenbreite=")
+        parse_inventory(text, map_columns=ours)
+    found = parse_inventory(text, map_columns=f"{ours}, Rahmenbreite=")
     assert (found.objects[0].width, found.objects[0].height, found.ignored) == (0.2, 0.9, ("Rahmenbreite",))
     for wrong, words in (
         ("Dinge=name", "no 'Dinge' among Ding"),
@@ -150,8 +150,8 @@ def test_user_says_what_columns_are():
         ("x", "own title"),
     ):
         with pytest.raises(InvalidValueError, match=words):
-            parse_inventory(text, columns=f"{ours}, Rahmenbreite=, {wrong}")
-    sized = parse_inventory("Objekt;Maße\nx;90 x 20 x 30 cm", columns={"Maße": "height x width x depth"})
+            parse_inventory(text, map_columns=f"{ours}, Rahmenbreite=, {wrong}")
+    sized = parse_inventory("Objekt;Maße\nx;90 x 20 x 30 cm", map_columns={"Maße": "height x width x depth"})
     assert (sized.objects[0].height, sized.objects[0].depth) == (0.9, 0.3)
 
 

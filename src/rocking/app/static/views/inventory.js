@@ -80,7 +80,7 @@ const Inventory = ({ app, questions }) => {
     <//>`;
 };
 
-const READ = ["columns", "encoding"];
+const READ = ["map_columns", "encoding"];
 /** @param {{ [name: string]: string }} typed */
 const listed = (typed) => Object.fromEntries(READ.map((name) => [name, typed[name] ?? ""]));
 
