@@ -26,6 +26,7 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 WIDE = "100"  # columns of the terminal
+_GROUPS = ["Assess", "Respond", "Restitution", "Records", "Run"]  # order of the groups
 _LOG = logging.getLogger(__name__)
 
 
@@ -170,7 +171,7 @@ class CommandList(SphinxDirective):
             group = panel if isinstance(panel, str) else "Commands"
             groups[group].append(f"| [`rocking {name}`]({name}.md) | {plain(command.short_help or command.help)} |")
         lines: list[str] = []
-        for group, rows in groups.items():
+        for group, rows in sorted(groups.items(), key=lambda entry: [*_GROUPS, entry[0]].index(entry[0])):
             lines += [f"**{group}**", "", "| command | purpose |", "|---|---|", *rows, ""]
         return self.parse_text_to_nodes("\n".join(lines))
 

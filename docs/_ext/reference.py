@@ -1,6 +1,6 @@
-"""The reference of Python: a page for each package and for each public name, from `__all__` and the docstrings.
+"""The Python API: one page per package, from `__all__` and the docstrings.
 
-A name is described once, where it is shortest (`rocking.Block`); other packages that export it refer to that page.
+A name has one description, at its shortest path (`rocking.Block`); other packages that export the name link to it.
 """
 
 import inspect
@@ -13,40 +13,40 @@ from sphinx.application import Sphinx
 from sphinx.pycode import ModuleAnalyzer
 
 ROOMS = {
-    "rocking": "The front door",
+    "rocking": "Main functions",
     "rocking.examples": "Examples",
     "rocking.bodies": "Bodies",
-    "rocking.bodies.shapes": "Shapes in the plane",
+    "rocking.bodies.shapes": "Plane shapes",
     "rocking.bodies.solid": "Solids",
-    "rocking.bodies.formats": "Files of bodies",
+    "rocking.bodies.formats": "Body files",
     "rocking.motions": "Ground motions",
     "rocking.motions.pulses": "Pulses",
     "rocking.motions.synthetic": "Synthetic motions",
-    "rocking.motions.formats": "Files of records",
-    "rocking.restitution": "Models of restitution",
-    "rocking.restitution.space": "Restitution in space",
-    "rocking.restitution.bed": "The contact bed",
+    "rocking.motions.formats": "Record files",
+    "rocking.restitution": "Restitution models",
+    "rocking.restitution.space": "Restitution models in 3D",
+    "rocking.restitution.bed": "Contact bed",
     "rocking.dynamics": "Responses",
     "rocking.dynamics.contact": "Sliding, hopping and flight",
-    "rocking.dynamics.space": "Responses in space",
+    "rocking.dynamics.space": "Responses in 3D",
     "rocking.studies": "Studies",
     "rocking.studies.fragility": "Fragility",
-    "rocking.studies.code_methods": "Code methods",
+    "rocking.studies.code_methods": "Code checks",
     "rocking.studies.inventory": "Inventories",
-    "rocking.studies.sensitivity": "Sensitivity to the restitution",
+    "rocking.studies.sensitivity": "Sensitivity to the restitution model",
     "rocking.campaigns": "Campaigns",
-    "rocking.campaigns.jobs": "Jobs of campaigns",
-    "rocking.evidence": "Evidence",
+    "rocking.campaigns.jobs": "Job files of campaigns",
+    "rocking.evidence": "Measurements and evidence",
     "rocking.prediction": "Predictions",
     "rocking.assessment": "Assessments",
     "rocking.statistics": "Statistics",
     "rocking.plots": "Pictures",
     "rocking.reports": "Reports",
-    "rocking.tables": "Tables and files of results",
+    "rocking.tables": "Tables and result files",
     "rocking.errors": "Errors and warnings",
     "rocking.conventions": "Conventions and constants",
 }
-# whose members Python describes
+# base classes without a description of their members
 BASES = (
     "object, BaseException, float, int, str, tuple, dict, Enum, StrEnum, IntEnum, AttributeError, ImportError, "
     "BaseModel"
@@ -54,7 +54,7 @@ BASES = (
 
 
 def names_of(module: ModuleType) -> list[str]:
-    """What a package exports, or all that a module without `__all__` defines."""
+    """Return the exported names of a package, or all public names of a module without `__all__`."""
     if hasattr(module, "__all__"):
         return sorted(module.__all__)
     return sorted(
@@ -66,7 +66,7 @@ def names_of(module: ModuleType) -> list[str]:
 
 
 def first_lines(value: object) -> str:
-    """The summary of a docstring."""
+    """Return the summary of a docstring."""
     return (inspect.getdoc(value) or "").split("\n\n")[0].replace("\n", " ")
 
 
@@ -98,21 +98,21 @@ def write(folder: Path) -> None:
         text += f".. list-table::\n   :widths: 30 70\n\n{table}\n\n" + "\n".join(described)
         (folder / f"{room}.rst").write_text(text, "utf-8")
     rooms = "\n".join(f"   {title} <{room}>" for room, title in ROOMS.items())
-    title = "Python reference"
+    title = "Python API"
     (folder / "index.rst").write_text(
         f"{title}\n{'=' * len(title)}\n\n.. toctree::\n   :maxdepth: 1\n\n{rooms}\n", "utf-8"
     )
 
 
 def constant(room: str, name: str, value: object) -> str:
-    """What asks for the words on a constant, or shows it where it has none: Python's on its type would stand there."""
+    """Return the directive of a constant; without a comment of its own, its value, not the docstring of its type."""
     if ("", name) in ModuleAnalyzer.for_module(room).find_attr_docs():
         return f".. autodata:: {room}.{name}\n"
     return f".. py:data:: {name}\n   :value: {value!r:.80}\n"
 
 
 def documented(path: str, value: object) -> str:
-    """What asks for the documentation of one name."""
+    """Return the directive of one name."""
     if inspect.isclass(value):
         return f".. autoclass:: {path}\n   :members:\n   :inherited-members: {BASES}\n"
     return f".. autofunction:: {path}\n"

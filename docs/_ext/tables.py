@@ -62,9 +62,13 @@ def _meaning(entry: object) -> str:
 def write(folder: Path) -> None:
     """Write the pages of the keys of input files and body files."""
     from rocking.spec.reference import reference
+    from rocking.spec.schema import renamed_keys
 
     folder.mkdir(exist_ok=True)
-    for name, text in reference().items():
+    pages = reference()
+    renamed = table(("old key", "key"), ((f"`{old}`", f"`{new}`") for old, new in renamed_keys()))
+    pages["input_files"] += f"\n## Renamed keys\n\nFiles of older schemas are read with their old keys.\n\n{renamed}\n"
+    for name, text in pages.items():
         path = folder / f"{name}.md"
         if not path.exists() or path.read_text("utf-8") != text:  # an unchanged page is not built again
             path.write_text(text, "utf-8")

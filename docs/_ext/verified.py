@@ -1,9 +1,9 @@
-"""What tests verify, from their marks: the directive `claims`, the roles `claim` and `stated`, for docs/verified.md.
+"""Claims of the tests, from their marks: the directive `claims` and the roles `claim` and `stated` of docs/verified.md.
 
-What a test proves is the first paragraph of its docstring. How, says its mark, or that of its file where it says no
-more: ``@pytest.mark.verifies(kind, against, within=..., control=..., doi=..., room=...)``. Files are parsed and nothing
-is run; what the last ``make test`` measured stands beside what is asked if ``build/tests.xml`` is there. `faults` lists
-what is wrong with marks, and tests/unit/test_verified.py asks for it.
+The claim of a test is the first paragraph of its docstring. Its mark, or the mark of its file, contains the method:
+``@pytest.mark.verifies(kind, against, within=..., control=..., doi=..., room=...)``. Files are parsed and nothing is
+run. With ``build/tests.xml`` the tables contain the deviations of the last ``make test``. `faults` lists incorrect
+marks, and tests/unit/test_verified.py checks that there are none.
 """
 
 import ast
@@ -26,20 +26,20 @@ ROOT = Path(__file__).parents[2]
 RUN = ROOT / "build" / "tests.xml"
 ALL_MARKED = ("verification", "validation")  # folders in which every test must say what it verifies
 KINDS = {
-    "closed form": "an exact solution, or a limit or a series of it, worked out on paper",
-    "computed anew": "the same number by another route that shares nothing with ours: quadrature, a general-purpose"
-    " integrator, computer algebra, exact fractions, sums over points, numbers known to many digits",
-    "order": "errors fall with the declared power of the step",
-    "invariant": "what must be kept, or must not matter: energy, mirror images, size, units, place",
-    "second engine": "our two engines for the same mechanics, which share nothing but the numbers that go in",
-    "other program": "programs of others: rigid-body codes that know nothing of rocking, codes that read our files",
-    "published": "numbers printed in the literature",
-    "measured": "coefficients of restitution that were measured",
-    "repeated sampling": "how often an interval holds the truth, and how draws are distributed",
-    "same bits": "every digit is the same, whoever computes, in whatever pieces and however interrupted",
-    "damage": "damaged, hostile or senseless input is refused; what is killed loses nothing",
-    "behaviour": "what is said or done in a stated situation",
-    "negative control": "something wrong on purpose, which must be noticed",
+    "closed form": "an exact solution, a limit of it or a series of it",
+    "computed anew": "the same number by an independent method: quadrature, a general integrator, computer algebra,"
+    " exact fractions, sums over points, reference numbers",
+    "order": "decrease of the error with the declared power of the step",
+    "invariant": "conserved or irrelevant quantities: energy, mirror images, size, units, position",
+    "second engine": "two engines for the same mechanics, which share only the input values",
+    "other program": "programs of other authors: rigid-body programs, programs that read our files",
+    "published": "numbers of the literature",
+    "measured": "measured coefficients of restitution",
+    "repeated sampling": "coverage of intervals and distribution of samples",
+    "same bits": "identical results in all digits, independent of computer, chunks and interruptions",
+    "damage": "refusal of damaged, hostile or meaningless input; no loss after an interruption",
+    "behaviour": "behaviour in a stated situation",
+    "negative control": "a deliberate error that the test must detect",
 }
 ROOMS = (
     "bodies", "motions and records", "restitution in the plane", "restitution in space", "contact bed",
@@ -292,11 +292,11 @@ def _without_measurement() -> str:
 def _run() -> str:
     found, day = outcomes()
     if not day:
-        return "No run of the tests is at hand, so that the tables say only what is asked for."
+        return "The results of a test run are not available, so the tables contain the tolerances only."
     passed, failed, skipped = (sum(getattr(o, n) for o in found.values()) for n in ("passed", "failed", "skipped"))
     return (
-        f"What was measured is of the run of {day}: {passed:,} cases passed, {failed:,} failed, and {skipped:,} were"
-        " skipped for what they need and this machine lacks."
+        f"The measured deviations are from the test run of {day}: {passed:,} cases passed, {failed:,} failed, and"
+        f" {skipped:,} were skipped because a program or a file was missing."
     )
 
 
@@ -372,17 +372,17 @@ class Claims(SphinxDirective):
         if "room" in self.options:
             here = [claim for claim in claims() if claim.room == self.options["room"]]
             here.sort(key=lambda claim: (list(KINDS).index(claim.kind), claim.path))
-            head = ["what is verified, and the test", "against what", "how closely", "negative control"]
+            head = ["claim and test", "reference", "tolerance", "negative control"]
             return [table("claims", head, [row(claim) for claim in here], [45, 25, 15, 15])]
         each = Counter((claim.room, claim.kind) for claim in claims())
         count = Counter(claim.kind for claim in claims())
         kinds = table(
-            "kinds", ["kind", "tests", "what it is"], [[k, str(count[k]), w] for k, w in KINDS.items()], [20, 10, 70]
+            "kinds", ["kind", "tests", "meaning"], [[k, str(count[k]), w] for k, w in KINDS.items()], [20, 10, 70]
         )
         rows = [
             [room, *(str(each[room, k] or "") for k in KINDS), str(sum(each[room, k] for k in KINDS))] for room in ROOMS
         ]
-        return [kinds, table("counts", ["room", *KINDS, "all"], rows, [20] + [6] * (len(KINDS) + 1))]
+        return [kinds, table("counts", ["subject", *KINDS, "all"], rows, [20] + [6] * (len(KINDS) + 1))]
 
 
 class ClaimRole(SphinxRole):
@@ -391,7 +391,7 @@ class ClaimRole(SphinxRole):
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return words, figure and test."""
         (claim,) = [each for each in claims() if f"{each.path.rpartition('/')[2]}::{each.test}" == self.text]
-        figure = f"asked {how_closely(claim)}; " if claim.within else ""
+        figure = f"tolerance {how_closely(claim)}; " if claim.within else ""
         plain = claim.words.removeprefix("REF: ").rstrip(".")
         said = nodes.Text(f"{plain[:1].upper()}{plain[1:]} ({figure}")
         return [said, nodes.literal(claim.path, claim.path.removeprefix("tests/")), nodes.Text(")")], []

@@ -238,7 +238,8 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
         meaning, unit = meaning_and_unit(field.description or "")
         if '"' in unit:  # the name of a table
             meaning, unit = f"{meaning} [{unit}]", ""
-        kind = choices.replace("whole number", "integer").replace("true or false", "boolean")
+        kind = choices.replace("list of number", "list of numbers").replace("whole number", "integer")
+        kind = kind.replace("true or false", "boolean")
         row = (f"`{field.alias or key}`", kind, unit, default, _range(field), meaning)
         yield f"| {' | '.join(row)} |"
     yield ""
@@ -250,7 +251,7 @@ _SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
 
 def _range(field: FieldInfo) -> str:
     """Return the limits of a number, such as "> 0, <= 1"."""
-    return ", ".join(f"{_SIGNS[name]} {limit:g}" for name, limit in limits_of(field).items() if limit < _HUGE)
+    return ", ".join(f"{_SIGNS[name]} {limit:,.10g}" for name, limit in limits_of(field).items() if limit < _HUGE)
 
 
 def _usual(value: Any) -> str:
